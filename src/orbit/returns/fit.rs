@@ -97,9 +97,9 @@ pub fn coordinates<T: Coefficient>(left: &Map<T>, right: &Map<T>) -> Option<(Map
     let (one, x, y) = (T::of(1.0), T::of(x), T::of(y));
     let corner = one.plus(&x.times(&y));
     let (there, back): (Entries<T>, Entries<T>) = if upper_last {
-        ([corner.clone(), x.clone(), y.clone(), one.clone()], [one, x.negative(), y.negative(), corner])
+        ([corner, x, y, one], [one, x.negative(), y.negative(), corner])
     } else {
-        ([one.clone(), y.clone(), x.clone(), corner.clone()], [corner, y.negative(), x.negative(), one])
+        ([one, y, x, corner], [corner, y.negative(), x.negative(), one])
     };
     // One product and one sum.
     let rounding = 2.0 * T::UNIT * (1.0 + 2.0 * (x.near() * y.near()).abs());

@@ -163,7 +163,7 @@ impl<T: Coefficient> Map<T> {
     /// The identity.
     pub fn identity() -> Self {
         let [zero, one] = [0.0, 1.0].map(T::of);
-        Map { turn: Some(Turn::NONE), ..Map::of(vec![[one.clone(), zero.clone(), zero, one]]) }
+        Map { turn: Some(Turn::NONE), ..Map::of(vec![[one, zero, zero, one]]) }
     }
 
     /// Numbers as they are, without a turn.
@@ -313,7 +313,7 @@ impl<T: Coefficient> Map<T> {
             sum.iter_mut().zip(term).for_each(|(x, c)| *x = x.times(alpha).plus(c));
             sum
         };
-        let value = rest.iter().rev().fold(last.clone(), horner);
+        let value = rest.iter().rev().fold(*last, horner);
         let value = self.moved(vec![value]);
         Map { turn: self.turn_moved(alpha.near(), value.direction()), ..value }
     }
@@ -464,7 +464,7 @@ impl<T: Coefficient> Task for Part<'_, T> {
                 terms[j] = terms[j].plus_times(&alpha, &terms[j + 1]);
             }
         }
-        let mut power = beta.clone();
+        let mut power = beta;
         for term in &mut terms[1..] {
             *term = term.times(&power);
             power = power.times(&beta);

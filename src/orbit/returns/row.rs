@@ -201,8 +201,8 @@ impl<T: Coefficient> Task for Row<'_, T> {
         let plan = self.plan()?;
         // What stays in registers, or near them.
         Some(match plan.terms[1].max(self.whole.terms().len()) {
-            ..=SHORT => self.with_room::<SHORT>(&plan),
-            ..=FEW => self.with_room::<FEW>(&plan),
+            n if n <= SHORT => self.with_room::<SHORT>(&plan),
+            n if n <= FEW => self.with_room::<FEW>(&plan),
             _ => self.with_room::<MOST>(&plan),
         })
     }

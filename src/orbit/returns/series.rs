@@ -91,11 +91,11 @@ impl<T: Coefficient> Series<T> {
     }
 
     pub fn re(&self, i: usize) -> T {
-        self.0.get(i).map_or_else(T::zero, |[re, _]| re.clone())
+        self.0.get(i).map_or_else(T::zero, |[re, _]| *re)
     }
 
     pub fn im(&self, i: usize) -> T {
-        self.0.get(i).map_or_else(T::zero, |[_, im]| im.clone())
+        self.0.get(i).map_or_else(T::zero, |[_, im]| *im)
     }
 
     /// The constant term.
@@ -221,8 +221,7 @@ impl<T: Coefficient> Task for Quotient<'_, T> {
     fn run(self) -> Vec<Complex<T>> {
         let mut quotient: Vec<Complex<T>> = Vec::with_capacity(self.terms);
         for k in 0..self.terms {
-            let mut rest =
-                if k < self.series.len() { self.series[k].clone() } else { [T::zero(), T::zero()] };
+            let mut rest = if k < self.series.len() { self.series[k] } else { [T::zero(), T::zero()] };
             for j in 1..self.divisor.len().min(k + 1) {
                 rest = plus(&rest, &negative(&times(&self.divisor[j], &quotient[k - j])));
             }

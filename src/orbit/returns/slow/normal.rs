@@ -63,7 +63,7 @@ pub struct Normal<T> {
 
 /// The entries of a function, without its power of two, as series.
 fn series<T: Coefficient>(map: &Map<T>) -> [Series<T>; 4] {
-    std::array::from_fn(|k| Series::real(map.terms().iter().map(|term| term[k].clone())))
+    std::array::from_fn(|k| Series::real(map.terms().iter().map(|term| term[k])))
 }
 
 /// (a − d)/2 and its square + b c, a quarter of the discriminant.
