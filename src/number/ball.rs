@@ -26,7 +26,7 @@ use std::cmp::Ordering;
 
 use num_bigint::{BigInt, Sign as IntSign};
 use num_integer::Integer;
-use num_traits::{One, Signed, Zero};
+use num_traits::{Float, One, Signed, Zero};
 
 use super::{Rational, Sign, float, rational};
 use magnitude::Magnitude;
@@ -122,11 +122,9 @@ impl Ball {
 
     /// All points within `distance` of 0, a double that is not negative.
     pub(crate) fn about_zero(distance: f64) -> Ball {
-        let (fraction, power) = (distance.to_bits() & ((1 << 52) - 1), (distance.to_bits() >> 52) as i64);
-        let (whole, exponent) =
-            if power == 0 { (fraction, -1074) } else { (fraction | 1 << 52, power - 1075) };
+        let (whole, exponent, _) = Float::integer_decode(distance);
         // Of 53 bits the first 30, rounded up.
-        Ball { mid: BigInt::zero(), rad: (whole >> 23) + 1, exp: exponent + 23 }
+        Ball { mid: BigInt::zero(), rad: (whole >> 23) + 1, exp: i64::from(exponent) + 23 }
     }
 
     fn radius(&self) -> Magnitude {

@@ -6,7 +6,7 @@
 
 use num_bigint::{BigInt, BigUint, Sign as IntSign};
 use num_integer::Integer;
-use num_traits::{ToPrimitive, Zero};
+use num_traits::{Float, ToPrimitive, Zero};
 
 /// A positive number x with `lead 2^exp <= x < (lead + 1) 2^exp`, where lead has 64 significant bits.
 struct Leading {
@@ -76,7 +76,8 @@ impl Leading {
 pub(super) fn short_quotient(n: u64, d: u64) -> (f64, f64) {
     let hi = Leading::of_quotient(n, d).around().nearest;
     // hi = m 2^e with m of 53 bits, and hi d differs from n by less than 2^e d: both are whole in units of 2^min(e, 0).
-    let (m, e) = ((hi.to_bits() & ((1 << 52) - 1)) | 1 << 52, (hi.to_bits() >> 52) as i32 - 1075);
+    let (m, e, _) = Float::integer_decode(hi);
+    let e = i32::from(e);
     let (n, product) = (i128::from(n) << (-e).max(0), (i128::from(m) << e.max(0)) * i128::from(d));
     (hi, (n - product) as f64 / d as f64 * 2f64.powi(e.min(0)))
 }

@@ -1,6 +1,7 @@
 //! The numbers that a pair's constants are made of: balls, and for doubles two doubles with a radius, a hundred times as fast.
 
 use num_bigint::BigUint;
+use num_traits::Float;
 
 use crate::number::{Ball, Rational, Real, Sign, Twofold};
 
@@ -233,11 +234,8 @@ pub fn quotient(n: i128, d: u128) -> Twofold {
 
 /// A double, exactly.
 pub fn exact(x: f64) -> Ball {
-    let (mantissa, exponent) = (x.to_bits() & ((1 << 52) - 1), (x.to_bits() >> 52 & 0x7ff) as i64);
-    let (mantissa, exponent) =
-        if exponent == 0 { (mantissa, -1074) } else { (mantissa | 1 << 52, exponent - 1075) };
-    let ball = Ball::from_integer(&mantissa.into()).scale2(exponent);
-    if x < 0.0 { ball.neg() } else { ball }
+    let (mantissa, exponent, sign) = Float::integer_decode(x);
+    Ball::from_integer(&(i64::from(sign) * mantissa as i64).into()).scale2(exponent.into())
 }
 
 /// Entries farther from 1 than 2^±this are scaled.

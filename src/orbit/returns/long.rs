@@ -1,6 +1,7 @@
 //! Numbers of 256 bits, without allocation.
 
 use num_bigint::{BigInt, Sign};
+use num_traits::Float;
 
 /// The whole words of a mantissa, the lowest first.
 const WORDS: usize = 4;
@@ -84,11 +85,8 @@ impl Long {
 
     /// A double, exactly.
     pub fn of(x: f64) -> Long {
-        let bits = x.to_bits();
-        let (fraction, power) = (bits & ((1 << 52) - 1), (bits >> 52 & 0x7ff) as i64);
-        let (fraction, power) =
-            if power == 0 { (fraction, -1074) } else { (fraction | 1 << 52, power - 1075) };
-        Long::normalized(x < 0.0, [fraction, 0, 0, 0], power)
+        let (mantissa, exponent, sign) = Float::integer_decode(x);
+        Long::normalized(sign < 0, [mantissa, 0, 0, 0], exponent.into())
     }
 
     /// n 2^exponent, but for what lies beyond 256 bits.
