@@ -78,7 +78,7 @@ pub(super) fn stretches(session: &Session, query: &Query) -> Result<Reply> {
     Ok(Reply::json(&json!({ "stretches": stretches })))
 }
 
-/// `outer` and `rate` (null where it is not told) at evenly spaced outer steps, as many as asked for or fewer where these would cost
+/// `outer` and `rate` (null where it is not known) at evenly spaced outer steps, as many as asked for or fewer where these would cost
 /// too much; `own` the file's outer step, `verdict` the document of the file's own steps, `unit` of time, `title`.
 pub(super) fn answer(session: &Session, query: &Query) -> Result<Reply> {
     let scene = system(session)?;

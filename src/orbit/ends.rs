@@ -16,12 +16,12 @@ pub struct End {
     pub x: Ball,
     pub v: Ball,
     pub signs: (Option<Sign>, Option<Sign>),
-    /// `None` where some sign could not be told.
+    /// `None` where some sign is undecided.
     pub nodes: Option<u64>,
 }
 
 impl Ends {
-    /// The signs of A, B, C, D as far as this precision tells.
+    /// The signs of A, B, C, D as far as this precision decides them.
     pub fn signs(&self) -> PartialSigns {
         let ((a, c), (b, d)) = (self.even.signs, self.odd.signs);
         PartialSigns { a, b, c, d }

@@ -64,7 +64,7 @@ struct Leaps<'a> {
     other: u64,
     /// The strengths of the base, of the other clock and of both.
     strengths: [Ball; 3],
-    /// `None` where these bits do not tell.
+    /// `None` where these bits cannot decide it.
     turn: Option<Turn>,
     /// A step's matrix, and powers of it that were made already.
     step: Matrix,
@@ -189,7 +189,7 @@ impl<'a> Leaps<'a> {
     }
 }
 
-/// How a base of strength s in its own unit of time turns; `None` where the ball does not tell.
+/// How a base of strength s in its own unit of time turns; `None` where the ball cannot decide it.
 fn turn(s: &Ball, bits: u32) -> Option<Turn> {
     let beyond = s.sub(&Ball::from_integer(&4.into()), bits);
     match (s.sign()?, beyond.sign()?) {

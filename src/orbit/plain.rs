@@ -34,7 +34,7 @@ const LONGEST: f64 = 1e180;
 /// A power of two whose square brings a length from beyond [`LONGEST`] back.
 const SHRINK: i32 = 127;
 
-/// The half period as far as doubles tell; `None` where the theorem's conditions cannot be met, or a strength is no
+/// The half period as far as doubles decide it; `None` where the theorem's conditions cannot be met, or a strength is no
 /// comfortable double.
 pub fn run<S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule) -> Option<Ends> {
     run_in::<f64, S>(clocks, schedule)

@@ -335,7 +335,7 @@ struct Span {
     h: [Option<(f64, f64)>; 2],
     /// (√Λ1 h)² where it is rational.
     squares: [Option<Rational>; 2],
-    /// Whether the answer holds at the ends; `None` where balls do not tell.
+    /// Whether the answer holds at the ends; `None` where balls cannot decide it.
     includes: [Option<bool>; 2],
 }
 

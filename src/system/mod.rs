@@ -16,7 +16,7 @@
 //! | `linear` | masses, potentials and clocks over ℚ; the usual systems, finite elements |
 //! | `half` | the half period, in any ring and in doubles |
 //! | `signs` | signs of symmetric matrices decide: of the half period's forms, of the sparse action |
-//! | `spectrum` | eigenvalues with proven discs, where the signs do not tell; growth rates, modes |
+//! | `spectrum` | eigenvalues with proven discs, where the signs cannot decide; growth rates, modes |
 //! | `exact` | exact arithmetic over ℚ |
 //! | `single` | one oscillator under any number of clocks |
 //! | `pi` | stiffnesses that involve π: decided over ℚ\[π\] |

@@ -94,7 +94,7 @@ pub fn decide_anew<S: Decidable>(clocks: &LongClocks<S>) -> Result<Option<(Verdi
 /// ```
 ///
 /// # Errors
-/// A budget error where return maps in 256 bits tell no verdict: on an edge of a tongue exactly or next to it, and where kicks are so
+/// A budget error where return maps in 256 bits decide no verdict: on an edge of a tongue exactly or next to it, and where kicks are so
 /// strong that the bound exceeds the entries (proofs/RETURNS.md); at once where the period has more than 2^4096 kicks. `Stopped`.
 pub fn decide_long<S: Decidable>(clocks: &LongClocks<S>) -> Result<Decision> {
     let kicks = clocks.ratio().numer() + clocks.ratio().denom();
@@ -114,7 +114,7 @@ pub fn decide_long<S: Decidable>(clocks: &LongClocks<S>) -> Result<Decision> {
     }
     go_on()?;
     let work = format!(
-        "256 bits do not tell the verdict, and the period has {} kicks: the pair is on an edge of a tongue or next to one, or its kicks are very strong",
+        "256 bits do not decide the verdict, and the period has {} kicks: the pair is on an edge of a tongue or next to one, or its kicks are very strong",
         short(&kicks)
     );
     Err(Error::too_much(work, "move a step by a hair, or choose steps with a simpler ratio"))

@@ -178,7 +178,7 @@ impl<'a> Enclosed<'a> {
         [&sum - &trace, &sum + &trace]
     }
 
-    /// Whether all steps of [lo, hi] are stable or all unstable; `None` where that is not told.
+    /// Whether all steps of [lo, hi] are stable or all unstable; `None` where that is undecided.
     fn verdict(&self, lo: f64, hi: f64) -> Option<bool> {
         let exact = |x: f64| {
             let x = crate::number::rational::from_f64_exact(x).unwrap_or_default();

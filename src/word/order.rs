@@ -28,7 +28,7 @@ pub struct Order {
     pub impedance: Option<(u64, Radical)>,
 }
 
-/// The largest order that is told of a word with exact flows or filters: it has this order or a higher one.
+/// The largest order that is given for a word with exact flows or filters: it has this order or a higher one.
 pub const MOST_ORDER: u64 = 2 * TERMS as u64 - 3;
 
 /// An error coefficient below this counts as 0 for the nominal order.

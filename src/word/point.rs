@@ -6,7 +6,7 @@ use crate::number::{Ball, ExactSign, Laurent, Polynomial, Radical, Real, Ring, S
 /// The propagator of one step at s = h² Λ1.
 #[derive(Clone, Debug)]
 pub struct At {
-    /// `elliptic`, `hyperbolic`, `parabolic` or `coexistence`, decided; of words in balls also `damped`, and `edge` where they do not tell.
+    /// `elliptic`, `hyperbolic`, `parabolic` or `coexistence`, decided; of words in balls also `damped`, and `edge` where they cannot decide it.
     pub kind: &'static str,
     /// 1 where the trace is at least 2, −1 where it is at most −2, else 0.
     pub side: i8,

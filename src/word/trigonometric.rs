@@ -177,7 +177,7 @@ impl Shape {
         Some(Shape { cos: power(filter.cos)?, sinc: power(filter.sinc)?, felt: !filter.zero })
     }
 
-    /// The signs of 2 + Tr and 2 − Tr, without factors that are squares, for every y of a ball; `None` where they are not told.
+    /// The signs of 2 + Tr and 2 − Tr, without factors that are squares, for every y of a ball; `None` where they are undecided.
     fn signs(self, y: &Ball, rho: &Ball, bits: u32) -> [Option<Sign>; 2] {
         if !self.felt {
             // 4 cos² y and 4 sin² y: ±I where they are 0.
@@ -201,7 +201,7 @@ impl Shape {
         [below.sign(), above.sign()]
     }
 
-    /// Whether every step of an interval of y is stable or every one unstable; `None` where that is not told.
+    /// Whether every step of an interval of y is stable or every one unstable; `None` where that is undecided.
     fn verdict(self, y: &Ball, rho: &Ball, bits: u32) -> Option<bool> {
         match self.signs(y, rho, bits) {
             [Some(Sign::Positive), Some(Sign::Positive)] => Some(true),

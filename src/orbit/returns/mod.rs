@@ -86,7 +86,7 @@ pub fn run_over_other<S: Real>(clocks: &LongClocks<S>, bits: u32, wanted: Wanted
     over(clocks, !prefers_fast(clocks), bits, wanted)?.ends
 }
 
-/// Over the one base, and where that does not tell the verdict, over the other.
+/// Over the one base, and where that does not decide the verdict, over the other.
 fn better<S: Real>(clocks: &LongClocks<S>, bits: u32, wanted: Wanted) -> Option<Found> {
     let fast = prefers_fast(clocks);
     let decides = |found: &Option<Found>| found.as_ref().is_some_and(|found| found.signs.verdict().is_some());

@@ -1,4 +1,4 @@
-//! What is told of a mode at a scheme.
+//! What is said of a mode at a scheme.
 
 use super::claim::{Claim, Row};
 use super::mass::{BITS, Mass, crosses, exact, fastest_growth};

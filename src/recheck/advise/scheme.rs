@@ -1,4 +1,4 @@
-//! What is told of a scheme of steps.
+//! What is said of a scheme of steps.
 
 use num_traits::One;
 

@@ -1,4 +1,4 @@
-//! What is told of a molecule's Hessians: lines to act on, then tables.
+//! What is said of a molecule's Hessians: lines to act on, then tables.
 
 use super::lines::{self, advised, read_from};
 use super::tables::{self, enclosed, for_people, published};

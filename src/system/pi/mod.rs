@@ -5,7 +5,7 @@
 //!
 //! Doubles decide as ever, at a rational ϖ in the place of π. It is so near that every entry is within 2^-150 of itself of the true one, while
 //! the bounds' constants leave a hundredth of u = 2^-53 for what is of second order: what they prove at ϖ they prove at π.
-//! Where they do not tell, the half period is composed over ℚ\[π\] and brought to ℤ\[π\], where forms have exact inertias and
+//! Where they cannot decide, the half period is composed over ℚ\[π\] and brought to ℤ\[π\], where forms have exact inertias and
 //! [`moments`] count the multipliers: nothing is left open. Proofs: section 6 of `proofs/SIGNS.md`.
 //!
 //! | file | what |

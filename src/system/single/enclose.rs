@@ -55,7 +55,7 @@ impl KickDrift<Ball> for Enclosed {
 }
 
 impl Enclosed {
-    /// The verdict, where the signs that are told imply it.
+    /// The verdict, where the signs that are known imply it.
     pub fn verdict(&self) -> Option<Verdict> {
         let (a, b, c, d) = (self.a.sign(), self.b.sign(), self.c.sign(), self.d.sign());
         PartialSigns { a, b, c, d }.verdict()

@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `clocks` | K clocks on one oscillator: exact in every ring whose signs are known |
 //! | `enclose` | in balls |
-//! | `decide` | the verdict, by whichever tells |
+//! | `decide` | the verdict, by whichever decides |
 
 pub(super) mod clocks;
 pub(super) mod decide;

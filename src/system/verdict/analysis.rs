@@ -1,4 +1,4 @@
-//! What is told of a system: its kind, part by part, every multiplier, and what grows.
+//! What is said of a system: its kind, part by part, every multiplier, and what grows.
 
 use num_complex::Complex64;
 

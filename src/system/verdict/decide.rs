@@ -4,7 +4,7 @@
 //!    along their rational eigenvectors.
 //! 2. A part of one degree of freedom is the scalar problem: two clocks go to the certified ladder of
 //!    [`verdict`](crate::verdict), more of them to doubles, balls and exact signs.
-//! 3. Any other part is tried in doubles with proven discs, multiple eigenvalues in clusters; where these do not tell,
+//! 3. Any other part is tried in doubles with proven discs, multiple eigenvalues in clusters; where these cannot decide,
 //!    in exact arithmetic.
 //! 4. Where exact arithmetic exceeds the budget and doubles prove nothing, the kind is not decided.
 //!

@@ -221,7 +221,7 @@ impl Edges {
         Ok(precise::shrink(&function, &alone, &relative, true).expect("it is isolated"))
     }
 
-    /// As [`Edges::sharpened`] by return maps alone; `None` where they do not tell, and of a period that is not long.
+    /// As [`Edges::sharpened`] by return maps alone; `None` where they cannot decide it, and of a period that is not long.
     ///
     /// # Errors
     /// Where the schedule is too long.

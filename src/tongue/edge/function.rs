@@ -74,7 +74,7 @@ impl EntryFunction {
     /// The entry's value at s, with a certified sign, from `bits` bits; the exact ball 0 where it is 0. And how many zeros lie
     /// below s, if those bits decide it.
     ///
-    /// `None` where return maps do not tell.
+    /// `None` where return maps cannot decide it.
     pub fn value(&self, s: &Rational, bits: u32) -> Option<(Ball, Option<u64>)> {
         let known = |working: u32| {
             let end = self.orbit(s, working)?;

@@ -12,7 +12,7 @@
 //! | `enclosure` | an edge in doubles, and by rational ends |
 //! | `function` | an entry of the half period at rational points |
 //! | `fine_count` | 25 digits by counts in two doubles |
-//! | `precise`, `exact_count` | any number of digits; counts where two doubles tell nothing apart |
+//! | `precise`, `exact_count` | any number of digits; counts where two doubles tell no two apart |
 //! | `long` | edges of long periods, one by one |
 //! | `edges` | the edges of one ratio, by whichever way is needed |
 
