@@ -789,3 +789,28 @@ fn edges_of_trigonometric_integrators_are_decided() {
     // Below, as these digits are, an impulse is unstable.
     assert_eq!(Impulse.at(&s, &ratio(1, 16)), Some(false));
 }
+
+/// A slow force far stiffer than the fast one: edges where h w/2 is small. They end, and lie where doubles find them.
+#[test]
+fn edges_beside_a_stiff_slow_force_are_found() {
+    use Trigonometric::{Linear, Long, Short};
+    for rho in [20, 100, 1_000_000] {
+        for (method, cosines, sincs) in [(Short, 0, 3), (Linear, 0, 5), (Long, 1, 3)] {
+            // 4 + 2 Tr without squares, at y = h w/2: positive below the first edge.
+            let margin = |y: f64| {
+                let kicked = f64::from(rho) * y * y * (y.sin() / y).powi(sincs);
+                if cosines == 0 { y.cos() - kicked } else { 1.0 - kicked * y.cos() }
+            };
+            let (mut lo, mut hi) = (1e-9, 2.0 / f64::from(rho).sqrt());
+            assert!(margin(lo) > 0.0 && margin(hi) < 0.0);
+            for _ in 0..60 {
+                let middle = lo + (hi - lo) / 2.0;
+                *(if margin(middle) > 0.0 { &mut lo } else { &mut hi }) = middle;
+            }
+            let [fast, slow] = [4, 4 * rho].map(Laurent::from_integer);
+            let found = method.unstable(&fast, &slow, 1.0)[0][0];
+            // The margin in doubles is within some units of 1e-16, its slope about 2/y.
+            assert!(found.0 - 1e-15 <= lo && lo <= found.1 + 1e-15, "{method:?} {rho}: {found:?} {lo}");
+        }
+    }
+}

@@ -37,7 +37,7 @@ use crate::format::Format;
 use crate::question::{Closings, Curves, Half, Polynomial, Proposition, Question, State};
 #[cfg(unix)]
 use crate::report::file::abandon;
-use crate::report::file::{captured, is_captured, replaceable, write_output};
+use crate::report::file::{captured, is_captured, writable, write_output};
 use args::Common;
 use asked::{Asked, Default};
 use progress::Patience;
@@ -117,6 +117,11 @@ impl Command {
                 | Run(_)
                 | Generate(_)
         )
+    }
+
+    /// Whether what it writes is a folder of files.
+    fn makes_a_folder(&self) -> bool {
+        matches!(self, Command::Run(_) | Command::Generate(_))
     }
 }
 
@@ -209,7 +214,9 @@ fn run(cli: &Cli) -> Result<u8> {
     let common = &cli.common;
     common.set_threads()?;
     // Refused before the work, not after it.
-    common.output.as_deref().map_or(Ok(()), replaceable)?;
+    if !cli.command.makes_a_folder() {
+        common.output.as_deref().map_or(Ok(()), writable)?;
+    }
     if !cli.command.draws() {
         common.format(&Format::DOCUMENT, Format::Text)?;
     }

@@ -1,5 +1,7 @@
 //! Boxes of steps in which every ratio is unstable.
 
+use num_traits::{One, Signed};
+
 use super::asking::{Question, Work, question};
 use super::field::StepRange;
 #[cfg(feature = "cli")]
@@ -63,6 +65,13 @@ impl Question for Bands {
         if self.boxes > work.budget.unwrap_or(MOST_BOXES) {
             let cost = format!("{} boxes are too many", self.boxes);
             return Err(Error::budget(cost, self.boxes).or(format!("choose --boxes {MOST_BOXES} at most")));
+        }
+        if let Some(share) = self.area.as_ref().filter(|share| !share.is_positive() || **share > One::one()) {
+            return Err(Error::input(
+                "area",
+                share,
+                "is a share of the window: choose one above 0, at most 1",
+            ));
         }
         let window = self.window()?;
         work.announce("the bands", self.boxes as f64 * BOX);

@@ -71,15 +71,6 @@ impl Document {
         self
     }
 
-    /// Echoes one input where it was given.
-    #[must_use]
-    pub fn input_given(self, key: &str, value: Option<impl ToString>) -> Self {
-        match value {
-            Some(value) => self.input(key, value),
-            None => self,
-        }
-    }
-
     /// Echoes inputs, in order.
     #[must_use]
     pub fn inputs<'a, V: Into<Value>>(self, given: impl IntoIterator<Item = (&'a str, V)>) -> Self {

@@ -110,12 +110,11 @@ fn to_path(path: &Path, content: impl FnOnce(&mut dyn Write) -> Result<()>) -> R
     finish().map_err(Error::stream)
 }
 
-/// That a file may be replaced, if there is one: a rename would pass over what keeps it from being written to. For whoever asks before the
-/// work, too.
+/// That a file may be replaced, if there is one: a rename would pass over what keeps it from being written to.
 ///
 /// # Errors
 /// [`Kind::Io`](crate::error::Kind::Io) naming a file that is read-only, for all or for this process.
-pub fn replaceable(path: &Path) -> Result<()> {
+fn replaceable(path: &Path) -> Result<()> {
     let old = fs::metadata(path).ok().filter(|old| old.is_file() && !CAPTURED.with_borrow(Option::is_some));
     let Some(old) = old else { return Ok(()) };
     let opened = if old.permissions().readonly() {
@@ -128,6 +127,24 @@ pub fn replaceable(path: &Path) -> Result<()> {
             format!("is not replaced, being read-only ({cause}): name another file, or make it writable");
         Error::io(path.display(), text).caused_by(cause)
     })
+}
+
+/// That a file can be made where there is none, and else that it may be replaced: asked before the work.
+///
+/// # Errors
+/// Those of [`replaceable`]; a path that is a directory, or in none.
+pub fn writable(path: &Path) -> Result<()> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let cause = if is_captured() {
+        return Ok(());
+    } else if path.is_dir() {
+        ErrorKind::IsADirectory
+    } else if folder.is_some_and(|folder| !folder.exists()) {
+        ErrorKind::NotFound
+    } else {
+        return replaceable(path);
+    };
+    Err(explained(path, Error::stream(cause.into())))
 }
 
 /// The files and folders of this process that are not finished, those within others behind them.

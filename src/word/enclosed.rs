@@ -7,12 +7,13 @@
 
 use std::cell::Cell;
 
-use num_traits::{One, Signed};
+use num_traits::One;
 
 use super::filter::Filter;
 use super::letters::{Force, Word};
 use super::point::At;
 use super::product::{Product, Setting};
+use super::trigonometric::is_away_from_zero;
 use crate::number::jet;
 use crate::number::{Ball, Laurent, Radical, Rational, Real, Ring, Sign};
 
@@ -90,9 +91,7 @@ impl Steps {
     /// sin x / x, and about 0 the bounds 1 − x²/6 ≤ sinc x ≤ 1, −x/3 ≤ sinc' x ≤ 0 for x ≥ 0.
     fn sinc(&self, x: &Jet) -> Jet {
         let own = &x.value;
-        // Away from 0, or narrow beside its distance from 0.
-        let (lower, upper) = (own.lower(), own.upper());
-        if lower.is_positive() && &lower + &lower >= upper {
+        if is_away_from_zero(own) {
             let sinc = self.over(&own.sin(BITS), own);
             let slope = self.over(&own.cos(BITS).sub(&sinc, BITS), own);
             return x.chained(sinc, &slope);

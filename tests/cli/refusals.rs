@@ -323,6 +323,25 @@ fn a_file_name_that_ends_in_no_form_of_the_result_is_refused_with_those_that_it_
 const SYSTEM: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/scenes/diatomic-tether.json");
 
 #[test]
+fn an_output_that_no_file_can_be_is_refused_before_the_work() {
+    let desk = Desk::new();
+    std::fs::create_dir(desk.path().join("folder")).unwrap();
+    // Half an hour, if it began.
+    let work = "bands --lambda1 pi^2 --lambda2 pi^2/25 --h1-range 0..2/pi --h2-range 0..7/2 --boxes 50000000 --output";
+    for (output, remedy) in
+        [("folder", "name a file in it"), ("none/bands.json", "create the directory first")]
+    {
+        let ended = desk.run(&words(&format!("{work} {output}")));
+        assert_eq!(ended.code, Some(2), "{output}");
+        assert!(ended.stderr.contains(remedy), "{}", ended.stderr);
+    }
+    for share in ["2", "0", "-1/2"] {
+        let ended = desk.run(&words(&format!("{work} bands.json --area {share}")));
+        assert!(ended.stderr.contains("share of the window"), "{share}: {}", ended.stderr);
+    }
+}
+
+#[test]
 fn work_beyond_the_budget_is_refused_with_its_cost_before_it_begins() {
     let desk = Desk::new();
     desk.write("n2.namd", "structure a.psf\ntimestep 1\nnonbondedFreq 2\nfullElectFrequency 99999\n");
