@@ -794,14 +794,14 @@ fn edges_of_trigonometric_integrators_are_decided() {
 #[test]
 fn edges_beside_a_stiff_slow_force_are_found() {
     use Trigonometric::{Linear, Long, Short};
-    for rho in [20, 100, 1_000_000] {
+    for rho in [20i64, 100, 1_000_000] {
         for (method, cosines, sincs) in [(Short, 0, 3), (Linear, 0, 5), (Long, 1, 3)] {
             // 4 + 2 Tr without squares, at y = h w/2: positive below the first edge.
             let margin = |y: f64| {
-                let kicked = f64::from(rho) * y * y * (y.sin() / y).powi(sincs);
+                let kicked = rho as f64 * y * y * (y.sin() / y).powi(sincs);
                 if cosines == 0 { y.cos() - kicked } else { 1.0 - kicked * y.cos() }
             };
-            let (mut lo, mut hi) = (1e-9, 2.0 / f64::from(rho).sqrt());
+            let (mut lo, mut hi) = (1e-9, 2.0 / (rho as f64).sqrt());
             assert!(margin(lo) > 0.0 && margin(hi) < 0.0);
             for _ in 0..60 {
                 let middle = lo + (hi - lo) / 2.0;
