@@ -32,7 +32,7 @@ use crate::schedule::{Event, Schedule, Weight};
 use crate::system::friction::{Damping, Radius, damping};
 use crate::system::half::float::FloatBlocks;
 use crate::system::half::norm;
-use crate::system::half::period::{Drifts, Stiff, follow, follow_proven};
+use crate::system::half::period::{Drifts, Stiff, Stiffness, follow, follow_proven};
 use crate::system::signs;
 use crate::system::signs::envelope::{Envelope, Sign};
 use crate::system::signs::inertia::{is_definite, spectral_norm};
@@ -458,10 +458,10 @@ impl Steps<'_> {
         let a = if turn.is_normal() { turn.log2().round().exp2() } else { 1.0 };
         let kick = |(k, own): (usize, &Level)| {
             let factor = square * self.kicks[k] / a;
-            let row = |i: usize| (i, (0..n).map(|j| (j, factor * own.stiffness[(i, j)])).collect());
+            let stiffness = Stiffness::Whole(Mat::from_fn(n, n, |i, j| factor * own.stiffness[(i, j)]));
             let rounding = ROUNDINGS as f64 * U * own.frobenius;
             let off = 1.01 * factor * (self.nested.error_within(k, epsilon) + rounding);
-            Stiff { rows: (0..n).map(row).collect(), off }
+            Stiff { stiffness, off }
         };
         let kicks = self.nested.levels.iter().enumerate().map(kick).collect();
         (kicks, (0..n).map(|i| vec![(i, a)]).collect())
