@@ -371,7 +371,7 @@ fn the_unstable_intervals_next_to_a_stable_number_do_not_hold_it() {
     let (number, inner) = (7.5, 6);
     let own = kernel.decide(&Outer::new(number, inner).unwrap(), &ratio(15, 2), 1e-9).holds();
     assert_eq!(own, Holds::Stable);
-    let found = Nearest::search((number, own), |range| kernel.stretches(inner, range, 1e-4)).unwrap();
+    let found = Nearest::search((number, own), |range| kernel.stretches(inner, range, 1e-4, 0.0)).unwrap();
     assert!(found.own.is_none(), "{found:?}");
     let below = found.below.unwrap();
     assert!(below.proven.0 < 5.73 && below.proven.1 > 5.99 && below.proven.1 < 7.5, "{below:?}");

@@ -292,7 +292,7 @@ fn stretches_cover_their_range_and_the_dense_period_agrees_with_each() {
         let (first, _) = kernel.first_unstable(inner).unwrap();
         // Below the Verlet limit of the fast stiffness, h = 2.
         let range = (0.5 * first, (1.6 * first).min(1.98 * inner as f64));
-        let stretches = kernel.stretches(inner, range, 1e-4).unwrap();
+        let stretches = kernel.stretches(inner, range, 1e-4, 0.0).unwrap();
         assert_eq!((stretches[0].lo, stretches.last().unwrap().hi), range);
         assert!(
             stretches.windows(2).all(|pair| pair[0].hi == pair[1].lo && pair[0].verdict != pair[1].verdict)
@@ -316,6 +316,80 @@ fn stretches_cover_their_range_and_the_dense_period_agrees_with_each() {
     }
 }
 
+/// The verdict on exactly these doubles at an outer step of `inner` steps.
+fn decided([fast, slow]: &[DMatrix<f64>; 2], step: f64, inner: u64) -> Holds {
+    let step = from_f64_exact(step).unwrap();
+    let h = &step / Rational::from_integer((inner as i64).into());
+    let potential = |k: &DMatrix<f64>, step: Rational| Potential::new(Symmetric::try_from(k).unwrap(), step);
+    let mass = Symmetric::diagonal(&vec![ratio(1, 1); fast.nrows()]);
+    let system = System::new(mass, vec![potential(fast, h), potential(slow, step)]).unwrap();
+    decide_system(&system, &Limits::default()).unwrap().holds()
+}
+
+/// Shifts of both stiffnesses by all that an accuracy allows, and others of that norm, some of rank 1.
+fn within(numbers: &mut Numbers, levels: &[DMatrix<f64>; 2], accuracy: f64) -> Vec<[DMatrix<f64>; 2]> {
+    let n = levels[0].nrows();
+    let room = levels.each_ref().map(|k| 0.999_999 * accuracy * norm(k));
+    let shift = |signs: [f64; 2]| [0, 1].map(|k| &levels[k] + DMatrix::identity(n, n) * (signs[k] * room[k]));
+    let mut all: Vec<_> = [[1.0, 1.0], [-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0]].map(shift).to_vec();
+    for trial in 0..4 {
+        all.push([0, 1].map(|k| {
+            let v = DMatrix::from_fn(n, 1, |_, _| numbers.next());
+            let of_rank_1 = &v * v.transpose() * (numbers.next().signum() * room[k] / v.norm_squared());
+            &levels[k] + if trial % 2 == 0 { of_rank_1 } else { numbers.of_norm(n, room[k]) }
+        }));
+    }
+    all
+}
+
+/// No stiffness within the accuracy has another verdict in a stretch that is told, and near both ends of what is not told next to the first region some
+/// has one and some the other.
+#[test]
+fn stretches_hold_for_all_stiffnesses_within_the_accuracy_and_leave_open_what_these_do_not_share() {
+    let (mut numbers, mut seen, mut widths) = (Numbers(71), [0; 3], Vec::new());
+    for trial in 0..6 {
+        let (fast, slow) = numbers.levels(3);
+        let (inner, levels) = ([2u64, 3, 6][trial % 3], [fast, slow]);
+        let kernel = kernel(&levels[0], &levels[1]);
+        let (first, _) = kernel.first_unstable(inner).unwrap();
+        let range = (0.9 * first, (1.5 * first).min(1.98 * inner as f64));
+        for accuracy in [1e-6, 1e-3] {
+            let found = kernel.stretches(inner, range, 1e-3, accuracy).unwrap();
+            let near = within(&mut numbers, &levels, accuracy);
+            for own in &found {
+                seen[own.verdict as usize] += 1;
+                if own.verdict == Holds::NotTold {
+                    continue;
+                }
+                for part in [0.0, 0.5, 1.0] {
+                    let step = own.lo + (own.hi - own.lo) * part;
+                    let mut all = near.iter().map(|levels| decided(levels, step, inner));
+                    assert!(all.all(|told| told == own.verdict), "{accuracy} {step} {own:?}");
+                }
+            }
+            let open = found.iter().position(|own| own.verdict == Holds::NotTold).unwrap();
+            let (own, next) = (found[open], found[open + 1].verdict);
+            // Thin intervals within the resolution are open as a whole.
+            let is_edge = found[open - 1].verdict == Holds::Stable && next == Holds::Unstable;
+            widths.push(Some((own.hi - own.lo) / own.hi).filter(|_| is_edge));
+            if is_edge && accuracy > 1e-4 {
+                for part in [0.03, 0.97] {
+                    let step = own.lo + (own.hi - own.lo) * part;
+                    let all: Vec<_> = near.iter().map(|levels| decided(levels, step, inner)).collect();
+                    assert!(all.contains(&Holds::Stable) && all.contains(&Holds::Unstable), "{step} {own:?}");
+                }
+            }
+        }
+    }
+    assert!(seen.iter().all(|&count| count > 20), "{seen:?}");
+    // The first edge is open by about as much as the accuracy, and a thousand times as wide with a thousandth of it.
+    let pairs: Vec<_> = widths.chunks(2).filter_map(|pair| pair[0].zip(pair[1])).collect();
+    for (fine, coarse) in &pairs {
+        assert!((1e-7..1e-5).contains(fine) && (300.0..3000.0).contains(&(coarse / fine)), "{pairs:?}");
+    }
+    assert!(pairs.len() > 2, "{widths:?}");
+}
+
 #[test]
 fn a_range_of_scales_is_told_and_the_dense_period_agrees() {
     let (mut numbers, mut seen) = (Numbers(47), [0; 2]);
@@ -324,7 +398,9 @@ fn a_range_of_scales_is_told_and_the_dense_period_agrees() {
         let inner = 2 + trial as u64 % 4;
         let step = inner as f64 * (0.6 + 1.1 * numbers.next().abs());
         let (kernel, outer) = (kernel(&fast, &slow), Outer::new(step, inner).unwrap());
-        let cells = Cells::new(&kernel).unwrap();
+        let accuracy = [0.0, 1e-4][trial % 2];
+        let cells = Cells::new(&kernel, accuracy).unwrap();
+        let near = within(&mut numbers, &[fast.clone(), slow.clone()], accuracy);
         for level in [0, 1] {
             let mut at: f64 = 0.5;
             while at < 1.1 {
@@ -335,14 +411,16 @@ fn a_range_of_scales_is_told_and_the_dense_period_agrees() {
                     for k in 0..=4 {
                         let scale = ends.0 + (ends.1 - ends.0) * f64::from(k) / 4.0;
                         let [f, s] = if level == 0 { [scale, 1.0] } else { [1.0, scale] };
-                        let largest = largest_multiplier(&(&fast * f), &(&slow * s), step, inner);
-                        // Near ±1 multipliers are good to the root of roundoff.
-                        let agrees = if verdict == Holds::Stable {
-                            largest < 1.0 + 1e-6
-                        } else {
-                            largest > 1.0 + 1e-9
-                        };
-                        assert!(agrees, "{trial} {level} {scale} {verdict:?} {largest}");
+                        for [fast, slow] in &near {
+                            let largest = largest_multiplier(&(fast * f), &(slow * s), step, inner);
+                            // Near ±1 multipliers are good to the root of roundoff.
+                            let agrees = if verdict == Holds::Stable {
+                                largest < 1.0 + 1e-6
+                            } else {
+                                largest > 1.0 + 1e-9
+                            };
+                            assert!(agrees, "{trial} {level} {scale} {verdict:?} {largest}");
+                        }
                     }
                 }
                 at *= 1.05;
@@ -551,7 +629,7 @@ fn what_leaves_the_circle_twice_at_once_is_decided_up_to_the_resolution() {
     };
     let (fast, slow) = (turned([[1.0, 0.0], [0.0, 0.9]], 0.5), turned([[0.02, 0.03], [0.03, 0.03]], 0.02));
     let (kernel, range, width) = (kernel(&fast, &slow), (3.1, 3.25), 1e-4);
-    let found = kernel.stretches(6, range, width).unwrap();
+    let found = kernel.stretches(6, range, width, 0.0).unwrap();
     let (mut open, mut told) = (0, Vec::new());
     for own in &found {
         let grows = largest_multiplier(&fast, &slow, own.lo / 2.0 + own.hi / 2.0, 6) > 1.0 + 1e-4;

@@ -205,7 +205,7 @@ fn stretches_of_steps_agree_with_dense_eigenvalues_between_their_ends() {
             let kernel =
                 Kernel::new(&Hessians::new(&fast, &slow, 1e-6).unwrap()).unwrap().with_method(method);
             let reach = if method.has_inner_steps() { 1.9 * inner as f64 } else { 7.0 };
-            let all = kernel.stretches(inner, (0.1, reach), 1e-3).unwrap();
+            let all = kernel.stretches(inner, (0.1, reach), 1e-3, 0.0).unwrap();
             assert!(all.first().unwrap().lo == 0.1 && all.last().unwrap().hi == reach);
             assert!(all.windows(2).all(|pair| pair[0].hi == pair[1].lo));
             // Where the filter of a mode is 0 the mode stands on an edge, and near to it for as long as the filter is flat.
@@ -228,6 +228,45 @@ fn stretches_of_steps_agree_with_dense_eigenvalues_between_their_ends() {
         }
         println!("{method}: {seen:?}");
         assert!(seen[0] > 4 && seen[1] > 0, "{method}: {seen:?}");
+    }
+}
+
+#[test]
+fn no_perturbation_within_the_accuracy_flips_a_stretch() {
+    let mut numbers = Numbers(19);
+    for method in Method::all() {
+        let mut told = [0.0, 0.0];
+        for trial in 0..6 {
+            let accuracy = [1e-6, 1e-4, 1e-3][trial % 3];
+            let (fast, slow, _, inner) = case(&mut numbers, method);
+            let kernel =
+                Kernel::new(&Hessians::new(&fast, &slow, 1e-6).unwrap()).unwrap().with_method(method);
+            let reach = if method.has_inner_steps() { 1.9 * inner as f64 } else { 7.0 };
+            for own in kernel.stretches(inner, (0.1, reach), 1e-3, accuracy).unwrap() {
+                if own.verdict == Holds::NotTold {
+                    continue;
+                }
+                told[usize::from(own.verdict == Holds::Stable)] += (own.hi - own.lo) / reach;
+                for k in 0..=4 {
+                    let h = own.lo + (own.hi - own.lo) * f64::from(k) / 4.0;
+                    let mut near = |m: &DMatrix<f64>, sign: f64| {
+                        let (e, n) = (numbers.square(m.nrows()), m.nrows());
+                        let e = if k % 2 == 0 { DMatrix::identity(n, n) * sign } else { &e + e.transpose() };
+                        let size = m.symmetric_eigenvalues().amax();
+                        m + &e * (0.999 * accuracy * size / e.symmetric_eigenvalues().amax())
+                    };
+                    for signs in [[1.0, 1.0], [-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0]] {
+                        let largest =
+                            radius(&step(method, &near(&fast, signs[0]), &near(&slow, signs[1]), h, inner));
+                        let stable = own.verdict == Holds::Stable;
+                        let agrees = if stable { largest < 1.0 + 1e-5 } else { largest > 1.0 + 1e-9 };
+                        assert!(agrees, "{method} {accuracy} {h} {own:?}: {largest}");
+                    }
+                }
+            }
+        }
+        println!("{method}: {told:?}");
+        assert!(told[1] > 1.0, "{method}: {told:?}");
     }
 }
 
@@ -274,7 +313,7 @@ fn one_mode_has_the_intervals_of_scalars() {
     let hessians = Hessians::new(&square(10.0), &square(40.0), 1e-6).unwrap();
     let intervals = |name: &str, reach: f64| -> Vec<[f64; 2]> {
         let kernel = Kernel::new(&hessians).unwrap().with_method(name.parse().unwrap());
-        let all = kernel.stretches(1, (0.5, reach), 1e-4).unwrap();
+        let all = kernel.stretches(1, (0.5, reach), 1e-4, 0.0).unwrap();
         all.iter().filter(|own| own.verdict == Holds::Unstable).map(|own| [own.lo, own.hi]).collect()
     };
     let expected: [(&str, &[[f64; 2]]); 6] = [

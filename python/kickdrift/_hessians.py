@@ -332,7 +332,11 @@ def _firm(matrix: Doubles) -> Doubles:
     return np.asarray(vectors[:, np.abs(values) > _SOFT * np.abs(values).max()])
 
 
-def seen(matrix: Doubles, error: float, name: str, difference: str) -> float:
+#: What makes a jump at a cutoff smaller, where nothing is known of the forces.
+SMOOTHER = "a switching function or a longer cutoff"
+
+
+def seen(matrix: Doubles, error: float, name: str, difference: str, smoother: str = SMOOTHER) -> float:
     """How well a measured Hessian is known, relative to its norm: at least rounding.
 
     Raises
@@ -340,16 +344,16 @@ def seen(matrix: Doubles, error: float, name: str, difference: str) -> float:
     KickdriftError
         Where a tenth of it is unknown: no verdict holds for so uncertain a Hessian.
     """
-    return usable(error / max(norm(matrix), 1e-300), name, difference)
+    return usable(error / max(norm(matrix), 1e-300), name, difference, smoother)
 
 
-def usable(known: float, name: str, difference: str) -> float:
+def usable(known: float, name: str, difference: str, smoother: str) -> float:
     """How well a Hessian is known relative to its norm, at least rounding; refused where that is too little."""
     accuracy = max(known, 1e-12)
     if accuracy >= _UNKNOWN:
         remedy = (
             "is too uncertain for any verdict: its forces jump or bend within the differences, as where pairs cross a "
-            f"cutoff; use a switching function or a longer cutoff, or another difference than {difference}"
+            f"cutoff; take {smoother}; or another difference than {difference}"
         )
         raise KickdriftError("system", f"the Hessian of {name}, known to {accuracy:.0%} of its norm", remedy)
     return accuracy

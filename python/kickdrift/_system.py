@@ -331,6 +331,9 @@ class System(Frozen):
     ) -> Intervals:
         """All stable and unstable intervals of the outer step, at the ratios of steps that there are.
 
+        Of Hessians on two clocks a stretch is proven for all Hessians within their accuracy; on other clocks for those
+        given. ``the data do not tell`` where these share no verdict, or nothing is proven.
+
         Parameters
         ----------
         outer : Range

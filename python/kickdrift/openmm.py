@@ -62,6 +62,10 @@ WIDE = 1e-3
 _Constraint = tuple[int, int, float]
 
 
+#: Forces that end at a cutoff.
+_CUT = (mm.NonbondedForce, mm.CustomNonbondedForce)
+
+
 @dataclass(frozen=True)
 class _Engine:
     """A context for forces by group."""
@@ -77,6 +81,16 @@ class _Engine:
         field = any(isinstance(force, mm.CustomExternalForce) for force in system.getForces())
         return bool(system.usesPeriodicBoundaryConditions()) and not field
 
+    @cached_property
+    def smoother(self) -> str:
+        """What makes a jump at a cutoff smaller. OpenMM leaves the switching function out of LJPME, whatever is set."""
+        own = [own.getNonbondedMethod() for own in self.context.getSystem().getForces() if isinstance(own, _CUT)]
+        takes = set(own) - {mm.NonbondedForce.NoCutoff, mm.NonbondedForce.LJPME}
+        tuned = "a smaller Ewald tolerance or a longer cutoff"
+        if mm.NonbondedForce.LJPME in own and not takes:
+            return f"{tuned} (OpenMM takes no switching function with LJPME, but with PME)"
+        return f"a switching function, {tuned}"
+
     def force(self, groups: int) -> _Forces:
         """The forces of some groups, bits of a mask."""
         return _Forces(self, groups)
@@ -88,8 +102,7 @@ class _Engine:
 
         found: dict[int, list[Any]] = {}
         for force in self.context.getSystem().getForces():
-            is_cut = isinstance(force, mm.NonbondedForce | mm.CustomNonbondedForce)
-            if is_cut and (own := _forcefield.cut(force, self.context)) is not None:
+            if isinstance(force, _CUT) and (own := _forcefield.cut(force, self.context)) is not None:
                 found.setdefault(force.getForceGroup(), []).append(own)
         return found
 
@@ -135,8 +148,8 @@ class _Smooth:
         return (
             f"forces jump at a cutoff, and no minimum of them as they are was found near: {who} kept on one side of it "
             f"come to rest on the other, up to {off:.1g} nm beyond it, where forces jump by up to {jump:.2g} "
-            "kJ/mol/nm; the positions are the minimum with these kept so. A switching function, a smaller Ewald "
-            "tolerance or a longer cutoff makes the jump smaller"
+            "kJ/mol/nm; the positions are the minimum with these kept so. The jump is smaller with "
+            f"{self.force.engine.smoother}"
         )
 
 
@@ -247,7 +260,7 @@ def system(
     measured = _measured(engine, clocks, (where, constraints, chosen), frame, difference, shown(progress))
     moving = free(held, where, chosen, engine.is_boxed and chosen is None)
     notes += _unbalanced(engine.masses, measured, moving, chosen)
-    accuracy = max(seen(own.matrix, own.error, own.name, f"{difference:g} nm") for own in measured)
+    accuracy = max(seen(own.matrix, own.error, own.name, f"{difference:g} nm", engine.smoother) for own in measured)
     kept = np.arange(engine.count) if atoms is None else np.asarray(atoms, dtype=np.intp)
     title = f"{engine.count} particles, ps and nm"
     if chosen is not None:
@@ -312,7 +325,7 @@ def _sparse(
         # No entry of the diagonal exceeds the norm.
         diagonal = matrix.diagonal()
         known = error / max(float(np.abs(diagonal).max(initial=0.0)), 1e-300)
-        accuracy = max(accuracy, usable(known, name, f"{difference:g} nm"))
+        accuracy = max(accuracy, usable(known, name, f"{difference:g} nm", engine.smoother))
         size = max(size, float((diagonal / np.repeat(engine.masses, 3)).max(initial=0.0)))
         pulls[name] = engine.force(sum(1 << group for group in groups))(where)
         potentials[name] = (step, matrix)
@@ -956,8 +969,8 @@ def _at_rest(
             if not engine.cuts:
                 raise
             remedy = (
-                "is the least that was found, no minimum: forces jump at a cutoff; give them a switching function, a "
-                "smaller Ewald tolerance or a longer cutoff, or minimize=False"
+                f"is the least that was found, no minimum: forces jump at a cutoff; take {engine.smoother}; "
+                "or minimize=False"
             )
             raise KickdriftError("positions", error.value, remedy) from error
     note = smooth.note(found) if isinstance(smooth, _Smooth) else None

@@ -115,6 +115,18 @@ def test_a_box_whose_forces_jump_and_have_no_minimum_is_refused_with_what_helps(
         ko._at_rest(ko._engine(system), positions + 0.0137, [], ko.DIFFERENCE)
 
 
+def test_no_switching_function_is_recommended_where_openmm_leaves_it_out() -> None:
+    hints = []
+    for method in (mm.NonbondedForce.PME, mm.NonbondedForce.LJPME):
+        system = mm.XmlSerializer.clone(box(2)[0])
+        for force in system.getForces():
+            if isinstance(force, mm.NonbondedForce):
+                force.setNonbondedMethod(method)
+        hints.append(ko._engine(system).smoother)
+    assert hints[0].startswith("a switching function, a smaller Ewald tolerance")
+    assert hints[1].startswith("a smaller Ewald tolerance") and "no switching function with LJPME" in hints[1]
+
+
 @pytest.mark.parametrize("outer", ["2", "4.6"])
 def test_a_box_with_a_reciprocal_group_grows_as_the_engine_has_it(outer: str) -> None:
     """Eight waters with PME, on three clocks."""

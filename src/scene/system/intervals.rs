@@ -276,7 +276,7 @@ impl SystemScene {
         }
         let stretch = |step: &Rational| {
             let model = self.with("intervals", &[(&span.path, step)])?.model;
-            let verdict = model.verdict(Route::Cheapest, limits)?;
+            let verdict = model.holds(limits)?;
             Ok(Stretch { lo: to_f64(step), hi: to_f64(step), verdict })
         };
         Ok(merged(crate::parallel::try_map(&values, stretch)?.into_iter()))

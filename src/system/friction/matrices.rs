@@ -10,10 +10,10 @@ use crate::number::rational::{from_f64_exact, to_f64};
 use crate::number::{Ball, Laurent, Rational, Real, U};
 use crate::propagator::Oscillator;
 use crate::system::ManyClocks;
-use crate::system::half::compose::connected_parts;
+use crate::system::half::compose::{Kick, connected_parts};
 use crate::system::half::float::scaled_program;
 use crate::system::half::norm;
-use crate::system::half::period::{Drifts, Stiff, follow};
+use crate::system::half::period::{Drifts, Stiff, Stiffness, follow};
 use crate::system::linear::frame::Frame;
 use crate::system::linear::system::System;
 use crate::system::signs::inertia::is_definite;
@@ -193,8 +193,8 @@ fn at(part: &System, rate: &Rational) -> At {
     let frame = Frame::whole(part.size());
     let (program, _) = scaled_program(part, &frame);
     // Entries within one rounding of the true ones are in the bound of [`follow`].
-    let kicks: Vec<_> =
-        program.kicks.iter().map(|kick| Stiff { rows: kick.rows.clone(), off: 0.0 }).collect();
+    let stiff = |kick: &Kick<f64>| Stiff { stiffness: Stiffness::Rows(kick.rows.clone()), off: 0.0 };
+    let kicks: Vec<_> = program.kicks.iter().map(stiff).collect();
     let drifts = Drifts { inverse_mass: &program.inverse_mass, decay: &(rate * part.tick()), off: 0.0 };
     let q = follow(&drifts, part.schedule().symmetric_period(), |_, clock| &kicks[clock]);
     let Some(error) = q.error else { return (None, None) };

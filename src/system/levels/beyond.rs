@@ -161,7 +161,7 @@ fn lipschitz(p: u64, beyond: f64) -> [f64; 4] {
 /// T_j'(ξ) and U_j'(ξ) at ξ = 1 + x for j = k − 1, k and k + 1, rounded up (T_(−1)' counts as 0: nobody asks for it).
 ///
 /// By the differences T_(j+1) − T_j = T_j − T_(j−1) + 2 x T_j, and the same of U: no term is negative from the first one on.
-fn slopes(k: u64, x: f64) -> [[f64; 2]; 3] {
+pub(super) fn slopes(k: u64, x: f64) -> [[f64; 2]; 3] {
     // Of T_0 and U_0: values, slopes, and their differences from those before.
     let (mut value, mut slope, mut rise, mut steeper) = ([1.0; 2], [0.0; 2], [-x, 1.0], [-1.0, 0.0]);
     let mut last = [[0.0; 2]; 3];

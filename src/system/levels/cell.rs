@@ -4,9 +4,13 @@
 //! the two ends, and m S by m_0 S ± (m_2 − m_1)/2 |S|, |S| the matrix with the absolute values of S's eigenvalues: what is soft is moved
 //! by little, whatever the norm of the whole. So the counts at both ends bound those between (`counts`). Discs take over where a pair of
 //! multipliers left the circle together: entry by entry, how far S = bᵀ C can be from that in the middle.
+//!
+//! All of it holds for every F + E₁ and S + E₂ within the accuracy of the data, as one verdict's margin does: ‖E₁‖ moves each mode of F both ways,
+//! ‖E₂‖ is room for every eigenvalue (Loewner's order and Weyl), and discs widen by how far both can move bᵀ C (`beyond`).
 
 use faer::{Mat, Side};
 
+use super::beyond::slopes;
 use super::counts::Counts;
 use super::half::Half;
 use super::interval::Interval;
@@ -24,6 +28,8 @@ const MOST_TWISTS: usize = 64;
 /// The kernel with |S|.
 pub struct Cells<'a> {
     kernel: &'a Kernel,
+    /// How far (2-norm) Λ and S' are from those of all stiffnesses meant.
+    shifts: [f64; 2],
     /// N with −N ≤ S' ≤ N.
     size: Mat<f64>,
 }
@@ -47,11 +53,11 @@ struct Cell {
 }
 
 impl<'a> Cells<'a> {
-    /// One eigendecomposition of S.
+    /// For all stiffnesses within `accuracy` of their norms, 0 for those given alone: one eigendecomposition of S.
     ///
     /// # Errors
     /// Where its iteration fails: never seen, but not excluded.
-    pub fn new(kernel: &'a Kernel) -> Result<Self> {
+    pub fn new(kernel: &'a Kernel, accuracy: f64) -> Result<Self> {
         let failed = || {
             Error::input("slow", "its eigenvalues", "the iteration does not converge: is the matrix sound?")
         };
@@ -66,7 +72,7 @@ impl<'a> Cells<'a> {
         let rounding = 1.1 * (m as f64 + 4.0) * U * norm::frobenius(&scaled) * norm::frobenius(&v);
         let room = 1.01 * (error + 2.1 * defect * largest + rounding) + 4.0 * U * largest;
         (0..m).for_each(|i| size[(i, i)] += room);
-        Ok(Cells { kernel, size })
+        Ok(Cells { kernel, shifts: kernel.errors_within(accuracy), size })
     }
 
     /// What is proven of all outer steps from lo to hi of `inner_steps` inner ones.
@@ -113,7 +119,7 @@ impl<'a> Cells<'a> {
 
     fn counts(&self, cell: &Cell) -> Option<Counts> {
         let kernel = self.kernel;
-        let (shift, middle, half) = (kernel.fast_error, cell.slow.mid(), cell.slow.radius());
+        let (shift, middle, half) = (self.shifts[0], cell.slow.mid(), cell.slow.radius());
         let ends = |x: &f64| {
             let least = Interval::point((x - shift).next_down()) * cell.fast;
             (least.lo, (Interval::point((x + shift).next_up()) * cell.fast).hi)
@@ -148,40 +154,41 @@ impl<'a> Cells<'a> {
         let phi = |x: &f64| kernel.method.filter(Interval::point(*x) * cell.fast, p);
         let phi: Vec<Interval> = kernel.values.iter().map(phi).collect();
         if !kernel.method.has_filter() {
-            return Filter { moved: vec![0.0; phi.len()], phi, share: 0.0, off: kernel.slow_error };
+            return Filter { moved: vec![0.0; phi.len()], phi, share: 0.0, off: self.shifts[1] };
         }
-        let (largest, [_, size]) = (cell.slow.lo.abs().max(cell.slow.hi.abs()), kernel.norms());
+        let (largest, [_, size], [fast, slow]) =
+            (cell.slow.lo.abs().max(cell.slow.hi.abs()), kernel.norms(), self.shifts);
         let tau = phi.iter().map(|own| own.radius()).fold(U, f64::max);
         let moved = |own: &Interval| 1.01 * largest * (1.0 + 1.0 / tau) * size * own.radius().powi(2);
         let below = self.below(cell);
         let [.., slope] = kernel.method.slopes(p, below);
-        let turned = 1.01 * slope * cell.fast.hi * kernel.fast_error;
+        let turned = 1.01 * slope * cell.fast.hi * fast;
         // φ² is at most 1, but for what lies below 0.
-        let off = 1.01 * (1.0 + below) * (2.0 * turned * size + kernel.slow_error);
+        let off = 1.01 * kernel.method.room(p, below) * (2.0 * turned * (size + slow) + slow);
         Filter { moved: phi.iter().map(moved).collect(), phi, share: 1.01 * largest * tau, off }
     }
 
     /// How far the fast kicks reach below 0.
     fn below(&self, cell: &Cell) -> f64 {
-        let lowest = self.kernel.values.first().map_or(0.0, |x| x - self.kernel.fast_error);
+        let lowest = self.kernel.values.first().map_or(0.0, |x| x - self.shifts[0]);
         (-lowest * cell.fast.hi).next_up().max(0.0)
     }
 
     /// S = f(F) − g(F) m S, f = (T_p − 1)/2 and g = U_(p−1)/2 at 1 − t F/2, in the middle of the cell, and how far it is elsewhere, entry by
-    /// entry: |f'| ≤ p |U_(p−1)|/4 and |g'| ≤ p (p² − 1)/12 in s = t λ. Errors of Λ move f and g by p²/4 and p (p² − 1)/12 times them
-    /// (`beyond`, with 1.05 for what lies below 0).
+    /// entry: f' = −p U_(p−1)/4 in s = t λ, and errors of Λ move f and g by T_p'(ξ)/4 and U_(p−1)'(ξ)/4 times them (`beyond`), p²/4 and
+    /// p (p² − 1)/12 where all s are in \[0, 4\].
     fn spectrum(&self, cell: &Cell) -> Option<(Spectrum, Mat<f64>)> {
         let (kernel, p, m) = (self.kernel, cell.inner_steps as f64, self.kernel.size());
-        let (shift, middle) = (kernel.fast_error, Interval::point(cell.fast.mid()));
+        let (shift, middle) = (self.shifts[0], Interval::point(cell.fast.mid()));
         let (lowest, highest) = (kernel.values.first()?, kernel.values.last()?);
         let ends = Interval { lo: lowest - shift, hi: highest + shift } * cell.fast;
         if !kernel.method.has_inner_steps() {
             return self.spectrum_in_one_go(cell);
         }
-        if ends.hi > 4.0 || ends.lo < -0.02 / (p * p) {
-            return None;
-        }
-        let [f_slope, g_slope] = [1.05 * p * p / 4.0, 1.05 * p * (p * p - 1.0) / 12.0];
+        // |1 − s/2| − 1 at both ends.
+        let beyond = (ends.hi / 2.0 - 2.0).max(-ends.lo / 2.0).max(0.0).next_up();
+        let [[_, u_slope], [t_slope, _], _] = slopes(cell.inner_steps, beyond);
+        let ([f_slope, g_slope], g_size) = ([t_slope / 4.0, u_slope / 4.0], (p + beyond * u_slope) / 2.0);
         let halves: Vec<Half> = kernel
             .values
             .iter()
@@ -198,15 +205,14 @@ impl<'a> Cells<'a> {
         let off = Mat::from_fn(m, m, |i, j| {
             let (g_off, value) = (g_slope * moved(i), g[i].mid().abs() + g[i].radius());
             let steep = (p / 2.0 * (value + g_off)).min(f_slope);
-            let own = if i == j { 1.05 * steep * moved(i) + f[i].radius() } else { 0.0 };
+            let own = if i == j { steep * moved(i) + f[i].radius() } else { 0.0 };
             let coupled =
                 size[(i, j)].abs() * (value * (radius + 4.0 * U * most) + (g_off + g[i].radius()) * most);
             1.01 * (own + coupled) + 2.0 * U * s[(i, j)].abs()
         });
         let error = 1.01 * cell.fast.hi * shift;
-        let slow = most * (kernel.norms()[1] + kernel.slow_error);
-        let error =
-            1.01 * (f_slope * error + g_slope * error * slow + 1.05 * p / 2.0 * most * kernel.slow_error);
+        let slow = kernel.norms()[1] + self.shifts[1];
+        let error = 1.01 * (f_slope * error + most * (g_slope * error * slow + g_size * self.shifts[1]));
         Some((Spectrum::of(s, Some(error))?, off))
     }
 
@@ -226,10 +232,10 @@ impl<'a> Cells<'a> {
         let below = self.below(cell);
         let [f_slope, g_slope] = kernel.method.slopes_of_products(p, below);
         let most = cell.slow.lo.abs().max(cell.slow.hi.abs());
-        let [error, size] = [1.01 * cell.fast.hi * kernel.fast_error, kernel.norms()[1] + kernel.slow_error];
-        // b d is at most p/2, and no φ above 1, but for the small negative part.
-        let g = 0.51 * p as f64 * (1.0 + below);
-        let kicked = most * (g_slope * error * size + g * phi.off);
+        let [error, size] = [1.01 * cell.fast.hi * self.shifts[0], kernel.norms()[1] + self.shifts[1]];
+        // b d is at most p/2 and φ² at most 1, but for what lies below 0.
+        let room = kernel.method.room(p, below);
+        let kicked = most * room * (g_slope * error * size + 0.51 * p as f64 * phi.off);
         Some((Spectrum::of(s, Some(1.02 * (f_slope * error + kicked)))?, off))
     }
 

@@ -17,22 +17,28 @@ impl Kernel {
         Some(spectrum.mu.iter().map(|&mu| exponent(mu).re).fold(0.0, f64::max) / outer.step)
     }
 
-    /// The verdicts on all outer steps of `inner_steps` inner ones from `lo` to `hi`, as stretches that cover them. No interval wider than
-    /// `width` times the larger end is missed.
+    /// What is proven of all stiffnesses within `accuracy` of their norms on all outer steps of `inner_steps` inner ones from `lo` to `hi`, as
+    /// stretches that cover them. No interval wider than `width` times the larger end is missed of which the data tell.
     ///
     /// Cost: the first stable region is one bisection; beyond it two factorizations and, where these tell nothing, the eigenvalues for each
     /// cell (file `cell`), more cells where intervals are thin.
     ///
     /// # Errors
     /// A range that is empty or not positive, a width outside \[10^-9, 1/10\].
-    pub fn stretches(&self, inner_steps: u64, (lo, hi): (f64, f64), width: f64) -> Result<Vec<Stretch>> {
+    pub fn stretches(
+        &self,
+        inner_steps: u64,
+        (lo, hi): (f64, f64),
+        width: f64,
+        accuracy: f64,
+    ) -> Result<Vec<Stretch>> {
         if !(lo > 0.0 && lo < hi && hi.is_finite()) {
             let remedy = "write the smaller step first, both positive";
             return Err(Error::input("range", format!("{lo}..{hi}"), remedy));
         }
-        let first = self.first_unstable(inner_steps).map_or(lo, |(end, _)| end.clamp(lo, hi));
+        let first = self.first_region_end(inner_steps, accuracy).map_or(lo, |(end, _)| end.clamp(lo, hi));
         let known = (first > lo).then_some(Stretch { lo, hi: first, verdict: Holds::Stable });
-        let cells = Cells::new(self)?;
+        let cells = Cells::new(self, accuracy)?;
         let rest = if first < hi {
             cover((first, hi), width, |lo, hi| cells.verdict(inner_steps, (lo, hi)))?
         } else {

@@ -216,10 +216,14 @@ impl Kernel {
 
     /// Whether F + S is proven positive definite.
     pub(super) fn is_total_definite(&self) -> bool {
-        *self.is_total_definite.get_or_init(|| {
-            let size = self.fast_norm + norm::frobenius(&self.slow);
-            is_definite(self.total(), 1.01 * (self.fast_error + self.slow_error) + U * size)
-        })
+        *self.is_total_definite.get_or_init(|| self.is_total_definite_within(0.0))
+    }
+
+    /// Whether that is so of all stiffnesses within ε of their norms.
+    pub(super) fn is_total_definite_within(&self, epsilon: f64) -> bool {
+        let (size, [fast, slow]) =
+            (self.fast_norm + norm::frobenius(&self.slow), self.errors_within(epsilon));
+        is_definite(self.total(), 1.01 * (fast + slow) + U * size)
     }
 
     /// Λ + S'.

@@ -136,6 +136,11 @@ impl Method {
         [a, b * p, c / p, d, filter].map(|x| 1.01 * room * square * x)
     }
 
+    /// By how much φ² and b d may exceed 1 and p/2, no s being below −`below`.
+    pub(super) fn room(self, p: u64, below: f64) -> f64 {
+        room(below * (p as f64).powi(2))
+    }
+
     /// The slopes of b c and b d.
     pub(super) fn slopes_of_products(self, p: u64, below: f64) -> [f64; 2] {
         let (size, square) = (p as f64, (p as f64).powi(2));

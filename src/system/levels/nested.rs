@@ -27,12 +27,12 @@ use super::rigid::Hessians;
 use crate::error::{Error, Result};
 use crate::number::rational::{from_f64_exact, to_f64};
 use crate::number::{Rational, U, bisected};
-use crate::parallel::{both, map};
+use crate::parallel::both;
 use crate::schedule::{Event, Schedule, Weight};
 use crate::system::friction::{Damping, Radius, damping};
 use crate::system::half::float::FloatBlocks;
 use crate::system::half::norm;
-use crate::system::half::period::{Drifts, Stiff, follow, follow_proven};
+use crate::system::half::period::{Drifts, Stiff, Stiffness, follow, follow_proven};
 use crate::system::signs;
 use crate::system::signs::envelope::{Envelope, Sign};
 use crate::system::signs::inertia::{is_definite, spectral_norm};
@@ -219,14 +219,6 @@ pub struct Steps<'a> {
 type Bounds = Vec<[f64; 2]>;
 
 impl Steps<'_> {
-    /// The signs of the action with x held at the start, and at the end.
-    fn signs(&self, step: f64, bounds: &Bounds) -> [Option<Sign>; 2] {
-        let found = map(&[[true, false], [false, true]], |&held| {
-            self.action(step, bounds, held).sign(self.terms(), ROUNDINGS)
-        });
-        [found[0], found[1]]
-    }
-
     /// The terms of an entry: two drifts meet in it, and each clock once.
     fn terms(&self) -> usize {
         2 + self.kicks.len()
@@ -284,19 +276,22 @@ impl Steps<'_> {
     }
 
     fn is_positive(&self, step: f64, bounds: &Bounds) -> bool {
-        let is = |held: [bool; 2]| {
-            self.action(step, bounds, held).is_positive_in_blocks(self.nested.size(), self.terms(), ROUNDINGS)
-        };
+        let is = |held: [bool; 2]| self.is_positive_held(step, bounds, held);
         let (start, end) = both(true, || is([true, false]), || is([false, true]));
         start && end
     }
 
+    fn is_positive_held(&self, step: f64, bounds: &Bounds, held: [bool; 2]) -> bool {
+        self.action(step, bounds, held).is_positive_in_blocks(self.nested.size(), self.terms(), ROUNDINGS)
+    }
+
     /// Whether the signs prove all stiffnesses within ε unstable at all outer steps between.
     fn is_unstable_between(&self, [lo, hi]: [f64; 2], epsilon: f64) -> bool {
-        let stiffer = self.signs(hi, &self.within(epsilon, 1.0));
-        let positive = |k: &usize| stiffer[*k] == Some(Sign::Positive);
-        let Some(k) = (0..2).find(positive) else { return false };
-        self.signs(lo, &self.within(epsilon, -1.0))[1 - k] == Some(Sign::Negative)
+        let (stiffer, softer) = (self.within(epsilon, 1.0), self.within(epsilon, -1.0));
+        let ends = [[true, false], [false, true]];
+        let Some(k) = (0..2).find(|&k| self.is_positive_held(hi, &stiffer, ends[k])) else { return false };
+        let other = self.action(lo, &softer, ends[1 - k]);
+        other.sign(self.terms(), ROUNDINGS) == Some(Sign::Negative)
     }
 
     /// Whether counts of negative eigenvalues, least at the smaller step and most at the larger one, prove a real multiplier off the circle at all
@@ -458,10 +453,10 @@ impl Steps<'_> {
         let a = if turn.is_normal() { turn.log2().round().exp2() } else { 1.0 };
         let kick = |(k, own): (usize, &Level)| {
             let factor = square * self.kicks[k] / a;
-            let row = |i: usize| (i, (0..n).map(|j| (j, factor * own.stiffness[(i, j)])).collect());
+            let stiffness = Stiffness::Whole(Mat::from_fn(n, n, |i, j| factor * own.stiffness[(i, j)]));
             let rounding = ROUNDINGS as f64 * U * own.frobenius;
             let off = 1.01 * factor * (self.nested.error_within(k, epsilon) + rounding);
-            Stiff { rows: (0..n).map(row).collect(), off }
+            Stiff { stiffness, off }
         };
         let kicks = self.nested.levels.iter().enumerate().map(kick).collect();
         (kicks, (0..n).map(|i| vec![(i, a)]).collect())

@@ -87,29 +87,37 @@ impl Kernel {
     /// `None` where F + S is not proven definite, so that the region does not begin at 0, and where no step is unstable as far as the region is
     /// known to be one interval ([`Method::first_region_ends`](super::method::Method)).
     pub fn first_unstable(&self, inner_steps: u64) -> Option<(f64, f64)> {
+        let (lo, hi) = self.first_region_end(inner_steps, 0.0)?;
+        // Where the forms are near 0 doubles tell nothing: a little farther they do.
+        let unstable =
+            |step: f64| Outer::new(step, inner_steps).is_ok_and(|outer| self.is_unstable(&outer, 0.0));
+        let mut steps = (0..16).map(|k| hi + lo * 1e-8 * f64::from(1 << k));
+        steps.find(|&step| unstable(step)).map(|step| (lo, step))
+    }
+
+    /// Two outer steps, 1e-8 apart, relative: all stiffnesses within `epsilon` of their norms are proven stable at every step in (0, lo], and not
+    /// proven to be in the first region at hi. `None` where no such step is found, or F + S is not proven definite.
+    pub(super) fn first_region_end(&self, inner_steps: u64, epsilon: f64) -> Option<(f64, f64)> {
         let outer = |step: f64| Outer::new(step, inner_steps).ok();
-        if !self.is_total_definite() || self.highest_frequency() == 0.0 {
+        if !self.is_total_definite_within(epsilon) || self.highest_frequency() == 0.0 {
             return None;
         }
+        let shift = self.errors_within(epsilon)[0];
+        let highest = (self.values.last().copied().unwrap_or(0.0) + shift).next_up().sqrt();
         let is_below = |outer: &Outer| {
             let end = self.method.first_region_ends();
-            let inner =
-                end.is_infinite() || self.below(outer, self.fast_error) * (inner_steps as f64).powi(2) < 1.0;
-            inner && outer.step * self.highest_frequency() < end
+            let inner = end.is_infinite() || self.below(outer, shift) * (inner_steps as f64).powi(2) < 1.0;
+            inner && outer.step * highest < end
         };
         let stable = |step: f64| {
-            outer(step).is_some_and(|outer| is_below(&outer) && self.is_in_first_region(&outer, 0.0))
+            outer(step).is_some_and(|outer| is_below(&outer) && self.is_in_first_region(&outer, epsilon))
         };
         let mut hi = match self.method.highest_angle(inner_steps) {
             Some(angle) => angle / self.highest_frequency(),
             None => 2.000_002 / self.highest_slow_frequency(),
         };
-        let mut lo = (1..=40).map(|k| hi * 0.5f64.powi(k)).find(|&step| stable(step))?;
+        let lo = (1..=40).map(|k| hi * 0.5f64.powi(k)).find(|&step| stable(step))?;
         hi = hi.min(2.0 * lo);
-        (lo, hi) = bisected((lo, hi), 1e-8, |step| Some(stable(step)));
-        // Where the forms are near 0 doubles tell nothing: a little farther they do.
-        let unstable = |step: f64| outer(step).is_some_and(|outer| self.is_unstable(&outer, 0.0));
-        let steps = (0..16).map(|k| hi + lo * 1e-8 * f64::from(1 << k));
-        steps.into_iter().find(|&step| unstable(step)).map(|step| (lo, step))
+        Some(bisected((lo, hi), 1e-8, |step| Some(stable(step))))
     }
 }

@@ -26,7 +26,8 @@ pub enum Number<'a> {
 }
 
 impl Model {
-    /// The verdicts on all values of a number in a range, no interval wider than `width` times its larger end missed.
+    /// The verdicts on all values of a number in a range, no interval wider than `width` times its larger end missed. Of two measured levels they
+    /// hold for all stiffnesses within their accuracy, but where the number is an entry or a mass.
     ///
     /// # Errors
     /// As [`Family::stretches`].
@@ -128,7 +129,7 @@ impl Model {
                 return Ok(Nearest::of(step, &all));
             }
         }
-        let own = self.verdict(Route::Cheapest, limits)?;
+        let own = self.holds(limits)?;
         Nearest::search((step, own), |range| self.stretches(&Number::Outer, range, width, limits))
     }
 

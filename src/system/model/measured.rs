@@ -251,6 +251,13 @@ impl MeasuredSystem {
         }
     }
 
+    /// What is proven of all stiffnesses within the accuracy; `None` where it is not of two levels.
+    pub(super) fn holds(&self, limits: &Limits) -> Result<Option<Holds>> {
+        let Some((outer, _)) = self.outer() else { return Ok(None) };
+        self.allow(limits)?;
+        Ok(Some(self.kernel()?.verdict_within(&outer, self.accuracy)))
+    }
+
     /// The verdict at an outer step, as many inner ones in it as in its own.
     pub(super) fn decide_at(&self, outer: &Rational, limits: &Limits) -> Result<Analysis> {
         self.allow(limits)?;
@@ -281,12 +288,12 @@ impl MeasuredSystem {
         (self.size() as u64).saturating_pow(3).saturating_mul(60)
     }
 
-    /// The verdicts on a range of outer steps, as many inner ones in each.
+    /// What is proven of all stiffnesses within the accuracy on a range of outer steps, as many inner ones in each.
     pub(super) fn stretches(&self, range: (f64, f64), width: f64) -> Result<Vec<Stretch>> {
-        self.kernel()?.stretches(self.inner_steps(), range, width)
+        self.kernel()?.stretches(self.inner_steps(), range, width, self.accuracy)
     }
 
-    /// The verdicts on a range of factors of one level, 0 the fast one, of the present value `factor`, all else as it is.
+    /// The same on a range of factors of one level, 0 the fast one, of the present value `factor`, all else as it is.
     pub(super) fn stretches_of_scale(
         &self,
         level: usize,
@@ -297,7 +304,7 @@ impl MeasuredSystem {
         let Some((outer, _)) = self.outer() else {
             return Ok(vec![Stretch { lo, hi, verdict: Holds::NotTold }]);
         };
-        let cells = Cells::new(self.kernel()?)?;
+        let cells = Cells::new(self.kernel()?, self.accuracy)?;
         cover((lo, hi), width, |lo, hi| {
             let (a, b) = (lo / factor, hi / factor);
             Ok(cells.verdict_scaled(&outer, level, (a.min(b), a.max(b))))

@@ -135,6 +135,15 @@ impl Model {
         }
     }
 
+    /// What is proven of it, of two measured levels for all stiffnesses within their accuracy: as of its stretches.
+    ///
+    /// # Errors
+    /// As [`Model::decide`].
+    pub fn holds(&self, limits: &Limits) -> Result<Holds> {
+        let within = self.measured().map_or(Ok(None), |own| own.holds(limits))?;
+        within.map_or_else(|| self.verdict(Route::Cheapest, limits), Ok)
+    }
+
     /// The rational system that moves: of measured stiffnesses without rigid motions and held distances.
     ///
     /// # Errors

@@ -114,8 +114,8 @@ fn by_factors(low: &Mat<f64>, high: &Mat<f64>, slack: f64) -> (Option<usize>, Op
 /// The inertia of some matrix that is no smaller (sign 1), or no greater (−1), than all within `slack` of m; `None` where the factorization is too far from it.
 fn moved(m: &Mat<f64>, slack: f64, sign: f64) -> Option<Inertia> {
     let (n, size) = (m.nrows(), norm::frobenius(m));
-    let mut shift = 2.0 * slack + 8.0 * (n as f64 + 16.0) * U * size + f64::MIN_POSITIVE;
-    // What the check usually asks for; once more with as much as it did ask for.
+    let mut shift = 1.02 * slack + 8.0 * (n as f64 + 16.0) * U * size + f64::MIN_POSITIVE;
+    // What the check usually asks for; once more with twice as much for roundings as it did ask for.
     for _ in 0..2 {
         let at = |i: usize, j: usize| m[(i.max(j), i.min(j))] + if i == j { sign * shift } else { 0.0 };
         let own = Mat::from_fn(n, n, at);
@@ -130,7 +130,7 @@ fn moved(m: &Mat<f64>, slack: f64, sign: f64) -> Option<Inertia> {
         if off <= shift {
             return of_blocks(&|i| diagonal[i], &|i| next[i], n);
         }
-        shift = 2.0 * off;
+        shift = 1.02 * slack + 2.0 * (off - slack);
         if !shift.is_finite() {
             break;
         }

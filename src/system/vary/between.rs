@@ -17,7 +17,7 @@ use crate::number::{Rational, U};
 use crate::system::half::compose::inverted;
 use crate::system::half::float::scaled_program;
 use crate::system::half::norm;
-use crate::system::half::period::{Drifts, Stiff, follow_proven};
+use crate::system::half::period::{Drifts, Stiff, Stiffness, follow_proven};
 use crate::system::linear::frame::Frame;
 use crate::system::linear::sparse::Symmetric;
 use crate::system::linear::system::{Potential, System};
@@ -361,7 +361,8 @@ impl Cell<'_> {
                     }
                 }
             }
-            Stiff { rows, off: 1.01 * (norm::spectral(&moved) + 2.0 * U * squares.sqrt()) }
+            let off = 1.01 * (norm::spectral(&moved) + 2.0 * U * squares.sqrt());
+            Stiff { stiffness: Stiffness::Rows(rows), off }
         };
         let kicks: Vec<Stiff> = reduced.clocks().iter().enumerate().map(stiff).collect();
         // ‖P diag(e) Pᵀ‖ ≤ Σ e_i |P_i|², P = (I, −N); where N is empty the largest e_i.

@@ -3,13 +3,14 @@
 //! About an orbit that is its own mirror image in time the Hessians of the kicks form a palindrome, and H, the tangent map
 //! of half the period, decides as for one Hessian a clock: λ + 1/λ = 2 + 4 μ, μ the eigenvalues of Bᵀ C.
 
+use faer::Mat;
 use nalgebra::DMatrix;
 
 use crate::error::{Error, Result};
 use crate::number::rational::to_f64;
 use crate::number::{Laurent, Rational, U};
 use crate::schedule::Schedule;
-use crate::system::half::period::{Drifts, Stiff, follow};
+use crate::system::half::period::{Drifts, Stiff, Stiffness, follow};
 use crate::system::signs;
 use crate::system::spectrum::discs::Spectrum;
 use crate::system::spectrum::explain::explained;
@@ -118,6 +119,9 @@ fn scales(masses: &[f64], hessians: &[Vec<DMatrix<f64>>], tick: f64) -> Vec<f64>
     masses.iter().map(scale).collect()
 }
 
+/// From one in so many entries on a product of whole matrices takes less time than one of rows.
+const DENSE: usize = 8;
+
 /// factor K_ij/(a_i a_j), K_ij as the mean of itself and K_ji, with the roundings of the factor.
 fn scaled(k: &DMatrix<f64>, factor: f64, a: &[f64]) -> Stiff {
     let entry = |i: usize, j: usize| (k[(i, j)] / 2.0 + k[(j, i)] / 2.0) * factor / (a[i] * a[j]);
@@ -125,7 +129,13 @@ fn scaled(k: &DMatrix<f64>, factor: f64, a: &[f64]) -> Stiff {
         |i: usize| (0..a.len()).map(|j| (j, entry(i, j))).filter(|(_, x)| *x != 0.0).collect::<Vec<_>>();
     let rows: Vec<_> = (0..a.len()).map(|i| (i, row(i))).filter(|(_, row)| !row.is_empty()).collect();
     let squares: f64 = rows.iter().flat_map(|(_, row)| row).map(|(_, x)| x * x).sum();
-    Stiff { rows, off: 8.0 * U * squares.sqrt() }
+    let filled: usize = rows.iter().map(|(_, row)| row.len()).sum();
+    let stiffness = if DENSE * filled > a.len() * a.len() {
+        Stiffness::Whole(Mat::from_fn(a.len(), a.len(), entry))
+    } else {
+        Stiffness::Rows(rows)
+    };
+    Stiff { stiffness, off: 8.0 * U * squares.sqrt() }
 }
 
 fn check(masses: &[f64], schedule: &Schedule, hessians: &[Vec<DMatrix<f64>>]) -> Result<()> {
