@@ -8,9 +8,11 @@ use super::support::Desk;
 
 /// Other runs and frictions with the same answer: whether growth is tenfold within the run, and whether friction masks it. Advice
 /// echoes what it was asked in other words than the arguments', so [`is_asked_for`] cannot ask again.
-const STILL_TRUE: [(&str, &str); 5] = [
+const STILL_TRUE: [(&str, &str); 7] = [
     // The schemes of steps replace those of the file.
     ("advise tiny.json", ".input.system.potentials.1.step a digit"),
+    ("advise learned.json", ".input.system.potentials.0.step a digit"),
+    ("advise learned.json", ".input.system.potentials.1.step a digit"),
     ("advise", ".input.length a digit"),
     ("advise", ".input.friction a digit"),
     ("advise", ".input.length nudged"),
