@@ -283,3 +283,105 @@ fn what_needs_gradients_is_refused() {
     assert!(errors.iter().all(|error| !error.to_string().contains('\n')), "{errors:?}");
     assert!(matches!(scene.model(), Model::NoGradient(_)));
 }
+
+/// Two oscillators alike of 10 fs and one of 13 fs, cheap forces every 1/2 fs; a correction whose Jacobian is not symmetric every `outer` fs.
+fn alike(outer: &Rational) -> (String, Given) {
+    let diagonal =
+        |own: [i64; 3]| DMatrix::from_fn(3, 3, |i, j| if i == j { ratio(own[i], 1000) } else { ratio(0, 1) });
+    let mut correction = diagonal([20, 20, 15]);
+    for (i, j, x) in [(0, 1, 5), (1, 0, -5), (1, 2, 3), (2, 1, -2)] {
+        correction[(i, j)] = ratio(x, 10_000);
+    }
+    let cheap = diagonal([395, 395, 234]);
+    let rows = |m: &DMatrix<Rational>| -> Vec<Vec<String>> {
+        m.row_iter().map(|row| row.iter().map(ToString::to_string).collect()).collect()
+    };
+    let file = json!({"schema": "kickdrift/system/1", "title": "", "time_unit": "fs", "symmetric": false, "masses": [1, 1, 1],
+        "potentials": [{"step": "1/2", "stiffness": rows(&cheap)}, {"step": outer.to_string(), "stiffness": rows(&correction)}]});
+    let masses = vec![ratio(1, 1); 3];
+    (file.to_string(), (masses, vec![(cheap, ratio(1, 2)), (correction, outer.clone())]))
+}
+
+/// The period with a friction in the middle of each inner drift, in doubles.
+fn damped_radius((masses, given): &Given, friction: f64) -> f64 {
+    let n = masses.len();
+    let [(fast, inner), (slow, outer)] = &given[..] else { panic!("two") };
+    let a = |j: &DMatrix<Rational>| j.map(|x| to_f64(&x));
+    let (fast, slow, d, h) = (a(fast), a(slow), to_f64(inner), to_f64(outer));
+    let kick = |m: &DMatrix<f64>, step: f64| {
+        let mut own = DMatrix::identity(2 * n, 2 * n);
+        own.view_mut((n, 0), (n, n)).copy_from(&(-step * m));
+        own
+    };
+    let (mut drift, mut fade) = (DMatrix::identity(2 * n, 2 * n), DMatrix::identity(2 * n, 2 * n));
+    for i in 0..n {
+        drift[(i, n + i)] = d / 2.0;
+        fade[(n + i, n + i)] = (-friction * d).exp();
+    }
+    let step = kick(&fast, d / 2.0) * &drift * fade * &drift * kick(&fast, d / 2.0);
+    let times = i32::try_from((outer / inner).to_integer()).unwrap();
+    let inner = (0..times).fold(DMatrix::identity(2 * n, 2 * n), |q, _| &step * q);
+    let whole = kick(&slow, h / 2.0) * inner * kick(&slow, h / 2.0);
+    whole.complex_eigenvalues().iter().map(|z| z.norm()).fold(0.0, f64::max)
+}
+
+#[cfg(feature = "advise")]
+#[test]
+fn advice_tells_of_each_multiple_what_the_steps_add_and_which_friction_masks_it() {
+    use kickdrift::advise::{Adds, Scheme, TIMES};
+    let (file, _) = alike(&ratio(4, 1));
+    let direct = SystemScene::read(&file).unwrap().direct().unwrap().unwrap();
+    let scheme = Scheme::new(vec![ratio(1, 2), ratio(4, 1)]).unwrap();
+    let friction = ratio(1, 1000);
+    let asked = direct.advise(&[scheme], &ratio(1, 20), (None, Some(&friction)), &Limits::default());
+    let found = asked.unwrap();
+    let (least, most) = found.without_steps.unwrap();
+    // (0.415 ± 0.0005 i)/fs² for the pair, to first order; of near motions the root of the roundings is left.
+    let own = 0.0005 / (2.0 * 0.415f64.sqrt());
+    assert!((least / own - 1.0).abs() < 1e-2 && most - least < 1e-6 * most, "{least} {most} {own}");
+    let [at] = &found.schemes[..] else { panic!("one scheme") };
+    // A period of 10 fs holds 19 multiples of 1/2 fs.
+    assert_eq!(at.ladder.len(), 19);
+    let mut told = std::collections::BTreeSet::new();
+    for rung in &at.ladder {
+        let (_, given) = alike(&rung.outer);
+        let (lo, hi) = rung.rate.unwrap();
+        let rate = damped_radius(&given, 0.0).ln() / to_f64(&rung.outer);
+        assert!(lo - 1e-9 < rate && rate < hi + 1e-9, "{}: {rate} in {lo}..{hi}", rung.outer);
+        match rung.adds {
+            Adds::Little => assert!(rate < TIMES * most + 1e-9),
+            Adds::Much => assert!(rate > TIMES * least - 1e-9),
+            Adds::NotTold => {}
+        }
+        let radius = damped_radius(&given, to_f64(&friction));
+        assert_eq!(rung.is_damped, Some(radius < 1.0), "{}: {radius}", rung.outer);
+        told.insert(rung.adds.name());
+    }
+    assert_eq!(told.into_iter().collect::<Vec<_>>(), ["little", "much"]);
+    // The least friction that masks, to the part of a hundred by which it is raised.
+    let (mask, given) = (at.masking.unwrap(), alike(&ratio(4, 1)).1);
+    assert!(damped_radius(&given, mask) < 1.0 && damped_radius(&given, 0.98 * mask) > 1.0);
+    // The longest multiple up to which all add little.
+    let fails = at.ladder.iter().position(|own| own.adds != Adds::Little || own.in_band != Adds::Little);
+    assert_eq!(at.largest, fails.and_then(|k| k.checked_sub(1)).map(|k| at.ladder[k].outer.clone()));
+}
+
+#[cfg(feature = "advise")]
+#[test]
+fn forces_that_do_not_grow_by_themselves_are_to_be_stable_with_their_steps() {
+    use kickdrift::advise::{Adds, Scheme};
+    // Periods apart: an asymmetry leaves all eigenvalues real.
+    let file = json!({"schema": "kickdrift/system/1", "title": "", "time_unit": "fs", "symmetric": false, "masses": [1, 1],
+        "potentials": [{"step": "1/2", "stiffness": [["19/50", 0], [0, "1/5"]]}, {"step": 4, "stiffness": [["1/50", "1/100"], ["-1/100", "1/50"]]}]});
+    let direct = SystemScene::read(&file.to_string()).unwrap().direct().unwrap().unwrap();
+    let schemes = [4, 5].map(|outer| Scheme::new(vec![ratio(1, 2), ratio(outer, 1)]).unwrap());
+    let found = direct.advise(&schemes, &ratio(1, 20), (None, None), &Limits::default()).unwrap();
+    assert_eq!(found.without_steps, Some((0.0, 0.0)));
+    let [four, five] = &found.schemes[..] else { panic!("two schemes") };
+    assert_eq!((four.adds, four.rate), (Adds::Little, Some((0.0, 0.0))));
+    assert!(five.adds == Adds::Much && five.rate.unwrap().0 > 0.0 && five.masking.is_some());
+    // Another number of steps is refused.
+    let three = Scheme::new(vec![ratio(1, 2), ratio(1, 1), ratio(4, 1)]).unwrap();
+    let refused = direct.advise(&[three], &ratio(1, 20), (None, None), &Limits::default());
+    assert_eq!(refused.unwrap_err().field(), "steps");
+}

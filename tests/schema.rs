@@ -60,7 +60,7 @@ fn output(line: &str) -> Value {
 }
 
 /// One line for every shape that a command's answer can take.
-const LINES: [&str; 70] = [
+const LINES: [&str; 71] = [
     "verdict --lambda1 pi^2 --lambda2 pi^2/25 --h1 1/100 --h2 0.98",
     "verdict --lambda1 pi^2 --lambda2 pi^2/25 --h1 1/100 --h2 1/2",
     "verdict --lambda1 11/4 --lambda2 57/10 --h1 1 --h2 5/3",
@@ -130,6 +130,7 @@ const LINES: [&str; 70] = [
     "advise --bond OH:K=450kcal/mol/A^2,15.999,1.008 --period angle=13fs --period 40fs --constraints OH --friction 1/ps --steps 0.5fs,6fs --all-modes",
     "advise data/scenes/water4.json --length 1ns",
     "advise data/scenes/water4.json --steps 0.5fs,4.5fs --friction 1/ps --hmr 1.5",
+    "advise data/scenes/no-gradient.json --steps 20fs,60fs --friction 1/10/ps --length 1ns",
     "advise data/scenes/water4-levels.json --steps 1.1fs,2.2fs,4.4fs --no-levers",
 ];
 

@@ -196,6 +196,14 @@ fn compressed_rows_are_read_and_refused_by_name() {
             }
         }
     }
+    // All steps in their ratios, by the longest one.
+    let scan = Scan::new(asked, "outer=1/2000..1/500:1/2000".parse().unwrap(), None).unwrap();
+    let ratio_of = |steps: Vec<kickdrift::number::Rational>| &steps[1] / &steps[0];
+    for x in scan.x.values() {
+        let own = scan.at(&x, &x).unwrap();
+        assert_eq!(own.model().steps()[1], x);
+        assert_eq!(ratio_of(own.model().steps()), ratio_of(scene.model().steps()));
+    }
     let mut source = file("slow", "1/1000");
     source["potentials"][1]["stiffness"] = json!({"npz": "a.npz", "array": "slow.data"});
     let error = SystemScene::from_json_in(held.clone(), source).unwrap_err();

@@ -231,7 +231,7 @@ fn scans_vary_any_number_of_the_file() {
     // Points in parallel are those one by one.
     let decide = |x: &_, y: &_| scan.at(x, y)?.model().decide(Route::Cheapest, &Limits::default());
     let (xs, ys) = (scan.x.values(), scan.ys());
-    let points = kickdrift::system::scan::scan(&xs, &ys, decide, |_| {}).unwrap();
+    let points = kickdrift::system::scan::scan(&xs, &ys, decide, || {}).unwrap();
     assert_eq!(points.len(), 8);
     for point in points {
         let alone = scan.at(&point.at.0, &point.at.1).unwrap();

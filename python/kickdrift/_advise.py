@@ -46,7 +46,7 @@ class Advisable(Protocol):
     ) -> Any: ...
 
 
-_COLOURS = {"safe": "safe", "caution": "caution", "near": "caution", "island": "caution"}
+_COLOURS = {"safe": "safe", "caution": "caution", "near": "caution", "island": "caution", "little": "safe"}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -61,7 +61,8 @@ class Advised(Document):
     def status(self) -> str:
         """The first scheme: ``safe``, ``caution`` (proven stable, beyond a published limit), ``near`` (an unstable
         interval is within the band), ``island`` (stable above an unstable interval), ``unstable``, or of Hessians ``not
-        told`` within their accuracy."""
+        told`` within their accuracy. Of forces that are no gradient what the steps add to their growth: ``little``,
+        ``much``, ``not told``."""
         return str(self.schemes[0]["status"])
 
     @property
@@ -209,8 +210,24 @@ class SystemAdvice(Advised):
     @cached_property
     def groups(self) -> tuple[Row, ...]:
         """The modes of the fast stiffness alone, the fastest first: ``count``, ``shortest``, ``longest`` period, fs,
-        and the ``atoms`` that the fastest moves."""
-        return self._table("groups")
+        and the ``atoms`` that the fastest moves; none of forces that are no gradient."""
+        return self._table("groups") if "groups" in self.data else ()
+
+    @cached_property
+    def ladder(self) -> tuple[Row, ...]:
+        """Of forces that are no gradient the multiples of the step before the outermost one that were looked at:
+        ``outer``, the enclosed ``growth_rate``, per ps, and what the steps add, ``status``; none of others.
+
+        Examples
+        --------
+        >>> import kickdrift as kd
+        >>> cheap, correction = [[0.5, 0], [0, 0.5]], [[0.02, 1e-4], [-1e-4, 0.02]]
+        >>> levels = {"cheap": ("1/2", cheap), "correction": (4, correction)}
+        >>> advice = kd.System.from_hessians([1, 1], levels, time_unit="fs", symmetric=False).advise()
+        >>> advice.status, advice.ladder[7]["outer"], advice.ladder[7]["status"]
+        ('little', '4', 'little')
+        """
+        return self._table("ladder") if "ladder" in self.data else ()
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw what is proven stable and the first unstable interval over the outer step, a row a scheme.
@@ -228,6 +245,8 @@ class SystemAdvice(Advised):
         >>> system.advise().plot().get_xlabel()
         'outer step (fs)'
         """
+        if self.ladder:
+            return _plot.ladder(self.data, ax)
         return _plot.system_advice(self.data, ax)
 
 

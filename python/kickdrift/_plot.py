@@ -250,6 +250,23 @@ def system_advice(document: Mapping[str, Any], ax: Axes | None) -> Axes:
     return own
 
 
+def ladder(document: Mapping[str, Any], ax: Axes | None) -> Axes:
+    """Growth over the multiples of the first scheme, and twice that without steps: where the steps add little."""
+    own, without = axes(ax), document["growth_without_steps"]
+    rungs = [rung for rung in document["ladder"] if rung["scheme"] == 1 and rung["growth_rate"] is not None]
+    outer = [float(Fraction(rung["outer"])) for rung in rungs]
+    middle = [(rung["growth_rate"]["lo"] + rung["growth_rate"]["hi"]) / 2 for rung in rungs]
+    own.plot(outer, middle, "o-", color=COLOURS["ink"], linewidth=0.8, markersize=3, label="with the steps")
+    if without is not None:
+        most = document["times"] * without["lo"]
+        own.axhspan(0, most, color=COLOURS["safe"], linewidth=0, label="at most twice the forces' own growth")
+    own.set_xlabel("outer step (fs)")
+    own.set_ylabel("growth (1/ps)")
+    own.set_ylim(bottom=0)
+    own.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, frameon=False)
+    return own
+
+
 _INTERVALS = ("first", "inside", "below", "above")
 
 

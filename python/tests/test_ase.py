@@ -81,6 +81,10 @@ def test_a_direct_force_grows_as_its_own_eigenvalues_say() -> None:
     assert beside["within_accuracy"]["lo"] <= found.growth_rate <= beside["within_accuracy"]["hi"]
     # |J - J'|/|J + J'| of diag(3, 3, 3) and a turn of 0.6.
     assert beside["asymmetries"] == pytest.approx([0, 0.6 * 2**0.5 / (3 * 3**0.5)], abs=1e-6)
+    advice = system.advise(friction="1/ps", levers=False)
+    assert advice.status == "little" and [row["multiple"] for row in advice.ladder[:4]] == [1, 2, 3, 4]
+    assert advice.ladder[3]["growth_rate"] == advice.schemes[0]["growth_rate"]
+    assert advice.plot().get_ylabel() == "growth (1/ps)"
     # Of a force that is a gradient this asymmetry is an error, and larger than any verdict bears.
     with pytest.raises(kd.KickdriftError, match="too uncertain"):
         ka.system(atoms, groups, minimize=False)

@@ -18,6 +18,7 @@
 //! | `levels` | one mass, K clocks: verdict, first stable region |
 //! | `interval`, `edges` | unstable intervals of the outer step, on two clocks and on more |
 //! | `levers` | what would let the step grow |
+//! | `direct` | forces that are no gradient: what the steps add to their own growth |
 //! | `constraint` | bonds that do not vibrate |
 //! | `molecule` | Hessians in place of periods |
 //! | `source` | what decides about them: two levels, or any number |
@@ -44,6 +45,7 @@
 mod answer;
 mod caution;
 mod constraint;
+mod direct;
 mod edges;
 pub mod engine;
 mod interval;
@@ -59,6 +61,7 @@ pub mod unit;
 pub use answer::{Advice, Answer, Pair, Row, Status};
 pub use caution::{Caution, PUBLISHED, SLOW};
 pub use constraint::Constraints;
+pub use direct::{Adds, Direct, DirectFinding, DirectFindings, Rung, TIMES};
 pub use interval::{Unstable, Worst};
 pub use levels::{Found, Levels, Scheme};
 pub use levers::{Bound, Engine, Lever, Levers, RATIOS, SOLVED, Way, heavy};

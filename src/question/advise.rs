@@ -9,7 +9,8 @@ use super::field::{Field, notation, read};
 use crate::advise::engine::{self, Reading};
 use crate::advise::unit::{self, Dimension, decimal};
 use crate::advise::{
-    self, Advice, Bond, Constraints, Findings, Levers, Mode, Molecule, Origin, SOLVED, Scheme, Way,
+    self, Advice, Bond, Constraints, DirectFindings, Findings, Levers, MOST_PRODUCTS, Mode, Molecule, Origin,
+    SOLVED, Scheme, Way,
 };
 use crate::error::{Error, Result};
 use crate::number::parse::parse_rational;
@@ -17,6 +18,7 @@ use crate::number::{ExactSign, Rational, Sign};
 use crate::report::advise as report;
 use crate::report::document::Document;
 use crate::scene::{SystemFile, SystemScene, of_archive};
+use crate::system::Limits;
 use num_traits::Zero;
 
 question! {
@@ -220,6 +222,8 @@ pub enum Safe {
     Periods(Box<Advice>),
     /// Of the Hessians of a system.
     Hessians(Box<(SystemScene, Findings)>),
+    /// Of forces that are no gradient.
+    Direct(Box<(SystemScene, DirectFindings)>),
 }
 
 /// What is found, and how the question was read.
@@ -265,6 +269,13 @@ impl Question for Advised {
         let scene = work.read(file)?;
         let (length, friction) = (self.length.as_ref(), self.friction.as_ref());
         let size = scene.model().size();
+        if let Some(direct) = scene.direct()? {
+            let limits = Limits { products: work.budget.unwrap_or(MOST_PRODUCTS), ..Limits::default() };
+            let seconds = direct.cost(&self.schemes)? as f64 / PRODUCTS_A_SECOND;
+            work.announce(&format!("advice on {size} degrees of freedom"), seconds);
+            let found = direct.advise(&self.schemes, &self.band, (length, friction), &limits)?;
+            return Ok(Safe::Direct(Box::new((scene, found))));
+        }
         // What would let the step grow is told where it is cheap, whatever the budget: a document tells the same with another one.
         let others: Vec<_> = self.schemes.iter().take(1).cycle().take(LEVERS).cloned().collect();
         let levers = !self.no_levers && Molecule::allow(size, &others, friction.is_some(), None).is_ok();
@@ -294,6 +305,7 @@ impl Safe {
         match self {
             Safe::Periods(advice) => report::View::Periods(advice),
             Safe::Hessians(own) => report::View::Hessians(&own.1),
+            Safe::Direct(own) => report::View::Direct(&own.1),
         }
     }
 }
@@ -304,6 +316,7 @@ impl Safe {
         match self {
             Safe::Periods(advice) => advice.levers.as_ref(),
             Safe::Hessians(own) => own.1.levers.as_ref(),
+            Safe::Direct(_) => None,
         }
     }
 }
@@ -365,7 +378,7 @@ impl Advised {
     fn placed(&self, safe: &Safe) -> Advised {
         match safe {
             Safe::Periods(advice) => Advised { modes: Some(advice.modes.clone()), ..self.clone() },
-            Safe::Hessians(_) => self.clone(),
+            Safe::Hessians(_) | Safe::Direct(_) => self.clone(),
         }
     }
 }
@@ -413,7 +426,11 @@ impl Question for Advise {
 
     #[cfg(feature = "figure")]
     fn figure(&self, answer: &Answer, _: &Work) -> Result<Option<Figure>> {
-        Ok(Some(report::figure(answer.safe.view(), "Which outer steps are safe")))
+        let none = || {
+            let remedy = "of forces that are no gradient the table has the growth: draw `kickdrift system FILE --scan` in its place";
+            Error::input("output", "a figure", remedy)
+        };
+        report::figure(answer.safe.view(), "Which outer steps are safe").ok_or_else(none).map(Some)
     }
 }
 

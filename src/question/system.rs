@@ -168,9 +168,11 @@ impl System {
         let points = xs.len() * ys.len();
         let cost = System::cost_of_map(axes, &xs, &ys)?;
         limits.allow(cost as u64, || format!("a map of {points} points"))?;
+        let seconds = scene.model().seconds_of(cost);
+        work.announce(&format!("{points} points, each {:.2} s on average", seconds / points as f64), seconds);
         let bar = work.count(points as u64, "points");
         let decide = |x: &_, y: &_| axes.at(x, y)?.model().decide(self.route(), &limits);
-        let points = scan(&xs, &ys, decide, |done| bar.advance(done as u64))?;
+        let points = scan(&xs, &ys, decide, || bar.advance(1))?;
         Ok(SystemMap { names: axes.names(), xs, ys, points, time_unit: scene.time_unit().map(String::from) })
     }
 

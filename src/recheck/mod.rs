@@ -24,6 +24,7 @@
 //! | state | a power of the period and return maps | kick by kick |
 //! | run | the names of the products | none |
 //! | proposition | Bézout's identity | eqs. (9) and (10) in integers |
+//! | advise-direct | half periods in doubles, discs of eigenvalues | the dense full period in doubles |
 //! | advise-system | definite forms, counts | the action over its paths; the full period kick by kick |
 //! | advise | strings, orbits in balls | the full period in balls of 512 bits, pivots of the action |
 //!
@@ -162,6 +163,8 @@ claims! {
     "advise" Advise advise::Claim;
     #[cfg(feature = "advise")]
     "advise-system" AdviseSystem advise::Molecule;
+    #[cfg(feature = "advise")]
+    "advise-direct" AdviseDirect advise::Direct;
     #[cfg(feature = "system")] "system-verdict" System system::Claim;
     #[cfg(feature = "system")] "system-map" SystemMap system::Claim;
     #[cfg(feature = "system")] "system-intervals" SystemIntervals system::Claim;

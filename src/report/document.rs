@@ -223,7 +223,7 @@ impl Document {
     fn command(&self) -> &'static str {
         match self.name {
             "system-verdict" | "system-map" | "system-intervals" => "system",
-            "advise-system" => "advise",
+            "advise-system" | "advise-direct" => "advise",
             "survey" => "tongues",
             "methods" => "word",
             "compare-methods" => "compare",

@@ -109,7 +109,7 @@ fn dense() {
     let axes = Scan::new(scene, axis(x), Some(axis(y))).expect("a map");
     let (xs, ys, limits) = (axes.x.values(), axes.ys(), Limits::default());
     let decide = |x: &_, y: &_| axes.at(x, y)?.model().decide(Route::Cheapest, &limits);
-    let (own, points) = least(3, 0.0, || scan(&xs, &ys, decide, |_| ()).expect("a map"));
+    let (own, points) = least(3, 0.0, || scan(&xs, &ys, decide, || ()).expect("a map"));
     println!("map of {} points, n = 12: {:.0} ms", points.len(), 1e3 * own);
     assert!(points.len() == 182);
     promise(own < 1.0, "a second");

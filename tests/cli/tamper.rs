@@ -8,9 +8,11 @@ use super::support::Desk;
 
 /// Other runs and frictions with the same answer: whether growth is tenfold within the run, and whether friction masks it. Advice
 /// echoes what it was asked in other words than the arguments', so [`is_asked_for`] cannot ask again.
-const STILL_TRUE: [(&str, &str); 5] = [
+const STILL_TRUE: [(&str, &str); 7] = [
     // The schemes of steps replace those of the file.
     ("advise tiny.json", ".input.system.potentials.1.step a digit"),
+    ("advise learned.json", ".input.system.potentials.0.step a digit"),
+    ("advise learned.json", ".input.system.potentials.1.step a digit"),
     ("advise", ".input.length a digit"),
     ("advise", ".input.friction a digit"),
     ("advise", ".input.length nudged"),
@@ -88,7 +90,7 @@ fn arguments(desk: &Desk, line: &str, tampered: &Value) -> Option<String> {
         line.split_whitespace().map(|word| if word.ends_with(".json") { "asked.json" } else { word })
     };
     let schema = tampered["schema"].as_str()?;
-    if schema == "kickdrift/advise-system/1" {
+    if ["kickdrift/advise-system/1", "kickdrift/advise-direct/1"].contains(&schema) {
         return Some(file().collect::<Vec<_>>().join(" "));
     }
     let mut words = vec![tampered["kickdrift"]["command"].as_str()?.to_string()];
@@ -399,6 +401,7 @@ fn no_change_to_advice_on_hessians_passes() {
     let lines = [
         "advise tiny.json --steps 2.2fs,4.4fs --length 1ns --friction 1/ps",
         "advise tiny.json --engine run.mdp",
+        "advise learned.json --steps 40fs,80fs --length 1ns --friction 1/ps",
     ];
     no_change_passes(&lines, 300);
 }

@@ -9,9 +9,11 @@
 //! | `mass` | one mass on its clocks: trace, friction, first region |
 //! | `scheme`, `row` | what is told of a scheme, of a mode at a scheme |
 //! | `lever` | what would let the step grow |
+//! | `direct` | advice on forces that are no gradient: computed again, its growth by the dense full period |
 //! | `molecule` | advice on Hessians: computed again, its proofs and growth by another route |
 
 mod claim;
+mod direct;
 mod lever;
 mod mass;
 mod molecule;
@@ -19,4 +21,5 @@ mod row;
 mod scheme;
 
 pub use claim::Claim;
+pub use direct::Claim as Direct;
 pub use molecule::Claim as Molecule;

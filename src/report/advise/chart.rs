@@ -89,11 +89,12 @@ fn blocks<'a, T>(
 }
 
 /// Each mode and each pair of modes, or the molecule and each group of its fast modes, at each scheme's own ratio, and the schemes' outer
-/// steps as lines through their rows.
-pub fn figure(of: View, title: &str) -> Figure {
+/// steps as lines through their rows; `None` of forces that are no gradient, whose growth is a table.
+pub fn figure(of: View, title: &str) -> Option<Figure> {
     match of {
-        View::Periods(advice) => of_periods(advice, title),
-        View::Hessians(findings) => of_molecule(findings, title),
+        View::Periods(advice) => Some(of_periods(advice, title)),
+        View::Hessians(findings) => Some(of_molecule(findings, title)),
+        View::Direct(_) => None,
     }
 }
 

@@ -2,6 +2,7 @@
 
 #[cfg(feature = "figure")]
 mod chart;
+mod direct;
 mod levers;
 mod lines;
 mod molecule;
@@ -13,7 +14,7 @@ use super::record::Record;
 use super::table::{Cell, Column, Table};
 use crate::advise::engine::Reading;
 use crate::advise::unit::decimal;
-use crate::advise::{Advice, Answer, Findings, Mode, Pair, Row, Unstable};
+use crate::advise::{Advice, Answer, DirectFindings, Findings, Mode, Pair, Row, Unstable};
 use crate::number::Rational;
 
 #[cfg(feature = "figure")]
@@ -28,14 +29,17 @@ pub enum View<'a> {
     Periods(&'a Advice),
     /// The Hessians of a molecule.
     Hessians(&'a Findings),
+    /// Forces that are no gradient.
+    Direct(&'a DirectFindings),
 }
 
-/// The document `kickdrift/advise/1`, or `kickdrift/advise-system/1`, but for the input; with what an engine's text says, where the steps are
+/// The document `kickdrift/advise/1`, `kickdrift/advise-system/1` or `kickdrift/advise-direct/1`, but for the input; with what an engine's text says, where the steps are
 /// those of one; for people with `notes` on how it was read.
 pub fn document(of: View, reading: Option<&Reading>, notes: &[String]) -> Document {
     match of {
         View::Periods(advice) => of_periods(advice, reading),
         View::Hessians(findings) => molecule::document(findings, reading, notes),
+        View::Direct(findings) => direct::document(findings, reading, notes),
     }
 }
 

@@ -9,7 +9,7 @@ use super::SystemScene;
 use super::array::Reference;
 use super::measured::spread;
 use crate::advise::unit::{self, Dimension};
-use crate::advise::{Molecule, Names, Scheme, Source, Told};
+use crate::advise::{Direct, Molecule, Names, Scheme, Source, Told};
 use crate::error::{Error, Result};
 use crate::number::Rational;
 use crate::system::Body;
@@ -41,6 +41,19 @@ impl SystemScene {
         Ok((Molecule::new(source, unit, self.names(body)?, accuracy), scheme))
     }
 
+    /// Forces that are no gradient, to be advised on; `None` where they are gradients.
+    ///
+    /// # Errors
+    /// As [`SystemScene::femtoseconds`]; labels that do not fit.
+    pub fn direct(&self) -> Result<Option<Direct>> {
+        let Some(own) = self.model.jacobians() else { return Ok(None) };
+        let names = match own.accuracy() {
+            Some(_) => self.names(own.body())?,
+            None => Names::of_labels(self.labels.clone().unwrap_or_default()),
+        };
+        Ok(Some(Direct::new(own.clone(), self.femtoseconds()?, names)))
+    }
+
     /// What the file tells of atoms.
     fn names(&self, body: &Body) -> Result<Names> {
         #[derive(Deserialize)]
@@ -64,12 +77,16 @@ impl SystemScene {
         Ok(Names::new(told, positions, of_atoms(moving)))
     }
 
-    /// The steps of measured levels, in fs.
+    /// The steps of measured levels, or of forces that are no gradient, in fs.
     ///
     /// # Errors
     /// A file without `time_unit`, or with another than fs, ps, ns or s; as [`Model::measured_steps`](crate::system::Model::measured_steps).
     pub fn scheme(&self) -> Result<Scheme> {
-        let (steps, unit) = (self.model.measured_steps()?, self.femtoseconds()?);
+        let unit = self.femtoseconds()?;
+        let steps = match self.model.jacobians() {
+            Some(own) => own.steps(),
+            None => self.model.measured_steps()?,
+        };
         Scheme::new(steps.into_iter().map(|step| step * &unit).collect())
     }
 

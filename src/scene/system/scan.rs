@@ -2,13 +2,14 @@
 //!
 //! A path names the number as it stands in the file: `potentials.1.step`, `build.steps.0`, `potentials.bond.scale` (a
 //! potential by its name), `potentials.0.springs.2.2`. A last key that is not there yet is added (`scale`, `phase`). An entry of a symmetric
-//! matrix off its diagonal is both: `mass_matrix.0.1` is `mass_matrix.1.0`, too.
+//! matrix off its diagonal is both: `mass_matrix.0.1` is `mass_matrix.1.0`, too. `outer` is the longest step, all steps in their ratios.
 
 use std::fmt::{Display, Formatter};
 use std::str::FromStr;
 
 use serde_json::Value;
 
+use super::document::Number;
 use super::{SystemScene, sparse, with_method};
 use crate::error::{Error, Result};
 use crate::number::Rational;
@@ -17,6 +18,9 @@ use crate::system::Model;
 
 /// The most values of an axis, and the most points of a map.
 pub(super) const MOST_POINTS: usize = 100_000;
+
+/// The path that means all steps in their ratios, by the longest one.
+const OUTER: &str = "outer";
 
 /// The values that one number of the file takes: lo, lo + by, ... up to hi, exactly.
 #[derive(Clone, Debug, PartialEq)]
@@ -173,14 +177,18 @@ impl SystemScene {
     /// The same file with other numbers at some of its paths; `field` is what errors name.
     pub(super) fn with(&self, field: &str, numbers: &[(&str, &Rational)]) -> Result<SystemScene> {
         let mut file = self.source.clone();
-        for (path, value) in numbers {
+        for (path, value) in numbers.iter().filter(|(path, _)| *path != OUTER) {
             *place(&mut file, path, field)? = Value::String(value.to_string());
             if let Some(mirrored) = mirrored(path) {
                 *place(&mut file, &mirrored, field)? = Value::String(value.to_string());
             }
         }
-        let is_step =
-            |(path, _): &(&str, &Rational)| path.starts_with("potentials.") && path.ends_with(".step");
+        if let Some((_, outer)) = numbers.iter().find(|(path, _)| *path == OUTER) {
+            scale_steps(&mut file, outer, field)?;
+        }
+        let is_step = |(path, _): &(&str, &Rational)| {
+            *path == OUTER || path.starts_with("potentials.") && path.ends_with(".step")
+        };
         if let Model::Sparse(own) = &self.model
             && numbers.iter().all(is_step)
             && let Some(own) = sparse::with_steps(own, [&self.source, &file])?
@@ -200,6 +208,39 @@ impl SystemScene {
         }
         Ok(scene)
     }
+}
+
+/// All steps of a file in their ratios, the longest one this.
+fn scale_steps(file: &mut Value, outer: &Rational, field: &str) -> Result<()> {
+    if *outer <= Rational::default() {
+        return Err(Error::input(field, outer, "steps are positive"));
+    }
+    let mut steps: Vec<&mut Value> = Vec::new();
+    for (key, own) in file.as_object_mut().into_iter().flatten() {
+        match (key.as_str(), own) {
+            ("potentials", Value::Array(all)) => {
+                steps.extend(all.iter_mut().filter_map(|own| own.get_mut("step")));
+            }
+            ("build" | "mesh", Value::Object(own)) => {
+                for (key, own) in own.iter_mut() {
+                    match (key.as_str(), own) {
+                        ("step", own) => steps.push(own),
+                        ("steps", Value::Array(all)) => steps.extend(all),
+                        _ => {}
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+    let read = |own: &&mut Value| Number::from((**own).clone()).read("step");
+    let given = steps.iter().map(read).collect::<Result<Vec<_>>>()?;
+    let longest = given.iter().max().cloned().filter(|own| *own > Rational::default()).ok_or_else(|| {
+        Error::input(field, OUTER, "the file has no steps: name another number of it, as mesh.courant")
+    })?;
+    let factor = outer / longest;
+    steps.into_iter().zip(given).for_each(|(own, step)| *own = (step * &factor).to_string().into());
+    Ok(())
 }
 
 /// The path of the entry (j, i) of a symmetric matrix for that of (i, j), i ≠ j.

@@ -6,12 +6,11 @@ use num_bigint::BigInt;
 use num_integer::Integer;
 use num_traits::One;
 
+use super::friction::MOST_MASKED;
 use super::model::{Clock, Jacobians};
-use super::orbit::{self, Doubles, State, lead};
+use super::orbit;
 use crate::error::Result;
-use crate::number::rational::to_f64;
 use crate::number::{Laurent, Rational, U};
-use crate::schedule::{Event, Weight};
 use crate::system::exact::decide::{MuCount, judged};
 use crate::system::half::norm;
 use crate::system::spectrum::discs::Spectrum;
@@ -42,12 +41,6 @@ impl NoGradient {
             .filter(|(lo, hi)| lo.is_finite() && hi.is_finite())
     }
 }
-
-/// The friction that masks growth is looked for of so many degrees of freedom: some thirty eigenvalue problems of twice as many rows.
-const MOST_MASKED: usize = 150;
-
-/// How much a multiplier may be above 1 in doubles where nothing grows: of nearly defective periods half of the digits are right.
-const STILL: f64 = 1e-7;
 
 impl Jacobians {
     /// The verdict on the matrices given.
@@ -101,30 +94,53 @@ impl Jacobians {
 
     /// What is known beside the verdict.
     pub fn no_gradient(&self) -> NoGradient {
-        let period = Laurent::from_rational(self.period());
-        let (spectrum, error_within) = self.spectrum();
-        let within = |own: &Spectrum| {
-            let found = own.with_error(*error_within)?.multipliers();
-            let growth = found.iter().map(|own| own.growth).collect::<Option<Vec<_>>>()?;
-            Some(rate::per_time(rate::largest(growth.into_iter()), &period))
-        };
         NoGradient {
             asymmetries: self.asymmetries.clone(),
             without_steps: self.without_steps(),
-            within_accuracy: self.accuracy.and(spectrum.as_ref()).and_then(within),
+            within_accuracy: self.within_accuracy(),
             masking: (self.size() <= MOST_MASKED).then(|| self.masking()),
         }
     }
 
+    /// The growth rate with these steps, per unit time, enclosed, for the matrices given; `None`: not bounded.
+    pub fn growth_rate(&self) -> Option<(f64, f64)> {
+        self.rate_of(self.spectrum().0.as_ref()?)
+    }
+
+    /// The same for all matrices within their accuracy; `None` of exact ones too.
+    pub fn within_accuracy(&self) -> Option<(f64, f64)> {
+        self.accuracy?;
+        let (spectrum, error_within) = self.spectrum();
+        self.rate_of(&spectrum.as_ref()?.with_error(*error_within)?)
+    }
+
+    fn rate_of(&self, spectrum: &Spectrum) -> Option<(f64, f64)> {
+        if spectrum.by_discs() == Some(Kind::Elliptic) {
+            return Some((0.0, 0.0));
+        }
+        let growth = spectrum.multipliers().iter().map(|own| own.growth).collect::<Option<Vec<_>>>()?;
+        Some(rate::per_time(rate::largest(growth.into_iter()), &Laurent::from_rational(self.period())))
+    }
+
+    /// Positions of what grows fastest with these steps, real and imaginary part, rounded; `None` where nothing is seen to grow.
+    pub fn fastest(&self) -> Option<[Vec<f64>; 2]> {
+        let spectrum = self.spectrum().0.as_ref()?;
+        let sizes = spectrum.multipliers().into_iter().map(|own| own.size()).enumerate();
+        let (i, size) = sizes.max_by(|a, b| a.1.total_cmp(&b.1))?;
+        let shape = spectrum.shape(i, &vec![1.0; self.size()]);
+        let part = |of: fn(&c64) -> f64| self.lifted(&shape.iter().map(of).collect::<Vec<_>>());
+        (size > 1.0).then(|| [part(|z| z.re), part(|z| z.im)])
+    }
+
     /// The eigenvalues of S for the matrices given, and how far S can be from that of others within their accuracy.
-    fn spectrum(&self) -> &(Option<Spectrum>, f64) {
+    pub(super) fn spectrum(&self) -> &(Option<Spectrum>, f64) {
         self.spectrum.get_or_init(|| {
             let (s, [error, within]) = orbit::half_product(self);
             (Spectrum::of(s, error.is_finite().then_some(error)), within)
         })
     }
 
-    fn lifted(&self, y: &[f64]) -> Vec<f64> {
+    pub(super) fn lifted(&self, y: &[f64]) -> Vec<f64> {
         (0..self.lift.nrows())
             .map(|i| y.iter().enumerate().map(|(k, y)| self.lift[(i, k)] * y).sum())
             .collect()
@@ -160,8 +176,10 @@ impl Jacobians {
         (own + self.tick.numer().bits() + self.tick.denom().bits()) as f64
     }
 
+    /// The growth rate of x'' = −A x itself, enclosed; `None`: not bounded.
+    ///
     /// |Im √λ| of the eigenvalues λ of A = Σ A_k, whose discs have one radius r: (|λ| − Re λ)/2 is its square, and moves by r at most.
-    fn without_steps(&self) -> Option<(f64, f64)> {
+    pub fn without_steps(&self) -> Option<(f64, f64)> {
         let n = self.size();
         let mut sum = Mat::<f64>::zeros(n, n);
         self.clocks.iter().for_each(|clock| sum += &clock.matrix);
@@ -186,65 +204,6 @@ impl Jacobians {
             )
         };
         Some(rate::largest(own.mu.iter().enumerate().map(growth)))
-    }
-
-    /// One period of the time-symmetric form in doubles, rounded: positions first, then velocities, without rigid motions.
-    pub fn full_period(&self) -> DMatrix<f64> {
-        let period = self.damped_period(0.0);
-        DMatrix::from_fn(period.nrows(), period.ncols(), |i, j| period[(i, j)])
-    }
-
-    /// The same with O, v → exp(−γ d) v, in the middle of every drift d.
-    fn damped_period(&self, rate: f64) -> Mat<f64> {
-        let n = self.size();
-        let whole = Mat::<f64>::identity(2 * n, 2 * n);
-        let (x, v) = (whole.subrows(0, n).to_owned(), whole.subrows(n, n).to_owned());
-        let mut state = Damped { rate, own: Doubles::new(self, x, v), tick: to_f64(&self.tick) };
-        lead(&self.schedule.symmetric_period().collect::<Vec<Event>>(), false, &mut state);
-        let (x, v) = (&state.own.x, &state.own.v);
-        Mat::from_fn(2 * n, 2 * n, |i, j| if i < n { x[(i, j)] } else { v[(i - n, j)] })
-    }
-
-    /// By bisection on the spectral radius of the damped period.
-    fn masking(&self) -> f64 {
-        let grows = |rate: f64| {
-            let multipliers = self.damped_period(rate).eigenvalues();
-            multipliers.map_or(true, |all| all.iter().any(|z| z.norm() > 1.0 + STILL))
-        };
-        if !grows(0.0) {
-            return 0.0;
-        }
-        let mut hi = 0.01 / to_f64(&self.period());
-        while grows(hi) && hi.is_finite() {
-            hi *= 2.0;
-        }
-        let mut lo = 0.0;
-        for _ in 0..20 {
-            let middle = (lo + hi) / 2.0;
-            *(if grows(middle) { &mut lo } else { &mut hi }) = middle;
-        }
-        hi
-    }
-}
-
-/// With friction halfway through every drift.
-struct Damped<'a> {
-    rate: f64,
-    tick: f64,
-    own: Doubles<'a>,
-}
-
-impl State for Damped<'_> {
-    fn drift(&mut self, ticks: u64) {
-        let time = self.tick * ticks as f64;
-        let half = 0.5 * time;
-        self.own.x += half * &self.own.v;
-        self.own.v *= faer::Scale((-self.rate * time).exp());
-        self.own.x += half * &self.own.v;
-    }
-
-    fn kick(&mut self, clock: usize, weight: Weight) {
-        self.own.kick(clock, weight);
     }
 }
 

@@ -15,10 +15,12 @@
 //! |---|---|
 //! | `model` | the matrices with their clocks, without rigid motions |
 //! | `orbit` | the half period in doubles with a proven bound, and exactly |
-//! | `decide` | the verdict, the growth with and without steps, the friction that masks it |
+//! | `decide` | the verdict, the growth with and without steps |
+//! | `friction` | periods with friction, and the friction that masks growth |
 //! | `intervals` | the verdicts on all outer steps of a range, by discs that hold for cells of them |
 
 mod decide;
+mod friction;
 mod intervals;
 mod model;
 mod orbit;

@@ -74,6 +74,8 @@ pub struct Jacobians {
     pub(super) rigid: Vec<Vec<Rational>>,
     /// Positions in the coordinates given from those that are left, a column each.
     pub(super) lift: Mat<f64>,
+    /// What moves.
+    pub(super) body: Body,
     /// With the symmetric parts alone.
     pub(super) symmetric: System,
     /// Computed when it is first asked for.
@@ -99,6 +101,7 @@ impl Jacobians {
             potentials.push(Potential { stiffness, step: step.clone(), phase: phase.clone() });
         }
         let symmetric = System::new(Symmetric::diagonal(masses), potentials)?;
+        let body = Body { masses: Some(masses.iter().map(to_f64).collect()), ..Body::default() };
         let weighted = given.iter().map(|(j, step, phase)| {
             (DMatrix::from_fn(n, n, |a, b| &j[(a, b)] / &masses[a]), step.clone(), phase.clone())
         });
@@ -126,7 +129,7 @@ impl Jacobians {
         let lift = Mat::from_fn(n, kept.len(), |i, j| f64::from(u8::from(i == kept[j])));
         let motions = rigid.iter().map(|(_, n)| n.clone()).collect();
         let asymmetries = given.iter().map(|(j, ..)| asymmetry(&j.map(|x| to_f64(&x)))).collect();
-        Jacobians::new(clocks.collect(), (motions, lift), asymmetries, None, symmetric)
+        Jacobians::new(clocks.collect(), (motions, lift), asymmetries, (None, body), symmetric)
     }
 
     /// From Jacobians in doubles, each known to `accuracy` times its norm, with steps: rigid motions by positions, in a periodic box
@@ -177,11 +180,9 @@ impl Jacobians {
         let exact = |x: f64| from_f64_exact(x).unwrap_or_default();
         let rigid = (0..removed).map(|k| (0..n).map(|i| exact(motions[(i, k)])).collect()).collect();
         let asymmetries = given.iter().map(|(_, j)| asymmetry(j)).collect();
-        let stand_in: Vec<_> =
-            given.iter().map(|(step, _)| Potential::new(Symmetric::zero(n), step.clone())).collect();
-        let symmetric = System::new(Symmetric::diagonal(&vec![Rational::one(); n]), stand_in)?;
-        Jacobians::new(clocks.collect(), (rigid, lift), asymmetries, Some(accuracy), symmetric)?
-            .at_accuracy(accuracy)
+        let symmetric = stand_in(n, given.iter().map(|(step, _)| step))?;
+        let known = (Some(accuracy), body.clone());
+        Jacobians::new(clocks.collect(), (rigid, lift), asymmetries, known, symmetric)?.at_accuracy(accuracy)
     }
 
     /// The same with every matrix known to this times its norm.
@@ -204,7 +205,7 @@ impl Jacobians {
         clocks: Vec<(Clock, Rational)>,
         (rigid, lift): (Vec<Vec<Rational>>, Mat<f64>),
         asymmetries: Vec<f64>,
-        accuracy: Option<f64>,
+        (accuracy, body): (Option<f64>, Body),
         symmetric: System,
     ) -> Result<Jacobians> {
         let (clocks, phases): (Vec<_>, Vec<_>) = clocks.into_iter().unzip();
@@ -212,7 +213,70 @@ impl Jacobians {
         let schedule = Schedule::new(&steps, &phases)?;
         let tick = &steps[0] / Rational::from_integer(schedule.clocks()[0].step().into());
         let spectrum = OnceLock::new();
-        Ok(Jacobians { clocks, schedule, tick, accuracy, asymmetries, rigid, lift, symmetric, spectrum })
+        Ok(Jacobians {
+            clocks,
+            schedule,
+            tick,
+            accuracy,
+            asymmetries,
+            rigid,
+            lift,
+            body,
+            symmetric,
+            spectrum,
+        })
+    }
+
+    /// The same with another step for each clock, by increasing step.
+    ///
+    /// # Errors
+    /// Another number of steps than clocks; phases; as [`Schedule::new`].
+    pub fn with_steps(&self, steps: &[Rational]) -> Result<Jacobians> {
+        if steps.len() != self.clocks.len() {
+            let remedy = format!("this file has {} clocks: give each its step", self.clocks.len());
+            return Err(Error::input("steps", format!("{} of them", steps.len()), remedy));
+        }
+        if self.symmetric.clocks().iter().any(|own| !own.phase.is_zero()) {
+            return Err(Error::input(
+                "phase",
+                "given",
+                "other steps are for clocks that all begin at time 0",
+            ));
+        }
+        let with = |(own, step): (&Clock, &Rational)| {
+            (Clock { step: step.clone(), ..own.clone() }, Rational::zero())
+        };
+        let clocks = self.clocks.iter().zip(steps).map(with).collect();
+        let symmetric = stand_in(self.symmetric.size(), steps.iter())?;
+        let Jacobians { rigid, lift, asymmetries, accuracy, body, .. } = self.clone();
+        Jacobians::new(clocks, (rigid, lift), asymmetries, (accuracy, body), symmetric)
+    }
+
+    /// The step of each clock, increasing.
+    pub fn steps(&self) -> Vec<Rational> {
+        self.clocks.iter().map(|own| own.step.clone()).collect()
+    }
+
+    /// |J − Jᵀ|/|J + Jᵀ| of each potential as it was given, Frobenius's norms, rounded.
+    pub fn asymmetries(&self) -> &[f64] {
+        &self.asymmetries
+    }
+
+    /// What moves, of rational matrices its masses alone.
+    pub fn body(&self) -> &Body {
+        &self.body
+    }
+
+    /// How well the matrices are known, relative to their norms; `None`: exactly.
+    pub fn accuracy(&self) -> Option<f64> {
+        self.accuracy
+    }
+
+    /// The highest frequency of the matrix on the shortest step alone, √Re λ of its eigenvalues λ, rounded; `None` where none is positive.
+    pub fn highest_fast_frequency(&self) -> Option<f64> {
+        let found = self.clocks.first()?.matrix.eigenvalues().ok()?;
+        let largest = found.iter().map(|z| z.re).fold(0.0, f64::max);
+        (largest > 0.0).then(|| largest.sqrt())
     }
 
     /// The system of the symmetric parts: its size, its clocks, no more.
@@ -229,6 +293,12 @@ impl Jacobians {
     pub fn period(&self) -> Rational {
         &self.tick * Rational::from_integer(self.schedule.period().into())
     }
+}
+
+/// What has the size and the clocks of a system, and no stiffness.
+fn stand_in<'a>(n: usize, steps: impl Iterator<Item = &'a Rational>) -> Result<System> {
+    let own = steps.map(|step| Potential::new(Symmetric::zero(n), step.clone())).collect();
+    System::new(Symmetric::diagonal(&vec![Rational::one(); n]), own)
 }
 
 fn square<T>(k: usize, j: &DMatrix<T>, n: usize) -> Result<()> {

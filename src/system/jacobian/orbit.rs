@@ -3,7 +3,7 @@
 //! Bounds grow as the norms of drifts and kicks do, e_x + d e_v and e_v + h |A| e_x: some e^(√|A| T) times the rounding of a step. That
 //! serves the few dozen inner steps of a run; no inverse is needed, which only symplectic matrices have for nothing.
 
-use faer::Mat;
+use faer::{Mat, Scale};
 use nalgebra::DMatrix;
 
 use super::model::Jacobians;
@@ -72,13 +72,32 @@ impl<'a> Doubles<'a> {
     }
 }
 
-impl State for Doubles<'_> {
-    fn drift(&mut self, ticks: u64) {
-        let time = to_f64(&(&self.own.tick * Rational::from_integer(ticks.into())));
+impl Doubles<'_> {
+    /// x + t v, the time rounded.
+    pub fn moved(&mut self, time: f64) {
         let size = norm::frobenius(&self.x) + time * norm::frobenius(&self.v);
         self.x += time * &self.v;
         // The time, the product, the sum.
         self.errors.iter_mut().for_each(|own| own.x = 1.01 * (own.x + time * own.v + 3.1 * U * size));
+    }
+
+    /// c v, the factor c within \[0, 1\] rounded.
+    pub fn faded(&mut self, factor: f64) {
+        self.v *= Scale(factor);
+        let size = norm::frobenius(&self.v);
+        // The factor, the product; both once more, since the size is that of the result.
+        self.errors.iter_mut().for_each(|own| own.v = 1.01 * (factor * own.v + 4.1 * U * size));
+    }
+
+    /// A bound on the error of both for the matrices given, in Frobenius's norm.
+    pub fn error(&self) -> f64 {
+        1.01 * self.errors[0].x.hypot(self.errors[0].v)
+    }
+}
+
+impl State for Doubles<'_> {
+    fn drift(&mut self, ticks: u64) {
+        self.moved(to_f64(&(&self.own.tick * Rational::from_integer(ticks.into()))));
     }
 
     fn kick(&mut self, clock: usize, weight: Weight) {

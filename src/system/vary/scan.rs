@@ -33,11 +33,8 @@ impl Point {
     }
 }
 
-/// Points that are handed to all threads at once.
-const AHEAD: usize = 512;
-
-/// The verdicts `decide(x, y)` for all pairs of parameters, row by row of y; in parallel, in order. `see` is told how
-/// many more are done, now and then.
+/// The verdicts `decide(x, y)` for all pairs of parameters, row by row of y; in parallel, in order. `see` is called
+/// after each.
 ///
 /// # Errors
 /// The first error of `decide`.
@@ -45,7 +42,7 @@ pub fn scan(
     xs: &[Rational],
     ys: &[Rational],
     decide: impl Fn(&Rational, &Rational) -> Result<Analysis> + Sync,
-    mut see: impl FnMut(usize),
+    see: impl Fn() + Sync,
 ) -> Result<Vec<Point>> {
     let pairs: Vec<_> = ys.iter().flat_map(|y| xs.iter().map(move |x| (x, y))).collect();
     let point = |&(x, y): &(&Rational, &Rational)| {
@@ -55,10 +52,5 @@ pub fn scan(
         let (kind, growth_rate) = (analysis.kind, analysis.growth_rate());
         Ok(Point { at: (x.clone(), y.clone()), kind, growth_rate, at_least })
     };
-    let mut points = Vec::with_capacity(pairs.len());
-    for group in pairs.chunks(AHEAD) {
-        points.extend(try_map(group, point)?);
-        see(group.len());
-    }
-    Ok(points)
+    try_map(&pairs, |pair| point(pair).inspect(|_| see()))
 }
