@@ -201,6 +201,11 @@ impl Ball {
         self.sub(other, bits).sign().expect("not a rounded zero").to_i8().cmp(&0)
     }
 
+    /// Whether it is positive and no wider than its distance from 0, so that a quotient by it is sharp.
+    pub(crate) fn is_away_from_zero(&self) -> bool {
+        self.mid.is_positive() && self.mid >= BigInt::from(self.rad) * 3
+    }
+
     /// The least point of the ball, exactly.
     pub fn lower(&self) -> Rational {
         rational::scale2(&(&self.mid - self.rad), self.exp)

@@ -13,7 +13,6 @@ use super::filter::Filter;
 use super::letters::{Force, Word};
 use super::point::At;
 use super::product::{Product, Setting};
-use super::trigonometric::is_away_from_zero;
 use crate::number::jet;
 use crate::number::{Ball, Laurent, Radical, Rational, Real, Ring, Sign};
 
@@ -91,7 +90,7 @@ impl Steps {
     /// sin x / x, and about 0 the bounds 1 − x²/6 ≤ sinc x ≤ 1, −x/3 ≤ sinc' x ≤ 0 for x ≥ 0.
     fn sinc(&self, x: &Jet) -> Jet {
         let own = &x.value;
-        if is_away_from_zero(own) {
+        if own.is_away_from_zero() {
             let sinc = self.over(&own.sin(BITS), own);
             let slope = self.over(&own.cos(BITS).sub(&sinc, BITS), own);
             return x.chained(sinc, &slope);

@@ -303,16 +303,10 @@ fn over(slow: &Laurent, fast: &Laurent) -> Ball {
     }
 }
 
-/// Whether a ball is positive and narrow beside its distance from 0, so that a quotient by it is sharp.
-pub(super) fn is_away_from_zero(y: &Ball) -> bool {
-    let lower = y.lower();
-    lower.is_positive() && &lower + &lower >= y.upper()
-}
-
 /// sin y / y of every y of a ball.
 fn sinc(y: &Ball, bits: u32) -> Ball {
     match y.sin(bits).div(y, bits) {
-        Some(own) if is_away_from_zero(y) => own,
+        Some(own) if y.is_away_from_zero() => own,
         // 1 − y²/6 ≤ sinc y ≤ 1.
         _ => {
             let square = y.square(bits).upper();

@@ -82,11 +82,11 @@ impl SystemScene {
     /// # Errors
     /// A file without `time_unit`, or with another than fs, ps, ns or s; as [`Model::measured_steps`](crate::system::Model::measured_steps).
     pub fn scheme(&self) -> Result<Scheme> {
-        let unit = self.femtoseconds()?;
         let steps = match self.model.jacobians() {
             Some(own) => own.steps(),
             None => self.model.measured_steps()?,
         };
+        let unit = self.femtoseconds()?;
         Scheme::new(steps.into_iter().map(|step| step * &unit).collect())
     }
 
