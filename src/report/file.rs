@@ -132,7 +132,7 @@ fn replaceable(path: &Path) -> Result<()> {
 /// That a file can be made where there is none, and else that it may be replaced: asked before the work.
 ///
 /// # Errors
-/// Those of [`replaceable`]; a path that is a directory, or in none.
+/// [`Kind::Io`](crate::error::Kind::Io) naming a file that is read-only, a directory, or a path in no folder.
 pub fn writable(path: &Path) -> Result<()> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
     let cause = if is_captured() {

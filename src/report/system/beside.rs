@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use super::nearest;
-use super::words::rate;
+use super::words::{rate, rate_per};
 use crate::report::decimal;
 use crate::report::document::enclosure;
 use crate::report::friction;
@@ -79,7 +79,7 @@ pub(super) fn no_gradient_lines(own: &NoGradient, analysis: &Analysis, per: &str
         own.asymmetries.iter().map(|&x| if x == 0.0 { "0".into() } else { format!("{x:.2e}") }).collect();
     let mut lines = vec![
         format!("  forces that are no gradient: |J - J'|/|J + J'| = {}", asymmetries.join(", ")),
-        format!("  without steps growth rate {} per {per}", rate(own.without_steps)),
+        format!("  without steps growth rate {}", rate_per(own.without_steps, per)),
     ];
     if let Some((lo, hi)) = own.added_by_steps(analysis) {
         lines.push(format!("  the steps add {} per {per}", decimal::enclosure(lo, hi)));

@@ -3,7 +3,7 @@
 use num_traits::Zero;
 use serde_json::json;
 
-use super::words::rate;
+use super::words::rate_per;
 use crate::number::Rational;
 use crate::number::rational::from_f64_exact;
 use crate::report::decimal;
@@ -61,7 +61,7 @@ impl SystemMap {
             let places = self.names.iter().zip([x, y]).map(|(name, value)| format!("{name} = {value}"));
             let places = places.collect::<Vec<_>>().join(", ");
             let per = self.time_unit.as_deref().unwrap_or("unit time");
-            lines.push(format!("  fastest growth {} per {per} at {places}", rate(*growth_rate)));
+            lines.push(format!("  fastest growth {} at {places}", rate_per(*growth_rate, per)));
         }
         let fastest = fastest.map(|point| {
             let (x, y) = (point.at.0.to_string(), point.at.1.to_string());

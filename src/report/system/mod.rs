@@ -30,7 +30,7 @@ pub use map::SystemMap;
 #[cfg(feature = "figure")]
 pub use modes::figure;
 pub use viewers::{vtu, xyz};
-use words::rate;
+use words::{rate, rate_per};
 
 const CAPTION: &str =
     "Multipliers $\\lambda$ over one synchronization period, $\\lambda + 1/\\lambda = 2 + 4\\mu$";
@@ -143,7 +143,7 @@ fn lines(analysis: &Analysis, beside: &Beside) -> Vec<String> {
     }
     if !analysis.is_stable() {
         let per = beside.unit.unwrap_or("unit time");
-        lines.push(format!("  largest growth rate {} per {per}", rate(analysis.growth_rate())));
+        lines.push(format!("  largest growth rate {}", rate_per(analysis.growth_rate(), per)));
     }
     lines
         .extend(analysis.parts.iter().filter_map(|part| part.oscillator.as_ref()).flat_map(oscillator_lines));

@@ -19,6 +19,12 @@ pub(super) fn rate(own: Option<(f64, f64)>) -> String {
     }
 }
 
+/// The same with its unit, where there is a number.
+pub(super) fn rate_per(own: Option<(f64, f64)>, unit: &str) -> String {
+    let unit = if own.is_some_and(|own| own.1.is_finite()) { format!(" per {unit}") } else { String::new() };
+    rate(own) + &unit
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -31,5 +37,6 @@ mod tests {
             [rate(Some((0.0, 0.0))), rate(Some((0.0, f64::INFINITY))), rate(None)],
             ["0", "not enclosed", "not enclosed"]
         );
+        assert_eq!([rate_per(Some((0.0, 0.0)), "ps"), rate_per(None, "ps")], ["0 per ps", "not enclosed"]);
     }
 }
