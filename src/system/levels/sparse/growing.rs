@@ -138,11 +138,6 @@ impl SparseLevels {
         let rounding = 8.0 * U * (offset.abs() + 2.0 * e * (value.lo.abs() + (m * along).abs()))
             + 4.0 * U * (slope.abs() + b.abs()) * ends[0].abs().max(ends[1].abs());
         let line = [offset + a - rounding, slope - b];
-        // F has motions at both ends of its spectrum, or nearly: where the line is not above 0 there, the factorization fails, unless S pushes these
-        // apart. Then it is not begun.
-        if ends.iter().any(|s| line[0] - line[1] * s <= 0.0) {
-            return false;
-        }
         let ([fast, slow], slack) = self.form(outer, line, 0.0);
         self.both.factored(line[0], &[(fast, &self.fast), (slow, &self.slow)], slack).is_some()
     }
