@@ -7,7 +7,6 @@ use kickdrift::system::levels::{Hessians, Kernel, Outer};
 use kickdrift::system::nearest::Nearest;
 use kickdrift::system::stretches::Stretch;
 use kickdrift::system::{Holds, Limits, exact_kind};
-use kickdrift::verdict::Kind;
 use nalgebra::DMatrix;
 use serde_json::{Value, json};
 
@@ -89,7 +88,7 @@ fn assert_true(source: &Value, path: &str, all: &[Stretch], count: i64, numbers:
         let inside = (0..count).map(|_| &lo + (&hi - &lo) * ratio(1 + numbers.below(998), 999));
         for value in [lo.clone(), hi.clone()].into_iter().chain(inside) {
             let kind = exact_kind(with(source, path, &value).model().system(), &Limits::default()).unwrap();
-            let stable = matches!(kind, Kind::Elliptic | Kind::Coexistence);
+            let stable = kind.is_stable();
             assert_eq!(stable, own.verdict == Holds::Stable, "{path} = {value}: {kind:?} {own:?} {source}");
             seen += 1;
         }

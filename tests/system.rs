@@ -88,7 +88,7 @@ proptest! {
         prop_assert!(analysis.is_proof());
         prop_assert_eq!(exact_kind(&system, &Limits::default()).unwrap(), analysis.kind.unwrap());
         prop_assert_eq!(over_the_whole_period(&analysis), exact.kind, "{:?} {:?}", analysis.kind.unwrap(), exact.roots);
-        prop_assert_eq!(analysis.is_stable(), matches!(exact.kind, Kind::Elliptic | Kind::Coexistence), "{:?}", exact.roots);
+        prop_assert_eq!(analysis.is_stable(), exact.kind.is_stable(), "{:?}", exact.roots);
         let (lo, hi) = analysis.growth_rate().unwrap();
         prop_assert_eq!((lo > 0.0, hi > 0.0), (exact.kind == Kind::Hyperbolic, exact.kind == Kind::Hyperbolic));
     }

@@ -7,7 +7,7 @@ use super::interval::{Intervals, Unstable};
 use super::levels::{Found, Levels, Scheme, longest_below, scaled};
 use super::levers::Levers;
 use super::mode::Mode;
-use super::question::{Question, is_stable};
+use super::question::Question;
 use crate::band::unstable_ratios;
 use crate::error::Result;
 use crate::number::rational::{enclose_f64, from_f64_exact, to_f64};
@@ -165,7 +165,7 @@ impl Question {
         let third = self.third();
         let safe = largest.as_ref().and_then(|largest| longest_below(scheme, largest, &third));
         let outer = scheme.outer();
-        let status = if rows.iter().any(|row| !is_stable(row.found.kind)) {
+        let status = if rows.iter().any(|row| !row.found.kind.is_stable()) {
             Status::Unstable
         } else if in_band {
             if *outer < third { Status::Safe } else { Status::Caution }
@@ -241,7 +241,7 @@ impl Question {
         let ratio = Ratio::try_from(&times)?;
         let intervals = Intervals::new(ratio, fast, &slow)?;
         row.first = Some(intervals.first()?);
-        if is_stable(row.found.kind) {
+        if row.found.kind.is_stable() {
             [row.below, row.above] = intervals.about(outer)?;
         } else if let Some(label) = row.found.label {
             row.inside = intervals.get(label)?;
@@ -265,7 +265,7 @@ impl Question {
         row.intervals = edges.all(REACH * hi.max(1.0) * REACH, MOST_INTERVALS);
         let upper = |own: &Unstable| own.upper.map_or(f64::INFINITY, |upper| upper.1);
         row.first = row.intervals.iter().find(|own| own.label == 1).cloned().or(row.first.take());
-        if is_stable(row.found.kind) {
+        if row.found.kind.is_stable() {
             row.below = row.intervals.iter().rev().find(|own| upper(own) <= outer).cloned();
             row.above = row.intervals.iter().find(|own| own.lower.0 >= outer).cloned();
         } else {

@@ -50,6 +50,11 @@ impl Kind {
             Kind::Coexistence => "coexistence",
         }
     }
+
+    /// Whether the powers of Q are bounded (theorem `bounded_iff` in proofs/).
+    pub fn is_stable(self) -> bool {
+        matches!(self, Kind::Elliptic | Kind::Coexistence)
+    }
 }
 
 /// On which side of the stable band −2 < Tr Q < 2.
@@ -116,9 +121,9 @@ impl Verdict {
         }
     }
 
-    /// Whether the powers of Q are bounded (theorem `bounded_iff` in proofs/).
+    /// See [`Kind::is_stable`].
     pub fn is_stable(self) -> bool {
-        matches!(self, Verdict::Elliptic | Verdict::Coexistence(_))
+        self.kind().is_stable()
     }
 }
 

@@ -7,7 +7,6 @@ use super::mass::{BITS, Mass, exact};
 use crate::number::{Ball, Rational, Sign};
 use crate::recheck::context::{Checked, holds, same};
 use crate::recheck::written::Ends;
-use crate::verdict::Kind;
 
 impl Claim {
     /// Every field of a scheme but `within_run`; `needs` is told to a millionth.
@@ -25,7 +24,7 @@ impl Claim {
             "band_edge is not that of the rows".into()
         })?;
         let third = exact(self.fastest()?.third.lo);
-        let stable = self.of(n).all(|row| matches!(*row.kind, Kind::Elliptic | Kind::Coexistence));
+        let stable = self.of(n).all(|row| row.kind.is_stable());
         let before = self.of(n).all(|row| row.first_lower.is_some_and(|edge| outer < exact(edge.lo)));
         let status = match () {
             () if !stable => "unstable",

@@ -41,8 +41,8 @@ pub enum Holds {
 impl From<Option<Kind>> for Holds {
     fn from(proven: Option<Kind>) -> Holds {
         match proven {
-            Some(Kind::Elliptic | Kind::Coexistence) => Holds::Stable,
-            Some(Kind::Parabolic | Kind::Hyperbolic) => Holds::Unstable,
+            Some(kind) if kind.is_stable() => Holds::Stable,
+            Some(_) => Holds::Unstable,
             None => Holds::NotTold,
         }
     }
