@@ -1,18 +1,18 @@
 //! Forces that are no gradient, as learned ones that are predicted directly: what the steps add to their own growth.
 //!
-//! x'' = −A x itself grows where A has eigenvalues that are not real and positive, whatever the steps. So no step is safe in the sense of other
-//! advice, and what is asked is how much the steps add. They add little where growth with them is proven to be at most twice that without: then no shorter
-//! step can halve it. Where the forces do not grow by themselves, that is stability; of motions too close together for doubles it is growth that takes more than
-//! 1 µs to be tenfold.
+//! x'' = −A x itself grows where A has eigenvalues that are not real and positive, whatever the steps. So no step is stable there, and the question is how
+//! much growth the steps add. They add *little* where growth with them is proven to be at most twice that without: then no shorter step can halve it.
+//! If the forces do not grow by themselves, little means stable. Where motions lie too close together for doubles to prove that, growth which takes more
+//! than 1 µs to be tenfold counts as little, too.
 //!
-//! **What is looked at** are points: the multiples of the step before the outermost one, which are all that can be chosen beside it, one after the other;
-//! each with all periods as given, and all shorter by the band. Between these points nothing is told.
+//! The advice rests on points: the multiples of the step before the outermost one, which are the outer steps that can be chosen beside it. Each is decided
+//! with the periods given and with all periods shorter by the band. Nothing is known of the steps between.
 
 use num_traits::{One, ToPrimitive, Zero};
 
 use super::levels::Scheme;
 use super::names::Names;
-use super::question::check_length;
+use super::question::{check_band, check_friction, check_length};
 use crate::error::{Error, Result};
 use crate::number::Rational;
 use crate::number::rational::{from_f64_exact, to_f64};
@@ -22,10 +22,11 @@ use crate::system::{Jacobians, Limits};
 /// Growth with the steps may be so many times that without: then no shorter step can halve it.
 pub const TIMES: f64 = 2.0;
 
-/// Nor is growth per fs below this asked about: an amplitude is tenfold in 1 µs, ln 10/10⁹ fs, and no run with such forces is as long.
+/// Growth per fs up to this is little, whatever the forces do by themselves: an amplitude takes 1 µs to be tenfold (ln 10/10⁹ fs), and no run with such
+/// forces is as long.
 const SLOW: f64 = 2.3e-9;
 
-/// The most multiples that are looked at: beyond these the step before the outermost one is so short that nobody means it.
+/// The most multiples that are decided: where a fast period has more, the step before the outermost one is far shorter than anyone chooses.
 const MOST_RUNGS: u64 = 200;
 
 /// A scheme is decided as given and within the band, and its friction looked for.
@@ -109,7 +110,7 @@ pub struct DirectFinding {
     pub ladder: Vec<Rung>,
 }
 
-/// All that is told of forces that are no gradient.
+/// The advice on forces that are no gradient.
 #[derive(Clone, Debug)]
 pub struct DirectFindings {
     /// |J − Jᵀ|/|J + Jᵀ| of each potential, rounded.
@@ -126,6 +127,17 @@ pub struct DirectFindings {
     pub schemes: Vec<DirectFinding>,
 }
 
+/// What is asked at every scheme, and what is known of the forces before.
+struct Asked<'a> {
+    band: &'a Rational,
+    length: Option<&'a Rational>,
+    friction: Option<&'a Rational>,
+    /// Growth of x'' = −A x per unit time of the matrices.
+    without: Option<(f64, f64)>,
+    /// The shortest period of the forces of the innermost step, in fs.
+    fastest: f64,
+}
+
 impl Direct {
     /// From Jacobians whose unit of time is so many fs.
     pub fn new(jacobians: Jacobians, unit: Rational, names: Names) -> Direct {
@@ -137,10 +149,13 @@ impl Direct {
     /// # Errors
     /// As [`Direct::advise`].
     pub fn cost(&self, schemes: &[Scheme]) -> Result<u64> {
-        let rungs = |scheme: &Scheme| self.multiples(scheme).map(|all| all.len() as u64 + OF_A_SCHEME);
+        self.cost_beside(schemes, self.fastest()?)
+    }
+
+    fn cost_beside(&self, schemes: &[Scheme], fastest: f64) -> Result<u64> {
         let of = |scheme: &Scheme| {
-            let each = self.at(scheme.steps())?.cost();
-            Ok(rungs(scheme)?.saturating_mul(each))
+            let points = multiples(scheme, fastest).len() as u64 + OF_A_SCHEME;
+            Ok(points.saturating_mul(self.at(scheme.steps())?.cost()))
         };
         schemes.iter().map(of).try_fold(0, |sum: u64, own: Result<u64>| Ok(sum.saturating_add(own?)))
     }
@@ -157,24 +172,23 @@ impl Direct {
         (length, friction): (Option<&Rational>, Option<&Rational>),
         limits: &Limits,
     ) -> Result<DirectFindings> {
-        if *band < Rational::zero() || *band >= Rational::one() {
-            return Err(Error::input("band", band, "write a part of the period from 0 to below 1, as 5%"));
-        }
+        check_band(band)?;
         if schemes.is_empty() {
             return Err(Error::missing("steps", "give the inner and the outer step, as 0.5fs,4fs"));
         }
-        if let Some(rate) = friction.filter(|rate| **rate <= Rational::zero()) {
-            return Err(Error::input("friction", rate, "a friction must be positive"));
-        }
+        friction.map_or(Ok(()), check_friction)?;
         length.map_or(Ok(()), check_length)?;
-        limits.allow(self.cost(schemes)?, || "advice on forces that are no gradient".into())?;
+        let fastest = self.fastest()?;
+        let cost = self.cost_beside(schemes, fastest)?;
+        limits.allow(cost, || "advice on forces that are no gradient".into())?;
         let without = self.jacobians.without_steps();
-        let find = |scheme: &Scheme| self.find(scheme, band, (length, friction), without);
+        let asked = Asked { band, length, friction, without, fastest };
+        let find = |scheme: &Scheme| self.find(scheme, &asked);
         Ok(DirectFindings {
             asymmetries: self.jacobians.asymmetries().to_vec(),
             accuracy: self.jacobians.accuracy(),
             without_steps: without.map(|rate| self.per_fs(rate)),
-            fastest: self.fastest()?,
+            fastest,
             band: band.clone(),
             length: length.cloned(),
             friction: friction.cloned(),
@@ -206,21 +220,11 @@ impl Direct {
         (outward(lo, -1e-15), outward(hi, 1e-15))
     }
 
-    /// The multiples that are looked at: up to a period of the fastest motion, and to the scheme's own outer step.
-    fn multiples(&self, scheme: &Scheme) -> Result<Vec<u64>> {
-        if scheme.steps().len() < 2 {
-            return Ok(Vec::new());
-        }
-        let own = (scheme.outer() / scheme.last_but_one()).ceil().to_u64().unwrap_or(MOST_RUNGS);
-        let period = (self.fastest()? / to_f64(scheme.last_but_one())).floor() as u64;
-        Ok((1..=period.max(own).min(MOST_RUNGS)).collect())
-    }
-
     /// What steps in fs do, with the periods given and within the band.
-    fn adds(&self, at: &Jacobians, band: &Rational, without: Option<(f64, f64)>) -> Result<[Adds; 2]> {
-        let longer = at.slowed(&(Rational::one() - band).recip())?;
+    fn adds(&self, at: &Jacobians, asked: &Asked) -> Result<[Adds; 2]> {
+        let longer = at.slowed(&(Rational::one() - asked.band).recip())?;
         let slow = SLOW * to_f64(&self.unit);
-        Ok([at, &longer].map(|own| adds(own.growth_rate(), without, slow)))
+        Ok([at, &longer].map(|own| adds(own.growth_rate(), asked.without, slow)))
     }
 
     fn is_damped(&self, at: &Jacobians, friction: Option<&Rational>) -> Option<bool> {
@@ -231,48 +235,36 @@ impl Direct {
         }
     }
 
-    fn rung(
-        &self,
-        scheme: &Scheme,
-        multiple: u64,
-        (band, friction): (&Rational, Option<&Rational>),
-        without: Option<(f64, f64)>,
-    ) -> Result<Rung> {
+    fn rung(&self, scheme: &Scheme, multiple: u64, asked: &Asked) -> Result<Rung> {
         let outer = scheme.last_but_one() * Rational::from_integer(multiple.into());
         let mut steps = scheme.steps().to_vec();
         *steps.last_mut().expect("at least one step") = outer.clone();
         let at = self.at(&steps)?;
-        let [adds, in_band] = self.adds(&at, band, without)?;
-        let (rate, is_damped) = (at.growth_rate(), self.is_damped(&at, friction));
+        let [adds, in_band] = self.adds(&at, asked)?;
+        let (rate, is_damped) = (at.growth_rate(), self.is_damped(&at, asked.friction));
         Ok(Rung { multiple, outer, rate: rate.map(|own| self.per_fs(own)), adds, in_band, is_damped })
     }
 
-    fn find(
-        &self,
-        scheme: &Scheme,
-        band: &Rational,
-        (length, friction): (Option<&Rational>, Option<&Rational>),
-        without: Option<(f64, f64)>,
-    ) -> Result<DirectFinding> {
+    fn find(&self, scheme: &Scheme, asked: &Asked) -> Result<DirectFinding> {
         let at = self.at(scheme.steps())?;
-        let rung = |multiple| self.rung(scheme, multiple, (band, friction), without);
-        let ladder = crate::parallel::try_map(&self.multiples(scheme)?, |&multiple| rung(multiple))?;
+        let multiples = multiples(scheme, asked.fastest);
+        let ladder = crate::parallel::try_map(&multiples, |&multiple| self.rung(scheme, multiple, asked))?;
         let up_to = |holds: fn(&Rung) -> bool| {
             ladder.iter().take_while(|own| holds(own)).last().map(|own| own.outer.clone())
         };
         let largest = up_to(|own| own.adds == Adds::Little && own.in_band == Adds::Little);
-        let third = from_f64_exact(self.fastest()? / 3.0).unwrap_or_else(Rational::zero);
+        let third = from_f64_exact(asked.fastest / 3.0).unwrap_or_else(Rational::zero);
         let below = |own: &&Rung| own.outer < third && largest.as_ref().is_some_and(|all| own.outer <= *all);
         let safe = ladder.iter().rfind(below).map(|own| own.outer.clone());
-        let [adds, in_band] = self.adds(&at, band, without)?;
+        let [adds, in_band] = self.adds(&at, asked)?;
         let rate = at.growth_rate().map(|own| self.per_fs(own));
-        let added = rate.zip(without.map(|own| self.per_fs(own)));
+        let added = rate.zip(asked.without.map(|own| self.per_fs(own)));
         let tenfold = |rate: f64| std::f64::consts::LN_10 / (rate * to_f64(scheme.outer()));
         let tenfold_steps = rate.filter(|own| own.0 > 0.0).map(|(lo, hi)| {
             // ln 10, the step, two products.
             (tenfold(hi) * (1.0 - 1e-15), tenfold(lo) * (1.0 + 1e-15))
         });
-        let run = length.map(|length| to_f64(&(length / scheme.outer())));
+        let run = asked.length.map(|length| to_f64(&(length / scheme.outer())));
         let within_run = run.zip(rate).and_then(|(run, (_, hi))| match tenfold_steps {
             Some((_, most)) if most <= run => Some(true),
             _ if tenfold(hi) * (1.0 - 1e-15) > run => Some(false),
@@ -287,7 +279,7 @@ impl Direct {
             within_accuracy: at.within_accuracy().map(|own| self.per_fs(own)),
             tenfold_steps,
             atoms: at.fastest().filter(|_| tenfold_steps.is_some()).map(|own| self.atoms(&own)),
-            is_damped: self.is_damped(&at, friction),
+            is_damped: self.is_damped(&at, asked.friction),
             masking: at.masking_friction().map(|own| own / to_f64(&self.unit)),
             within_run,
             largest,
@@ -303,6 +295,16 @@ impl Direct {
         let amplitudes = re.iter().zip(im).enumerate().map(|(i, (re, im))| root(i) * re.hypot(*im));
         self.names.atoms(&amplitudes.collect::<Vec<_>>())
     }
+}
+
+/// The multiples that are looked at: up to a period of the fastest motion, and to the scheme's own outer step.
+fn multiples(scheme: &Scheme, fastest: f64) -> Vec<u64> {
+    if scheme.steps().len() < 2 {
+        return Vec::new();
+    }
+    let own = (scheme.outer() / scheme.last_but_one()).ceil().to_u64().unwrap_or(MOST_RUNGS);
+    let period = (fastest / to_f64(scheme.last_but_one())).floor() as u64;
+    (1..=period.max(own).min(MOST_RUNGS)).collect()
 }
 
 fn adds(rate: Option<(f64, f64)>, without: Option<(f64, f64)>, slow: f64) -> Adds {

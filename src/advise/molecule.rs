@@ -5,7 +5,7 @@
 
 use std::sync::Arc;
 
-use num_traits::{One, ToPrimitive, Zero};
+use num_traits::{ToPrimitive, Zero};
 
 use super::answer::Status;
 use super::levels::{Scheme, longest_below};
@@ -13,7 +13,7 @@ use super::levers::{
     Bound, Lever, Levers, MOST_MASKED, RATIOS, Way, below_third, bounded, least, of_units, part,
 };
 use super::names::Names;
-use super::question::check_length;
+use super::question::{check_band, check_friction, check_length};
 use super::source::Source;
 use crate::error::{Error, Result};
 use crate::number::Rational;
@@ -181,9 +181,7 @@ impl Molecule {
         length: Option<&Rational>,
         friction: Option<&Rational>,
     ) -> Result<Findings> {
-        if *band < Rational::zero() || *band >= Rational::one() {
-            return Err(Error::input("band", band, "write a part of the period from 0 to below 1, as 5%"));
-        }
+        check_band(band)?;
         if schemes.is_empty() {
             return Err(Error::missing("steps", "give the inner and the outer step, as 0.5fs,4fs"));
         }
@@ -195,9 +193,7 @@ impl Molecule {
                 "no force of the shorter step acts on what is free: give it the bonds, or leave it out and ask `kickdrift system FILE`",
             ));
         };
-        if let Some(rate) = friction.filter(|rate| **rate <= Rational::zero()) {
-            return Err(Error::input("friction", rate, "a friction must be positive"));
-        }
+        friction.map_or(Ok(()), check_friction)?;
         length.map_or(Ok(()), check_length)?;
         let mut known: Vec<(Vec<Rational>, AtRatio)> = Vec::new();
         let mut found = Vec::new();

@@ -7,7 +7,7 @@ use super::mode::Mode;
 use crate::error::{Error, Result};
 use crate::number::{Laurent, Rational};
 use crate::schedule::Schedule;
-use crate::verdict::{Kind, Limits};
+use crate::verdict::Limits;
 
 /// Modes, the schemes that they are asked about, and how well the periods are known.
 #[derive(Clone, Debug)]
@@ -62,9 +62,7 @@ impl Question {
             let given = format!("{} and {clocks} of them", other.steps().len());
             return Err(Error::input("steps", given, "give every scheme as many steps"));
         }
-        if band < Rational::zero() || band >= Rational::one() {
-            return Err(Error::input("band", &band, "write a part of the period from 0 to below 1, as 5%"));
-        }
+        check_band(&band)?;
         let count = modes.len();
         for (i, mode) in modes.iter_mut().enumerate() {
             let place = if count < clocks { i } else { (i + clocks).saturating_sub(count) };
@@ -145,9 +143,7 @@ impl Question {
     /// # Errors
     /// A friction that is not positive.
     pub fn with_friction(mut self, rate: Rational) -> Result<Question> {
-        if rate <= Rational::zero() {
-            return Err(Error::input("friction", rate, "a friction must be positive"));
-        }
+        check_friction(&rate)?;
         self.friction = Some(rate);
         Ok(self)
     }
@@ -194,9 +190,22 @@ impl Question {
     }
 }
 
-/// Whether powers of the propagator stay bounded.
-pub(super) fn is_stable(kind: Kind) -> bool {
-    matches!(kind, Kind::Elliptic | Kind::Coexistence)
+/// # Errors
+/// A band outside [0, 1).
+pub(super) fn check_band(band: &Rational) -> Result<()> {
+    if *band >= Rational::zero() && *band < Rational::one() {
+        return Ok(());
+    }
+    Err(Error::input("band", band, "write a part of the period from 0 to below 1, as 5%"))
+}
+
+/// # Errors
+/// A friction that is not positive.
+pub(super) fn check_friction(rate: &Rational) -> Result<()> {
+    if *rate > Rational::zero() {
+        return Ok(());
+    }
+    Err(Error::input("friction", rate, "a friction must be positive"))
 }
 
 /// # Errors

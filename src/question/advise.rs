@@ -427,7 +427,7 @@ impl Question for Advise {
     #[cfg(feature = "figure")]
     fn figure(&self, answer: &Answer, _: &Work) -> Result<Option<Figure>> {
         let none = || {
-            let remedy = "of forces that are no gradient the table has the growth: draw `kickdrift system FILE --scan` in its place";
+            let remedy = "advice on forces that are no gradient is not drawn: `kickdrift system FILE --scan outer=LO..HI:BY` draws the growth";
             Error::input("output", "a figure", remedy)
         };
         report::figure(answer.safe.view(), "Which outer steps are safe").ok_or_else(none).map(Some)

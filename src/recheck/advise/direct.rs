@@ -2,13 +2,13 @@
 
 use serde_json::Value;
 
+use super::system::{LEFT, again};
 use crate::error::{Error, Result};
 use crate::number::Rational;
 use crate::number::rational::to_f64;
-use crate::question::{Advised, Question, Safe, Work};
+use crate::question::{Advised, Safe};
 use crate::recheck::again::{Left, Recheck};
 use crate::recheck::context::{Checked, Context, Outcome, REMEDY, holds};
-use crate::scene::Arrays;
 use crate::system::Jacobians;
 
 /// `kickdrift/advise-direct/1`.
@@ -34,14 +34,11 @@ fn growth(own: &Jacobians, unit: &Rational, steps: &[Rational], rate: (f64, f64)
 
 impl Recheck for Claim {
     const TABLE: &'static str = "rows";
-    const LEFT: &'static [Left] =
-        &[("input.file", "a name"), ("engine", "the text that it was read from is not part of the document")];
+    const LEFT: &'static [Left] = LEFT;
     type Found = Safe;
 
     fn again(&self, context: &Context) -> Result<(Value, Safe)> {
-        let arrays = Arrays::from(&context.options.folder);
-        let safe = self.input.answer(&Work { arrays: Some(&arrays), ..context.work() })?;
-        Ok((self.input.document(&safe).value(), safe))
+        again(&self.input, context)
     }
 
     fn check(&self, safe: Safe, context: &Context) -> Result<Outcome> {

@@ -9,6 +9,7 @@
 //! | `mass` | one mass on its clocks: trace, friction, first region |
 //! | `scheme`, `row` | what is told of a scheme, of a mode at a scheme |
 //! | `lever` | what would let the step grow |
+//! | `system` | advice on a system's file, computed again |
 //! | `direct` | advice on forces that are no gradient: computed again, its growth by the dense full period |
 //! | `molecule` | advice on Hessians: computed again, its proofs and growth by another route |
 
@@ -19,6 +20,7 @@ mod mass;
 mod molecule;
 mod row;
 mod scheme;
+mod system;
 
 pub use claim::Claim;
 pub use direct::Claim as Direct;

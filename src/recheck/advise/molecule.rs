@@ -5,14 +5,15 @@ use std::borrow::Cow;
 use num_traits::Zero;
 use serde_json::Value;
 
+use super::system::{LEFT, again};
 use crate::advise::{Finding, MOST_PRODUCTS, Scheme};
 use crate::error::{Error, Result};
 use crate::number::Rational;
 use crate::number::rational::{from_f64_exact, to_f64};
-use crate::question::{Advised, Question, Safe, Work};
+use crate::question::{Advised, Safe};
 use crate::recheck::again::{Left, Recheck};
 use crate::recheck::context::{Checked, Context, Outcome, REMEDY, holds, too_costly};
-use crate::scene::{Arrays, SystemScene};
+use crate::scene::SystemScene;
 use crate::system::levels::{Hessians, Near};
 use crate::system::{Holds, Limits, Potential, System, decide_system};
 
@@ -192,14 +193,11 @@ const ROUTE: &str = "the ends of the first region and of the band by the action 
 
 impl Recheck for Claim {
     const TABLE: &'static str = "rows";
-    const LEFT: &'static [Left] =
-        &[("input.file", "a name"), ("engine", "the text that it was read from is not part of the document")];
+    const LEFT: &'static [Left] = LEFT;
     type Found = Safe;
 
     fn again(&self, context: &Context) -> Result<(Value, Safe)> {
-        let arrays = Arrays::from(&context.options.folder);
-        let safe = self.input.answer(&Work { arrays: Some(&arrays), ..context.work() })?;
-        Ok((self.input.document(&safe).value(), safe))
+        again(&self.input, context)
     }
 
     fn check(&self, safe: Safe, context: &Context) -> Result<Outcome> {

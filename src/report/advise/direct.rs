@@ -1,4 +1,4 @@
-//! What is said of forces that are no gradient: lines to act on, then tables.
+//! Advice on forces that are no gradient: lines to act on, then tables.
 
 use super::lines::{self, advised, read_from};
 use super::tables::{self, enclosed, for_people, published};
