@@ -17,6 +17,16 @@ pub struct Margins {
     pub of_middle: f64,
     /// In all of it.
     pub of_box: f64,
+    /// What of their difference is not affine in the box.
+    pub bent: f64,
+}
+
+impl Margins {
+    /// About the share of the box's sides at which it would be proven: m > l x + e x², with what is affine and what is not.
+    pub fn share(&self) -> f64 {
+        let affine = (self.of_middle - self.of_box - self.bent).max(0.0);
+        2.0 * self.of_middle / (affine + (affine * affine + 4.0 * self.of_middle * self.bent).sqrt())
+    }
 }
 
 /// The vectors (x, y) along the attracting and the repelling direction of a hyperbolic matrix of determinant 1.
@@ -123,6 +133,6 @@ impl Cone {
         }
         let rounding = 1e-14 * map.size();
         let error = condition * (map.error + rounding) * UP;
-        Margins { of_middle, of_box: least.into_iter().fold(f64::INFINITY, f64::min) - error }
+        Margins { of_middle, of_box: least.into_iter().fold(f64::INFINITY, f64::min) - error, bent: error }
     }
 }

@@ -102,6 +102,13 @@ impl Family {
         self
     }
 
+    /// In the middle of the box alone, and without what is not known: nothing is proven with it.
+    pub fn keep_middle(&mut self) {
+        self.slopes = [[[0.0; 4]; SLOPES]; 2];
+        self.lengths[1] = 1;
+        self.error = 0.0;
+    }
+
     /// The coefficients of V.
     pub fn values(&self) -> &[Matrix] {
         &self.values[..self.lengths[0]]

@@ -257,7 +257,7 @@ fn powers(psi: &Affine) -> Option<(Vec<Affine>, f64)> {
 }
 
 /// 2 log₂ x, rounded up; 0 below 1.
-fn bisections(x: f64) -> u32 {
+pub fn bisections(x: f64) -> u32 {
     let (mut square, mut count) = (x * x, 0);
     while square > 1.0 && count < 60 {
         square *= 0.5;

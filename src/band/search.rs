@@ -113,8 +113,8 @@ impl Window {
         prove(&self.bases, step)
     }
 
-    /// Bisects the window, boxes first that promise the most area a trial, until so many boxes were tried, or boxes of a share of the
-    /// window are certified; `tell` hears of so many more that were tried. The same result on any number of threads.
+    /// Bisects the window until so many boxes were tried, or boxes of a share of the window are certified. First come the boxes of which
+    /// the largest parts may soon be proven. `tell` hears of so many more that were tried. The same result on any number of threads.
     ///
     /// # Errors
     /// Where the work was stopped.

@@ -2,9 +2,9 @@
 
 use super::UP;
 use super::affine::Affine;
-use super::cone::Cone;
+use super::cone::{Cone, Margins};
 use super::family::{Cut, Family};
-use super::frame::{Candidate, Frame};
+use super::frame::{Candidate, Frame, bisections};
 use crate::number::U;
 
 /// The most levels of one path, and forks of it where the box has ratios of both kinds.
@@ -20,6 +20,12 @@ const NEAR: u32 = 3;
 
 /// From so many kicks over the strength on, a map that nowhere is hyperbolic shows that there is no band.
 const ENOUGH: f64 = 1.5;
+
+/// Levels that are followed in the middle of a box alone once it is too large for its bounds, and about how many bisections it is from
+/// being proven where one of them has a cone, and where none has.
+const FURTHER: u32 = 6;
+const NEAREST: u32 = 3;
+const UNSEEN: u32 = 4;
 
 /// Beyond this |α| the coordinates that no angle enters are tried, too: where kicks are strong, turning frames are not near 1.
 const STRONG: f64 = 0.3;
@@ -58,6 +64,29 @@ impl Length {
     fn reach(self, tau: &Affine) -> f64 {
         (self.1 as f64).abs() * tau.reach() * UP
     }
+
+    /// r = short/long, of this length and a shorter one. Their determinant D is ±1, so r(τ) − r(τ₀) = D (τ − τ₀)/(long(τ) long(τ₀)).
+    fn share(self, short: Length, tau: &Affine) -> Option<Affine> {
+        let [(length, long_off), (rest, rest_off)] = [self, short].map(|own| own.at(tau.center));
+        let moved = self.reach(tau);
+        let least = (length - long_off - moved) * (1.0 - 4.0 * U);
+        if least.is_nan() || least <= 0.0 {
+            return None;
+        }
+        let cross = |x: i64, y: i64| i128::from(x) * i128::from(y);
+        let determinant = (cross(short.1, self.0) - cross(short.0, self.1)) as f64;
+        let (center, square) = (rest / length, length * length);
+        let by = determinant / square;
+        // 1/long(τ) − 1/long(τ₀), and what the lengths round.
+        let bent = tau.reach() * (moved + 4.0 * long_off) / (square * least);
+        let off = (rest_off + center.abs() * long_off) / least;
+        let rounding = 8.0 * U * (center.abs() + by.abs() * tau.reach());
+        Some(Affine {
+            center,
+            slopes: tau.slopes.map(|slope| slope * by),
+            error: (by.abs() * tau.error + bent + off + rounding) * (1.0 + 1e-9),
+        })
+    }
 }
 
 /// Both return maps, on 0..a and on a..a + b.
@@ -78,6 +107,8 @@ struct Trial {
     /// Shares of both steps in what is not affine.
     bending: [f64; 2],
     forks: usize,
+    /// About so many bisections until a level proves it.
+    to_go: u32,
 }
 
 impl Frame {
@@ -90,10 +121,11 @@ impl Frame {
             }
         };
         let Some(turning) = &self.turning else {
-            if self.is_strong() && self.try_plain().is_none() {
-                return Found::Certified;
-            }
-            return Found::Open { direction: 0, to_go: 1 };
+            return match self.is_strong().then(|| self.try_plain()) {
+                Some(None) => Found::Certified,
+                Some(Some(trial)) => Found::Open { direction: 0, to_go: trial.to_go },
+                None => Found::Open { direction: 0, to_go: 1 },
+            };
         };
         for candidate in turning.candidates() {
             if candidate.to_go > NEAR {
@@ -102,7 +134,7 @@ impl Frame {
             }
             match self.try_family(&candidate) {
                 None => return Found::Certified,
-                Some(trial) if trial.is_open => keep(trial.direction, candidate.to_go),
+                Some(trial) if trial.is_open => keep(trial.direction, candidate.to_go.max(trial.to_go)),
                 Some(_) => {}
             }
         }
@@ -110,7 +142,7 @@ impl Frame {
             match self.try_plain() {
                 None => return Found::Certified,
                 Some(trial) if trial.is_open && found == Found::Dropped => {
-                    return Found::Open { direction: trial.direction, to_go: 1 };
+                    return Found::Open { direction: trial.direction, to_go: trial.to_go };
                 }
                 Some(_) => {}
             }
@@ -180,7 +212,13 @@ impl Frame {
     /// Level by level. Where the box has ratios of both kinds, either way is to prove it: each holds for the ratios of its kind.
     fn descend(&self, mut level: Level, mut depth: usize, trial: &mut Trial) -> bool {
         loop {
-            if !level.is_useful() || depth > LEVELS {
+            if depth > LEVELS {
+                return false;
+            }
+            if !level.is_useful() {
+                if !trial.is_settled {
+                    self.look_further(level, trial);
+                }
                 return false;
             }
             if level.has_cone(trial) {
@@ -196,60 +234,53 @@ impl Frame {
             let reach = difference.reach(&self.tau) + rounding;
             let is_one_kind = center.abs() > reach;
             if is_one_kind {
-                let Some(next) = self.next(&level, center > 0.0, difference) else { return false };
+                let Some(next) = level.next(&self.tau, center > 0.0, difference) else { return false };
                 level = next;
                 continue;
             }
             trial.forks += 1;
             return trial.forks <= FORKS
                 && [true, false].into_iter().all(|left_is_longer| {
-                    let next = self.next(&level, left_is_longer, difference);
+                    let next = level.next(&self.tau, left_is_longer, difference);
                     next.is_some_and(|next| self.descend(next, depth, trial))
                 });
         }
     }
 
+    /// From a level on that bounds of the box are too wide for: whether its middle has a cone a few levels further, and so the box parts
+    /// that will be proven. Where to look next rests on it, and no proof.
+    fn look_further(&self, mut level: Level, trial: &mut Trial) {
+        let tau = Affine::constant(self.tau.center, 0.0);
+        for steps in 1..=FURTHER {
+            let Some(difference) = level.lengths[0].minus(level.lengths[1]) else { return };
+            let (center, _) = difference.at(tau.center);
+            level.maps.iter_mut().for_each(Family::keep_middle);
+            let Some(next) = level.next(&tau, center > 0.0, difference) else { return };
+            level = next;
+            if level.margins().is_some_and(|margins| margins.iter().all(|margin| margin.of_middle > 0.0)) {
+                (trial.to_go, trial.is_settled) = (trial.to_go.min(NEAREST + steps / 2), true);
+                return;
+            }
+        }
+    }
+}
+
+impl Level {
     /// One step of Euclid where the left interval is the longer one, or the right one.
-    fn next(&self, level: &Level, left_is_longer: bool, difference: Length) -> Option<Level> {
-        let ([left, right], [a, b]) = (&level.maps, level.lengths);
+    fn next(&self, tau: &Affine, left_is_longer: bool, difference: Length) -> Option<Level> {
+        let ([left, right], [a, b]) = (&self.maps, self.lengths);
         Some(if left_is_longer {
-            let share = self.share(a, b)?;
+            let share = a.share(b, tau)?;
             let after = right.after(&left.part(Cut::Last, &share));
             Level { maps: [left.part(Cut::Before, &share), after], lengths: [difference, b] }
         } else {
-            let share = self.share(b, a)?;
+            let share = b.share(a, tau)?;
             let after = right.part(Cut::Last, &share).after(left);
             let rest = Length(-difference.0, -difference.1);
             Level { maps: [after, right.part(Cut::Before, &share)], lengths: [a, rest] }
         })
     }
 
-    /// r = short/long. Their determinant D is ±1, so r(τ) − r(τ₀) = D (τ − τ₀)/(long(τ) long(τ₀)).
-    fn share(&self, long: Length, short: Length) -> Option<Affine> {
-        let (tau, [(length, long_off), (rest, rest_off)]) =
-            (&self.tau, [long, short].map(|own| own.at(self.tau.center)));
-        let moved = long.reach(tau);
-        let least = (length - long_off - moved) * (1.0 - 4.0 * U);
-        if least.is_nan() || least <= 0.0 {
-            return None;
-        }
-        let cross = |x: i64, y: i64| i128::from(x) * i128::from(y);
-        let determinant = (cross(short.1, long.0) - cross(short.0, long.1)) as f64;
-        let (center, square) = (rest / length, length * length);
-        let by = determinant / square;
-        // 1/long(τ) − 1/long(τ₀), and what the lengths round.
-        let bent = tau.reach() * (moved + 4.0 * long_off) / (square * least);
-        let off = (rest_off + center.abs() * long_off) / least;
-        let rounding = 8.0 * U * (center.abs() + by.abs() * tau.reach());
-        Some(Affine {
-            center,
-            slopes: tau.slopes.map(|slope| slope * by),
-            error: (by.abs() * tau.error + bent + off + rounding) * (1.0 + 1e-9),
-        })
-    }
-}
-
-impl Level {
     fn is_useful(&self) -> bool {
         self.maps.iter().all(|map| map.error < MOST_ERROR && map.size() < MOST_SIZE)
     }
@@ -264,19 +295,28 @@ impl Level {
         [0, 1].map(|direction| self.maps.iter().map(|map| map.moved_by(direction)).sum())
     }
 
-    /// Whether one cone serves both maps, for all offsets and all of the box. Where only its middle has one, the step is told that moves
-    /// the maps more.
-    fn has_cone(&self, trial: &mut Trial) -> bool {
+    /// What one cone leaves of both maps.
+    fn margins(&self) -> Option<[Margins; 2]> {
         let maps = [&self.maps[0], &self.maps[1]];
-        let Some(cone) = Cone::candidate(maps) else { return false };
-        let margins = maps.map(|map| cone.margins(map));
+        let cone = Cone::candidate(maps)?;
+        Some(maps.map(|map| cone.margins(map)))
+    }
+
+    /// Whether one cone serves both maps, for all offsets and all of the box. Where only its middle has one, the trial learns how much
+    /// smaller the box has to be, and the step that moves the maps more.
+    fn has_cone(&self, trial: &mut Trial) -> bool {
+        let Some(margins) = self.margins() else { return false };
         if margins.iter().all(|margin| margin.of_box > 0.0) {
             return true;
         }
-        if !trial.is_settled && margins.iter().all(|margin| margin.of_middle > 0.0) {
-            let (moves, bent) = (self.moves(), self.maps[0].error + self.maps[1].error);
-            let [first, second] = [0, 1].map(|i| moves[i] + bent * trial.bending[i]);
-            (trial.direction, trial.is_settled) = (usize::from(second > first), true);
+        if margins.iter().all(|margin| margin.of_middle > 0.0) {
+            let share = margins.iter().map(Margins::share).fold(1.0, f64::min);
+            trial.to_go = trial.to_go.min(bisections(1.0 / share).max(1));
+            if !trial.is_settled {
+                let (moves, bent) = (self.moves(), self.maps[0].error + self.maps[1].error);
+                let [first, second] = [0, 1].map(|i| moves[i] + bent * trial.bending[i]);
+                (trial.direction, trial.is_settled) = (usize::from(second > first), true);
+            }
         }
         false
     }
@@ -289,6 +329,14 @@ impl Level {
 
 impl Trial {
     fn new(enough: f64, direction: usize) -> Self {
-        Trial { enough, is_open: true, direction, is_settled: false, bending: [1.0, 0.0], forks: 0 }
+        Trial {
+            enough,
+            is_open: true,
+            direction,
+            is_settled: false,
+            bending: [1.0, 0.0],
+            forks: 0,
+            to_go: UNSEEN,
+        }
     }
 }
