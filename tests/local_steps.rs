@@ -189,7 +189,7 @@ fn what_is_no_scheme_is_refused_by_the_name_of_its_field() {
     let two_steps = json!([{"step": 1, "springs": [[0, 1, 1]]}, {"step": 2, "springs": [[0, null, 1]]}]);
     let nested = json!([{"fine": [1], "substeps": 2}, {"fine": [0], "substeps": 2}]);
     for (changes, field) in [
-        (vec![("scheme", json!("newmark"))], "scheme"),
+        (vec![("scheme", json!("leapfrog"))], "scheme"),
         (vec![("scheme", Value::Null)], "levels"),
         (vec![("levels", Value::Null)], "levels"),
         (vec![("levels", json!([]))], "levels"),

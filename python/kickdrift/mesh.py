@@ -2,7 +2,7 @@
 
 ``M x'' + K x = 0`` for a scalar wave of density ``r`` and speed ``c``: ``M`` holds the integrals of ``r``, lumped,
 ``K`` those of ``r c^2 grad u grad v``. Elements whose own Courant limit is short take substeps (leapfrog with local
-time steps, Diaz and Grote 2009).
+time steps, Diaz and Grote 2009), or kick with steps of their own (AVI, Lew, Marsden, Ortiz and West 2003).
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from math import factorial, prod
 from os import PathLike, fspath
+from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
@@ -20,7 +21,7 @@ import numpy.typing as npt
 
 from kickdrift._errors import KickdriftError, needs, shown
 from kickdrift._numbers import Exact, doubles, frozen, number, text
-from kickdrift._system import System, _at, _compressed
+from kickdrift._system import System, SystemVerdict, _at, _compressed
 
 __all__ = ["Waves", "waves"]
 
@@ -45,6 +46,10 @@ class Waves:
         The least of ``limits * substeps``: the step that the elements' own limits suggest, which no theorem allows.
     nodes : array of integers, shape (n,)
         The node of the mesh that each degree of freedom is.
+    points : array of doubles, shape (nodes, 1 to 3)
+        Where the nodes of the mesh are.
+    cells : array of integers, shape (elements, 2 to 4)
+        The nodes of each element.
     """
 
     system: System
@@ -52,6 +57,65 @@ class Waves:
     substeps: npt.NDArray[np.int64]
     cfl: float
     nodes: npt.NDArray[np.int64]
+    points: npt.NDArray[np.float64]
+    cells: npt.NDArray[np.int64]
+
+    def save_modes(self, path: str | PathLike[str], verdict: SystemVerdict) -> Path:
+        """Write the growing modes on the mesh, for ParaView and its like; rounded.
+
+        Each mode that a verdict tells is a field of the nodes, ``mode_1`` and so on by decreasing growth, 0 where nodes
+        stand still, its largest entry 1; where two modes collide also ``quadrature_1``, the same a quarter turn of the
+        beat later. ``substeps`` is a field of the elements.
+
+        Parameters
+        ----------
+        path : str or path
+            Its end names the form, one of meshio's: ``.vtu``, ``.vtk``, ``.xdmf``.
+        verdict : SystemVerdict
+            Of this system, unstable: ``waves.system.decide()``.
+
+        Returns
+        -------
+        Path
+            That of the file.
+
+        Raises
+        ------
+        KickdriftError
+            No mode that grows, a verdict on another system, a form that meshio does not write.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> from pathlib import Path
+        >>> import kickdrift.mesh
+        >>> string = kickdrift.mesh.waves(([[0.0], [1.0], [1.5], [2.0]], [[0, 1], [1, 2], [2, 3]]), step=2)
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     string.save_modes(Path(folder, "modes.vtu"), string.system.decide()).name
+        'modes.vtu'
+        """
+        meshio = _meshio()
+        modes = [mode for part in verdict.data["parts"] for mode in part["instabilities"]]
+        modes.sort(key=lambda mode: -abs(complex(mode["lambda"]["re"], mode["lambda"]["im"])))
+        if not modes:
+            raise KickdriftError("verdict", shown(verdict), "tells no mode that grows: choose an unstable step")
+        if any(len(mode["shape"]) != len(self.nodes) for mode in modes):
+            remedy = f"is of another system: ask this one, of {len(self.nodes)} degrees of freedom"
+            raise KickdriftError("verdict", shown(verdict), remedy)
+        fields = {}
+        for count, mode in enumerate(modes, 1):
+            for name in ("mode", "quadrature") if any(mode["quadrature"]) else ("mode",):
+                fields[f"{name}_{count}"] = own = np.zeros(len(self.points))
+                own[self.nodes] = mode["shape" if name == "mode" else name]
+        flat = np.pad(self.points, ((0, 0), (0, 3 - self.points.shape[1])))
+        kind = next(name for name, count in _SIMPLICES.items() if count == self.cells.shape[1])
+        mesh = meshio.Mesh(flat, [(kind, self.cells)], point_data=fields, cell_data={"substeps": [self.substeps]})
+        try:
+            mesh.write(fspath(path))
+        except (meshio.WriteError, meshio.ReadError, KeyError) as cause:
+            remedy = "has a form that meshio does not write: end it in .vtu"
+            raise KickdriftError("path", fspath(path), remedy) from cause
+        return Path(path)
 
 
 def waves(
@@ -59,6 +123,7 @@ def waves(
     *,
     speed: npt.ArrayLike = 1.0,
     density: npt.ArrayLike = 1.0,
+    scheme: str = "lts",
     substeps: int | Sequence[int] = 2,
     step: Exact | None = None,
     courant: float = 0.5,
@@ -74,8 +139,12 @@ def waves(
         the highest dimension. Or points, shape (nodes, 1 to 3), and cells, shape (elements, 2 to 4), counted from 0.
     speed, density : float or array, shape (elements,)
         Of the wave, and of what it moves through; the unit of time follows from these.
+    scheme : "lts" or "avi"
+        Leapfrog with local time steps, where small elements make all their nodes fine; or asynchronous variational
+        integrators, where they kick with a step of their own. The nodes' subcycling with held velocities is for small
+        systems, as ``System({..., "scheme": "newmark", ...})``.
     substeps : int or sequence of int
-        In a step of the level above, the coarsest level first: 2 or 3, or (2, 2).
+        In a step of the level above, the coarsest level first: 2 or 3, or (2, 2); of AVI one number above 1.
     step : Exact, optional
         Of the coarse elements, rational.
     courant : float
@@ -111,6 +180,10 @@ def waves(
     factors = [int(own) for own in (substeps if isinstance(substeps, Sequence) else [substeps])]
     if not factors or min(factors) < 1:
         raise KickdriftError("substeps", shown(substeps), "give 1 or more, or one number for each level")
+    if scheme not in ("lts", "avi"):
+        raise KickdriftError("scheme", shown(scheme), "give lts or avi")
+    if scheme == "avi" and (len(factors) > 1 or factors[0] < 2):
+        raise KickdriftError("substeps", shown(substeps), "of avi give one number above 1: two classes of elements")
     celerity, rho = (_each(name, own, len(cells)) for name, own in (("speed", speed), ("density", density)))
     volume, gradients = _gradients(points, cells)
     count = cells.shape[1]
@@ -138,18 +211,25 @@ def waves(
     place = np.full(len(points), -1)
     place[nodes] = np.arange(len(nodes))
     masses = np.bincount(cells.ravel(), np.repeat(rho * volume / count, count), len(points))[nodes]
-    matrix = _assembled(place[cells], stiffness, len(nodes))
-    at, arrays = _compressed(0, "stiffness", matrix) or ({}, {})
-    arrays["masses"] = doubles("masses", masses)
     document: dict[str, Any] = {"title": title} if title else {}
-    document |= {"masses": _at("masses"), "scheme": "lts", "levels": []}
-    for level, (fine, factor) in enumerate(levels):
-        moving = place[np.unique(cells[fine])]
-        arrays[f"fine{level}"] = doubles("fine", moving[moving >= 0].astype(np.float64))
-        document["levels"].append({"fine": _at(f"fine{level}"), "substeps": factor})
+    document["masses"] = _at("masses")
+    arrays = {"masses": doubles("masses", masses)}
     dt = text("step", step) if step is not None else text("courant", _share(courant, cfl))
-    document["potentials"] = [{"step": dt, "stiffness": at}]
-    return Waves(System(MappingProxyType(document), arrays), frozen(limits), frozen(own), cfl, frozen(nodes))
+    potentials = []
+    for k, (few, factor) in enumerate([(own > 1, factors[0]), (own == 1, 1)] if scheme == "avi" else [(own > 0, 1)]):
+        matrix = _assembled(place[cells[few]], stiffness[few], len(nodes))
+        at, matrices = _compressed(k, "stiffness", matrix) or ({}, {})
+        arrays |= matrices
+        potentials.append({"step": text("step", Fraction(dt) / factor), "stiffness": at})
+    if scheme == "lts":
+        document |= {"scheme": "lts", "levels": []}
+        for level, (fine, factor) in enumerate(levels):
+            moving = place[np.unique(cells[fine])]
+            arrays[f"fine{level}"] = doubles("fine", moving[moving >= 0].astype(np.float64))
+            document["levels"].append({"fine": _at(f"fine{level}"), "substeps": factor})
+    document["potentials"] = potentials
+    system = System(MappingProxyType(document), arrays)
+    return Waves(system, frozen(limits), frozen(own), cfl, frozen(nodes), frozen(points), frozen(cells))
 
 
 def _share(courant: float, cfl: float) -> Fraction:
@@ -160,12 +240,17 @@ def _share(courant: float, cfl: float) -> Fraction:
     return Fraction(f"{share * cfl:.6g}")
 
 
+def _meshio() -> Any:
+    try:
+        import meshio
+    except ImportError:
+        raise needs("mesh", "meshio") from None
+    return meshio
+
+
 def _simplices(mesh: Any) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int64]]:
     if isinstance(mesh, str | PathLike):
-        try:
-            import meshio
-        except ImportError:
-            raise needs("mesh", "meshio") from None
+        meshio = _meshio()
         try:
             mesh = meshio.read(fspath(mesh))
         except (OSError, SystemExit, ValueError, meshio.ReadError) as cause:

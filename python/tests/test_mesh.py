@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
@@ -86,6 +87,85 @@ def test_a_mesh_of_gmsh_is_the_same_as_its_arrays(tmp_path: Path) -> None:
         assert own.system.decide().stable == other.system.decide().stable
 
 
+@pytest.mark.parametrize("form", ["vtu", "vtk"])
+def test_modes_on_the_mesh_are_read_back_with_their_numbers(tmp_path: Path, form: str) -> None:
+    meshio = pytest.importorskip("meshio")
+    waves = kickdrift.mesh.waves(refined(), substeps=2, courant=1.05)
+    verdict = waves.system.decide()
+    assert verdict.stable is False
+    path = waves.save_modes(tmp_path / f"modes.{form}", verdict)
+    found = meshio.read(path)
+    points, cells = refined()
+    assert np.array_equal(found.points[:, :2], points) and not found.points[:, 2].any()
+    assert np.array_equal(found.cells_dict["triangle"], cells)
+    assert np.array_equal(found.cell_data["substeps"][0], waves.substeps)
+    modes = [own for part in verdict.data["parts"] for own in part["instabilities"]]
+    assert modes and {f"mode_{n}" for n in range(1, len(modes) + 1)} <= set(found.point_data)
+    rates = [abs(complex(own["lambda"]["re"], own["lambda"]["im"])) for own in modes]
+    worst = modes[int(np.argmax(rates))]
+    field = found.point_data["mode_1"]
+    assert np.array_equal(field[waves.nodes], worst["shape"])
+    assert np.abs(field).max() == 1 and not np.delete(field, waves.nodes).any()
+    # It is what grows: an eigenvector of the scheme's step to the accuracy of its iteration.
+    a, fine = dense(waves)
+    dt = float(Fraction(waves.system.document["potentials"][0]["step"]))
+    y, d = np.asarray(worst["shape"]), dt / 2
+    still = a @ ((1 - fine) * y)
+    q = y - d * d / 2 * (still + a @ (fine * y))
+    turned = 2 * (2 * q - y - d * d * (still + a @ (fine * q)))
+    quotient = (y @ turned) / (y @ y)
+    assert np.linalg.norm(turned - quotient * y) < 0.1 * np.linalg.norm(turned) and abs(quotient) > 2
+
+
+def test_modes_of_what_does_not_grow_or_of_another_system_are_refused(tmp_path: Path) -> None:
+    pytest.importorskip("meshio")
+    waves = kickdrift.mesh.waves(refined(), substeps=2, courant=0.5)
+    for verdict in (
+        waves.system.decide(),
+        kickdrift.mesh.waves(square(np.linspace(0, 1, 5)), courant=2).system.decide(),
+    ):
+        with pytest.raises(kd.KickdriftError) as error:
+            waves.save_modes(tmp_path / "modes.vtu", verdict)
+        assert error.value.field == "verdict"
+    worse = kickdrift.mesh.waves(refined(), substeps=2, courant=1.05)
+    with pytest.raises(kd.KickdriftError) as error:
+        worse.save_modes(tmp_path / "modes.strange", worse.system.decide())
+    assert error.value.field == "path"
+
+
+def element_by_element(waves: kickdrift.mesh.Waves, dt: float, p: int) -> float:
+    """The largest multiplier of a period of AVI, each class of elements kicking when its own step is over."""
+    n, arrays = len(waves.nodes), waves.system.arrays
+    fast, slow = (np.zeros((n, n)), np.zeros((n, n)))
+    for k, own in enumerate((fast, slow)):
+        ends = arrays[f"hessian{k}.indptr"].astype(int)
+        for i in range(n):
+            at = slice(ends[i], ends[i + 1])
+            own[i, arrays[f"hessian{k}.indices"][at].astype(int)] = arrays[f"hessian{k}.data"][at]
+    fast, slow = (own / arrays["masses"][:, None] for own in (fast, slow))
+    x, v = np.eye(n, 2 * n), np.eye(n, 2 * n, n)
+    for tick in range(p):
+        v = v - dt / p * (fast @ x) - (dt * (slow @ x) if tick == 0 else 0)
+        x = x + dt / p * v
+    return float(np.abs(np.linalg.eigvals(np.concatenate([x, v]))).max())
+
+
+def test_avi_on_a_mesh_is_stable_where_its_elements_run_are() -> None:
+    lts = kickdrift.mesh.waves(refined(), substeps=2)
+    told = []
+    # Of sparse stiffnesses the first stable region is told, and here nothing above it.
+    for courant in (0.4, 0.6, 0.8, 0.95, 1.1, 1.6):
+        waves = kickdrift.mesh.waves(refined(), scheme="avi", substeps=2, courant=courant)
+        assert np.array_equal(waves.substeps, lts.substeps) and waves.cfl == lts.cfl
+        step = Fraction(waves.system.document["potentials"][1]["step"])
+        largest = element_by_element(waves, float(step), 2)
+        verdict = waves.system.decide()
+        told.append(verdict.proven)
+        if verdict.proven:
+            assert verdict.stable == (largest < 1 + 1e-7), (courant, largest)
+    assert told[:2] == [True, True]
+
+
 @pytest.mark.parametrize(
     ("change", "field"),
     [
@@ -95,6 +175,9 @@ def test_a_mesh_of_gmsh_is_the_same_as_its_arrays(tmp_path: Path) -> None:
         ({"courant": -1}, "courant"),
         ({"fixed": "edge"}, "fixed"),
         ({"fixed": [10**6]}, "fixed"),
+        ({"scheme": "newmark"}, "scheme"),
+        ({"scheme": "avi", "substeps": (2, 2)}, "substeps"),
+        ({"scheme": "avi", "substeps": 1}, "substeps"),
     ],
 )
 def test_what_makes_no_sense_is_refused(change: dict[str, object], field: str) -> None:

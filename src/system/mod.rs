@@ -23,7 +23,7 @@
 //! | `levels` | two levels of dense stiffnesses in doubles, with margins |
 //! | `verdict` | the verdict, part by part, and what is known beside it |
 //! | `jacobian` | forces that are no gradient: Jacobians that are not symmetric |
-//! | `lts` | leapfrog with local time steps, as codes for waves have it |
+//! | `lts` | local time steps, as codes for waves have them: leapfrog, Newmark subcycling, AVI |
 //! | `geometry` | where degrees of freedom are in space |
 //! | `friction` | O-steps between the kicks: spectral radius, the friction that masks a resonance |
 //! | `vary` | maps; the unstable intervals of one number |
@@ -69,7 +69,7 @@ pub use jacobian::{Jacobians, NoGradient};
 pub use linear::sparse::Symmetric;
 pub use linear::system::{Potential, System};
 pub use linear::{builders, mesh};
-pub use lts::{Growth, Level, LocalSteps, SchemeSummary, SparseSteps};
+pub use lts::{Growth, Level, LocalSteps, Scheme, SchemeSummary, SparseSteps, Subcycles};
 pub use model::{Body, ManyLevels, MeasuredSystem, Model, Number, Oscillator, SparseSystem, TwoLevels};
 pub use pi::{PiPotential, PiSystem};
 pub use single::clocks::{ManyClocks, families, shortest_families, shortest_family};

@@ -3,6 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
 
+use super::local;
 use crate::avi::Run;
 use crate::number::{Laurent, Rational};
 use crate::question::Displacement;
@@ -20,7 +21,8 @@ pub fn traces(scene: &SystemScene, analysis: &Analysis) -> Checked {
         // Large parts tell the fastest one alone: there is no sum to compare.
         return Ok(());
     }
-    let jacobians = scene.model().jacobians();
+    let subcycles = scene.subcycles().filter(|_| scene.is_subcycled());
+    let jacobians = scene.model().jacobians().filter(|_| subcycles.is_none());
     // Their period is one without rigid motions.
     let rigid = if jacobians.is_some() { 0 } else { analysis.rigid_modes.len() };
     let mut turns = vec![Complex64::new(2.0, 0.0); rigid];
@@ -34,9 +36,10 @@ pub fn traces(scene: &SystemScene, analysis: &Analysis) -> Checked {
             power + power.inv()
         }));
     }
-    let q: DMatrix<f64> = match jacobians {
-        Some(own) => own.full_period(),
-        None => full_period(scene.model().moving()?.as_ref()),
+    let q: DMatrix<f64> = match (jacobians, subcycles) {
+        (Some(own), _) => own.full_period(),
+        (_, Some(own)) => local::period(own),
+        _ => full_period(scene.model().moving()?.as_ref()),
     };
     let (norm, n) = (q.norm(), q.nrows() as f64 / 2.0);
     let sums = [

@@ -1,12 +1,14 @@
 //! A scheme of local time steps run as codes run it, substep by substep, against the stiffness that stands for it.
 
 use faer::{Mat, Side};
+use nalgebra::DMatrix;
 use num_traits::{Num, One, Zero};
 
 use crate::number::Rational;
+use crate::number::rational::to_f64;
 use crate::recheck::context::{Checked, holds};
 use crate::system::stretches::Stretch;
-use crate::system::{Analysis, Holds, Level, LocalSteps, SchemeSummary, SparseSteps};
+use crate::system::{Analysis, Holds, Level, LocalSteps, SchemeSummary, SparseSteps, Subcycles};
 
 /// Degrees of freedom of which one is displaced, at most.
 const MOST: usize = 16;
@@ -43,6 +45,34 @@ pub fn steps(own: &LocalSteps) -> Checked {
             format!("a step of the scheme from a displacement of {k} is not that of its stiffness")
         })
     })
+}
+
+/// One period of subcycling with held velocities in doubles, from positions and velocities, kicks of half weight at both ends: each degree of freedom kicks
+/// when its own step is over.
+pub fn period(own: &Subcycles) -> DMatrix<f64> {
+    let (n, clock) = (own.plain().size(), &own.plain().clocks()[0]);
+    let pull =
+        DMatrix::from_fn(n, n, |i, j| to_f64(&(clock.stiffness.get(i, j) / own.plain().mass().get(i, i))));
+    let of = |i: usize, level: &Level| if level.fine.contains(&i) { level.substeps } else { 1 };
+    let substeps: Vec<u32> =
+        (0..n).map(|i| own.levels().iter().map(|level| of(i, level)).product()).collect();
+    let (most, dt) = (own.levels().iter().map(|level| level.substeps).product::<u32>(), to_f64(&clock.step));
+    let mut q = DMatrix::<f64>::identity(2 * n, 2 * n);
+    for tick in 0..=most {
+        let weight = if tick % most == 0 { 0.5 } else { 1.0 };
+        let kicks = &pull * q.rows(0, n);
+        for i in (0..n).filter(|&i| tick % (most / substeps[i]) == 0) {
+            let kick = kicks.row(i) * (weight * dt / f64::from(substeps[i]));
+            let mut row = q.row_mut(n + i);
+            row -= kick;
+        }
+        if tick < most {
+            let moved = q.rows(n, n) * (dt / f64::from(most));
+            let mut x = q.rows_mut(0, n);
+            x += moved;
+        }
+    }
+    q
 }
 
 /// The verdict on a large scheme, its growth and its limits.

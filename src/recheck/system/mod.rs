@@ -118,6 +118,9 @@ fn verdict(
                 Some(_) => {
                     "the scheme substep by substep, the kind in exact arithmetic, multipliers by the traces of the full period"
                 }
+                None if scene.is_subcycled() => {
+                    "the kind in exact arithmetic, multipliers by the traces of a period of the scheme, run substep by substep"
+                }
                 None => {
                     "the kind in exact arithmetic, multipliers by the traces of the dense full period and of its square"
                 }

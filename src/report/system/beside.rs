@@ -9,7 +9,7 @@ use crate::report::document::enclosure;
 use crate::report::friction;
 use crate::system::friction::Friction;
 use crate::system::nearest::Nearest;
-use crate::system::{Analysis, Instability, NoGradient, OwnOrbit, SchemeSummary, middle};
+use crate::system::{Analysis, Instability, NoGradient, OwnOrbit, Scheme, SchemeSummary, middle};
 
 /// What is known beside the verdict at the equilibrium and without friction.
 #[derive(Clone, Copy, Debug, Default)]
@@ -103,6 +103,7 @@ pub(super) fn no_gradient_lines(own: &NoGradient, analysis: &Analysis, per: &str
 fn local_steps(own: &SchemeSummary) -> Value {
     let level = |&(fine, substeps): &(usize, u32)| json!({"fine": fine, "substeps": substeps});
     let mut value = json!({
+        "scheme": own.scheme.name(),
         "levels": own.levels.iter().map(level).collect::<Vec<_>>(),
         "plain_limit": own.plain_limit.map(enclosure),
     });
@@ -114,9 +115,13 @@ fn local_steps(own: &SchemeSummary) -> Value {
 
 /// The scheme, and the limit of plain leapfrog; `unit` is that of times, after a space.
 pub(super) fn local_lines(own: &SchemeSummary, unit: &str) -> Vec<String> {
-    let level = |&(fine, substeps): &(usize, u32)| {
-        format!("{fine} of {} degrees of freedom take {substeps} substeps", own.size)
+    let (name, parts) = match own.scheme {
+        Scheme::Lts => ("local time steps", "degrees of freedom"),
+        Scheme::Newmark => ("subcycling with held velocities", "degrees of freedom"),
+        Scheme::Avi => ("AVI", "elements"),
     };
+    let level =
+        |&(fine, substeps): &(usize, u32)| format!("{fine} of {} {parts} take {substeps} substeps", own.size);
     let levels: Vec<_> = own.levels.iter().map(level).collect();
     let limit = own.plain_limit.map(|(lo, hi)| {
         format!("  plain leapfrog without them is stable below {}{unit}", decimal::enclosure(lo, hi))
@@ -125,11 +130,7 @@ pub(super) fn local_lines(own: &SchemeSummary, unit: &str) -> Vec<String> {
         let first = decimal::enclosure(lo, hi);
         format!("  first unstable step: {first}{unit}; every smaller one is proven stable")
     });
-    [format!("  local time steps: {}", levels.join("; of these "))]
-        .into_iter()
-        .chain(limit)
-        .chain(first)
-        .collect()
+    [format!("  {name}: {}", levels.join("; of these "))].into_iter().chain(limit).chain(first).collect()
 }
 
 /// The same for people.

@@ -152,6 +152,13 @@ impl SystemScene {
     fn over<T>(&self, span: &Span, limits: &Limits, ask: impl FnOnce(&Number) -> Result<T>) -> Result<T> {
         self.allow_intervals("intervals", limits)?;
         let role = span.role()?;
+        if role != Role::Outer && self.is_subcycled() {
+            return Err(Error::input(
+                "intervals",
+                &span.path,
+                "of subcycling name outer: the step, all in their ratios",
+            ));
+        }
         if role == Role::Outer && span.lo <= Rational::default() {
             return Err(Error::input("intervals", span, "steps are positive"));
         }

@@ -1,58 +1,76 @@
-//! Local time steps in a system file: leapfrog as codes for waves have it.
+//! Local time steps in a system file: leapfrog as codes for waves have it, subcycling, AVI.
 //!
 //! ```json
 //! "scheme": "lts",
 //! "levels": [{"fine": [4, 5, 6], "substeps": 2}, {"fine": [5], "substeps": 3}]
 //! ```
 //!
+//! * `scheme`: `lts`, leapfrog whose forces on what is not fine stand still; `newmark`, subcycling while that moves on with its velocity; `avi`, each
+//!   element a clock of its own.
 //! * All potentials have one step, dt, and masses are diagonal.
 //! * `levels`, the coarsest first: `fine`, the degrees of freedom that take `substeps` in a step of the level above, or `elements` of a mesh,
-//!   with all their nodes. Each level is a part of the one above.
+//!   with all their nodes, in `avi` these alone. Each level is a part of the one above.
 
 use std::collections::BTreeSet;
 
 use super::document::{Document, LevelDocument, MeshDocument, Number};
 use crate::error::{Error, Result};
-use crate::system::{Level, LocalSteps, Model, System};
+use crate::system::{Level, LocalSteps, Model, Scheme, Subcycles, System};
 
-/// The only scheme so far that has a name.
+/// The scheme whose step is one of Verlet's.
 pub(super) const NAME: &str = "lts";
 
+/// A model, and the scheme that its clocks stand for, where that is none of its own.
+pub(super) type Stepped = (Model, Option<Subcycles>);
+
 impl Document {
-    /// The model with the scheme of the file, where it names one; `moving` are node and axis of each degree of freedom of a mesh.
-    pub fn with_scheme(&self, model: Model, moving: &[(usize, usize)]) -> Result<Model> {
-        let levels = match (self.scheme.as_deref(), &self.levels) {
-            (None, None) => return Ok(model),
-            (Some(NAME), Some(levels)) => levels,
-            (Some(NAME), None) => {
+    /// The scheme that the file names, with its levels.
+    pub fn named_scheme(&self) -> Result<Option<(Scheme, &[LevelDocument])>> {
+        match (self.scheme.as_deref().map(str::parse).transpose()?, &self.levels) {
+            (None, None) => Ok(None),
+            (Some(scheme), Some(levels)) => Ok(Some((scheme, levels))),
+            (Some(_), None) => {
                 let remedy = "give levels, as [{\"fine\": [3, 4], \"substeps\": 2}]";
-                return Err(Error::input("levels", "missing", remedy));
-            }
-            (Some(other), _) => {
-                let remedy = "lts, leapfrog with local time steps, is the only one with a name";
-                return Err(Error::input("scheme", other, remedy));
+                Err(Error::input("levels", "missing", remedy))
             }
             (None, Some(_)) => {
-                return Err(Error::input(
-                    "levels",
-                    "given",
-                    "are those of a scheme: give \"scheme\": \"lts\", too",
-                ));
+                let remedy = "are those of a scheme: give \"scheme\": \"lts\", too, or newmark, or avi";
+                Err(Error::input("levels", "given", remedy))
             }
-        };
+        }
+    }
+
+    /// The model with the scheme of the file, where it names one; `moving` are node and axis of each degree of freedom of a mesh.
+    pub fn with_scheme(&self, model: Model, moving: &[(usize, usize)]) -> Result<Stepped> {
+        let Some((scheme, levels)) = self.named_scheme()? else { return Ok((model, None)) };
         let Model::Rational(plain) = model else {
-            return Err(Error::input("scheme", NAME, "is for rational numbers in the file, without pi"));
+            let remedy = "is for rational numbers in the file, without pi";
+            return Err(Error::input("scheme", scheme.name(), remedy));
         };
-        if self.friction.is_some() {
+        if scheme != Scheme::Avi && self.friction.is_some() {
             return Err(Error::input(
                 "friction",
                 "given",
                 "has no place in a scheme of local steps: leave it out",
             ));
         }
+        if scheme == Scheme::Avi {
+            // Its clocks are those of the elements already.
+            let Some(mesh) = &self.mesh else {
+                let remedy =
+                    "is for the elements of a mesh: of potentials give each its own step, and no scheme";
+                return Err(Error::input("scheme", "avi", remedy));
+            };
+            let subcycles = Subcycles::avi(plain.clone(), mesh.elements.len(), mesh.levels(levels)?)?;
+            return Ok((Model::Rational(plain), Some(subcycles)));
+        }
         let level = |(l, own)| self.level(l, own, &plain, moving);
         let levels = levels.iter().enumerate().map(level).collect::<Result<_>>()?;
-        Ok(Model::LocalSteps(LocalSteps::new(plain, levels)?))
+        if scheme == Scheme::Lts {
+            return Ok((Model::LocalSteps(LocalSteps::new(plain, levels)?), None));
+        }
+        let (subcycles, clocks) = Subcycles::newmark(plain, levels)?;
+        Ok((Model::NoGradient(Box::new(clocks)), Some(subcycles)))
     }
 
     fn level(
@@ -63,13 +81,10 @@ impl Document {
         moving: &[(usize, usize)],
     ) -> Result<Level> {
         let field = |name: &str| format!("levels[{l}].{name}");
-        let indices = |name: &str, all: &[Number], n: usize| {
-            all.iter().map(|i| i.index(&field(name), n)).collect::<Result<BTreeSet<_>>>()
-        };
         let fine = match (&own.fine, &own.elements, &self.mesh) {
-            (Some(fine), None, _) => indices("fine", fine, plain.size())?,
+            (Some(fine), None, _) => indices(&field("fine"), fine, plain.size())?,
             (None, Some(elements), Some(mesh)) => {
-                let elements = indices("elements", elements, mesh.elements.len())?;
+                let elements = indices(&field("elements"), elements, mesh.elements.len())?;
                 mesh.degrees_of_freedom(&elements, moving)?
             }
             _ => {
@@ -77,12 +92,35 @@ impl Document {
                 return Err(Error::input(&format!("levels[{l}]"), "not told", remedy));
             }
         };
-        let substeps = own.substeps.count(&field("substeps"), LocalSteps::MOST_SUBSTEPS as usize)? as u32;
-        Ok(Level { fine, substeps })
+        Ok(Level { fine, substeps: own.count(l)? })
+    }
+}
+
+fn indices(field: &str, all: &[Number], n: usize) -> Result<BTreeSet<usize>> {
+    all.iter().map(|i| i.index(field, n)).collect()
+}
+
+impl LevelDocument {
+    fn count(&self, l: usize) -> Result<u32> {
+        let field = format!("levels[{l}].substeps");
+        Ok(self.substeps.count(&field, LocalSteps::MOST_SUBSTEPS as usize)? as u32)
     }
 }
 
 impl MeshDocument {
+    /// Levels of elements.
+    pub fn levels(&self, levels: &[LevelDocument]) -> Result<Vec<Level>> {
+        let level = |(l, own): (usize, &LevelDocument)| {
+            let (Some(elements), None) = (&own.elements, &own.fine) else {
+                let remedy = "give elements: in avi these have clocks, degrees of freedom have none";
+                return Err(Error::input(&format!("levels[{l}]"), "no elements", remedy));
+            };
+            let fine = indices(&format!("levels[{l}].elements"), elements, self.elements.len())?;
+            Ok(Level { fine, substeps: own.count(l)? })
+        };
+        levels.iter().enumerate().map(level).collect()
+    }
+
     /// Those of all nodes of some elements.
     fn degrees_of_freedom(
         &self,

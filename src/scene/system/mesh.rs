@@ -34,9 +34,12 @@ pub(super) fn labels(moving: &[(usize, usize)]) -> Vec<String> {
 }
 
 impl MeshDocument {
-    /// The system, and the node and the axis of each degree of freedom.
-    pub fn system(&self) -> Result<(System, Vec<(usize, usize)>)> {
-        let mesh = self.mesh()?;
+    /// The system, and the node and the axis of each degree of freedom; each element takes so many substeps in its step, where they are given.
+    pub fn system(&self, substeps: Option<&[u32]>) -> Result<(System, Vec<(usize, usize)>)> {
+        let mut mesh = self.mesh()?;
+        for ((_, step), &substeps) in mesh.elements.iter_mut().zip(substeps.unwrap_or_default()) {
+            *step /= Rational::from_integer(substeps.into());
+        }
         let axes = mesh.nodes.first().map_or(0, Vec::len);
         let size = mesh.nodes.len() * axes;
         if size > LARGEST {
@@ -52,7 +55,7 @@ impl MeshDocument {
     /// The nodes, the nodes of each element, and the node and the axis of each degree of freedom.
     #[expect(clippy::type_complexity, reason = "said above, used once")]
     pub fn placed(&self) -> Result<(Vec<Vec<Rational>>, Vec<Vec<usize>>, Vec<(usize, usize)>)> {
-        let (mesh, (_, moving)) = (self.mesh()?, self.system()?);
+        let (mesh, (_, moving)) = (self.mesh()?, self.system(None)?);
         Ok((mesh.nodes, mesh.elements.into_iter().map(|(nodes, _)| nodes).collect(), moving))
     }
 

@@ -31,7 +31,7 @@
 //! * `labels` name the degrees of freedom, or the particles of three each; `friction` is a rate γ per unit time: O, v → exp(−γ t) v,
 //!   in the middle of every drift of the whole schedule, also for what only some of the clocks act on.
 //! * `symmetric`: `false` says that a force is no gradient: `stiffness` by rows is minus its derivative, whatever that is.
-//! * `scheme`: `"lts"` with `levels` is leapfrog with local time steps, see `local`.
+//! * `scheme`: `"lts"`, `"newmark"` or `"avi"` with `levels` are local time steps, see `local`.
 //! * In place of masses and potentials a `mesh` of finite elements, see `mesh`; or `build`: `{"kind": "chain", "masses": 200, "stiffness": [...], "steps": [...]}`,
 //!   `{"kind": "stiff-soft", "pairs": 4, "stiff": "100", "steps": [stiff, soft]}`,
 //!   `{"kind": "graded-bar", "elements": 100, "classes": 10, "courant": "1/4"}`,
@@ -79,7 +79,9 @@ use crate::number::rational::to_f64;
 use crate::scene::json;
 use crate::system::friction::Friction;
 use crate::system::levels::Method;
-use crate::system::{Limits, Model, OwnOrbit, Potential, System};
+use crate::system::{
+    Limits, Model, OwnOrbit, Potential, Scheme as LocalScheme, SchemeSummary, Subcycles, System,
+};
 pub use array::{Array, Arrays};
 use bonds::Nonlinear;
 use document::{Document, no_system};
@@ -177,6 +179,8 @@ pub struct SystemScene {
     labels: Option<Vec<String>>,
     /// γ per unit time.
     friction: Option<Rational>,
+    /// The scheme of local steps that the model's clocks stand for, where it is none of the model's own.
+    subcycles: Option<Subcycles>,
 }
 
 impl SystemScene {
@@ -214,22 +218,21 @@ impl SystemScene {
                 measured::read(&document, &arrays)?
             };
             let labels = document.labels.map(|labels| spread(&labels, model.size())).transpose()?;
-            return Ok(SystemScene { source, arrays, model, bonds: None, labels, friction: None });
+            let (bonds, friction, subcycles) = (None, None, None);
+            return Ok(SystemScene { source, arrays, model, bonds, labels, friction, subcycles });
         }
         // Once more from the text, for the error to name its line.
         let document =
             Document::deserialize(&source).or_else(|error| text.map_or(Err(error), json::from_str));
         let document = document.map_err(no_system)?;
         check_schema(&document.schema)?;
-        let (model, bonds, labels) = document.model()?;
-        let model = match &document.method {
-            Some(method) => with_method(model, bonds.as_ref(), method.parse()?)?,
-            None => model,
-        };
+        let Described { model, bonds, labels, subcycles } = document.model()?;
         let given = document.labels.as_ref().map(|labels| spread(labels, model.size())).transpose()?;
-        let scene = SystemScene { source, arrays, model, bonds, labels: given.or(labels), friction: None };
+        let labels = given.or(labels);
+        let scene = SystemScene { source, arrays, model, bonds, labels, friction: None, subcycles };
         let friction = document.friction.as_ref().map(|own| own.read("friction")).transpose()?;
-        scene.asked(None, false, friction.as_ref(), None)
+        let method = document.method.as_deref().map(str::parse).transpose()?;
+        scene.asked(None, false, friction.as_ref(), method)
     }
 
     /// The same with what is asked of it beside its file: another accuracy of measured stiffnesses, relative to their norms; their rigid
@@ -263,9 +266,19 @@ impl SystemScene {
             self.model = Model::Measured(own.keeping_rigid());
         }
         if let Some(method) = method {
-            self.model = with_method(self.model, self.bonds.as_ref(), method)?;
+            if self.subcycles.is_some() && method != Method::Respa {
+                let remedy = "has no place in a scheme of local steps: leave it out";
+                return Err(Error::input("method", method, remedy));
+            }
+            if self.subcycles.is_none() {
+                self.model = with_method(self.model, self.bonds.as_ref(), method)?;
+            }
         }
         if let Some(rate) = friction {
+            if self.is_subcycled() {
+                let remedy = "has no place in a scheme of local steps: leave it out";
+                return Err(Error::input("friction", rate, remedy));
+            }
             if *rate <= Rational::default() {
                 return Err(Error::input("friction", rate, "a rate of friction must be positive"));
             }
@@ -285,6 +298,21 @@ impl SystemScene {
     /// As [`Model::friction`].
     pub fn friction(&self, limits: &Limits) -> Result<Option<Friction>> {
         self.friction.as_ref().map(|rate| self.model.friction(rate, limits)).transpose()
+    }
+
+    /// The scheme of local steps that the model's clocks stand for, where it is none of the model's own.
+    pub fn subcycles(&self) -> Option<&Subcycles> {
+        self.subcycles.as_ref()
+    }
+
+    /// What verdicts tell of its local time steps, where it has such.
+    pub fn local_steps_summary(&self) -> Option<SchemeSummary> {
+        self.subcycles.as_ref().map(Subcycles::summary).or_else(|| self.model.local_steps_summary())
+    }
+
+    /// Whether its Jacobians are those of subcycling: the forces themselves are gradients.
+    pub fn is_subcycled(&self) -> bool {
+        self.subcycles.as_ref().is_some_and(|own| own.scheme() == LocalScheme::Newmark)
     }
 
     /// What each degree of freedom is called, where the file tells.
@@ -366,6 +394,13 @@ impl SystemScene {
     fn masses(&self) -> Result<Vec<Rational>> {
         match &self.model {
             Model::Measured(own) => own.refuse_constraints().and(own.refuse_method("a run"))?,
+            Model::NoGradient(_) if self.is_subcycled() => {
+                return Err(Error::input(
+                    "scheme",
+                    "newmark",
+                    "a run is for forces kick by kick: choose avi or lts",
+                ));
+            }
             Model::NoGradient(_) => {
                 return Err(Error::input("symmetric", "false", "a run is for forces that are gradients"));
             }
@@ -407,20 +442,32 @@ fn check_schema(schema: &str) -> Result<()> {
     Err(Error::input("schema", schema, format!("this version reads {SCHEMA}")))
 }
 
-/// A model, the bonds at whose equilibrium it is, and labels of its degrees of freedom, where the file implies some.
-type Described = (Model, Option<Nonlinear>, Option<Vec<String>>);
+/// A model, the bonds at whose equilibrium it is, labels of its degrees of freedom, where the file implies some, and the scheme of its clocks.
+struct Described {
+    model: Model,
+    bonds: Option<Nonlinear>,
+    labels: Option<Vec<String>>,
+    subcycles: Option<Subcycles>,
+}
 
 impl Document {
     fn model(&self) -> Result<Described> {
         let is_explicit = self.masses.is_some() || self.potentials.is_some();
         match (&self.build, &self.mesh) {
             (Some(build), None) if !is_explicit => {
-                Ok((self.with_scheme(Model::Rational(build.system()?), &[])?, None, None))
+                let (model, subcycles) = self.with_scheme(Model::Rational(build.system()?), &[])?;
+                Ok(Described { model, bonds: None, labels: None, subcycles })
             }
             (None, Some(mesh)) if !is_explicit => {
-                let (system, moving) = mesh.system()?;
-                let model = self.with_scheme(Model::Rational(system), &moving)?;
-                Ok((model, None, Some(mesh::labels(&moving))))
+                let substeps = match self.named_scheme()? {
+                    Some((LocalScheme::Avi, levels)) => {
+                        Some(Subcycles::substeps(&mesh.levels(levels)?, mesh.elements.len())?)
+                    }
+                    _ => None,
+                };
+                let (system, moving) = mesh.system(substeps.as_deref())?;
+                let (model, subcycles) = self.with_scheme(Model::Rational(system), &moving)?;
+                Ok(Described { model, bonds: None, labels: Some(mesh::labels(&moving)), subcycles })
             }
             (None, None) => {
                 let (model, bonds) = self.explicit()?;
@@ -431,7 +478,8 @@ impl Document {
                         "is for linear systems: give springs in place of bonds",
                     ));
                 }
-                Ok((self.with_scheme(model, &[])?, bonds, None))
+                let (model, subcycles) = self.with_scheme(model, &[])?;
+                Ok(Described { model, bonds, labels: None, subcycles })
             }
             _ => {
                 let remedy = "give either build, or mesh, or masses and potentials";

@@ -103,7 +103,7 @@ fn local_steps(document: &Document, arrays: &Arrays) -> Result<SparseSystem> {
             );
         }
         (Some(other), ..) => {
-            let remedy = "lts, leapfrog with local time steps, is the only one with a name";
+            let remedy = "of sparse stiffnesses lts is the only one: leapfrog with local time steps";
             return refused("scheme", other.into(), remedy);
         }
         (None, ..) => {

@@ -15,6 +15,7 @@
 //! |---|---|
 //! | `scheme` | the levels, the effective stiffness |
 //! | `intervals` | all unstable intervals of dt, exactly |
+//! | `split` | subcycling with held velocities, AVI: the same levels as kicks and drifts |
 //! | `sparse` | many thousands of degrees of freedom: f in sparse doubles, its verdicts, what grows fastest |
 //! | `gaps` | the unstable intervals of dt of these |
 
@@ -22,6 +23,8 @@ mod gaps;
 mod intervals;
 mod scheme;
 mod sparse;
+mod split;
 
-pub use scheme::{Level, LocalSteps, SchemeSummary};
+pub use scheme::{Level, LocalSteps, Scheme, SchemeSummary};
 pub use sparse::{Growth, SparseSteps};
+pub use split::Subcycles;

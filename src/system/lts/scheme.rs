@@ -18,10 +18,33 @@ pub struct Level {
     pub substeps: u32,
 }
 
+/// What levels of steps mean.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scheme {
+    /// Leapfrog with local time steps: forces on what is not fine stand still (Diaz and Grote 2009).
+    Lts,
+    /// Explicit Newmark subcycling: what is not fine moves on with its velocity (Belytschko, Yen and Mullen 1979).
+    Newmark,
+    /// Asynchronous variational integrators: elements kick with steps of their own (Lew, Marsden, Ortiz and West 2003).
+    Avi,
+}
+
+impl Scheme {
+    /// As files and documents name it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Scheme::Lts => "lts",
+            Scheme::Newmark => "newmark",
+            Scheme::Avi => "avi",
+        }
+    }
+}
+
 /// What answers tell of a scheme.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SchemeSummary {
-    /// Degrees of freedom.
+    pub scheme: Scheme,
+    /// Degrees of freedom; of AVI elements.
     pub size: usize,
     /// Fine ones and substeps of each level.
     pub levels: Vec<(usize, u32)>,
@@ -66,6 +89,33 @@ impl Level {
         }
         Ok(product)
     }
+
+    /// The same of a system of one clock without a phase and with lumped masses.
+    ///
+    /// # Errors
+    /// A mass matrix that is not diagonal, several clocks, a phase; as [`Level::check`].
+    pub(super) fn of_one_clock(plain: &System, levels: &[Level]) -> Result<u32> {
+        let refused = |field: &str, value: String, remedy: &str| Err(Error::input(field, value, remedy));
+        if !plain.mass().is_diagonal() {
+            return refused(
+                "mass_matrix",
+                "not diagonal".into(),
+                "local steps are for lumped masses: give masses",
+            );
+        }
+        let [clock] = plain.clocks() else {
+            let remedy = "give all potentials one step: the levels say which parts take shorter ones";
+            return refused("potentials", format!("{} steps", plain.clocks().len()), remedy);
+        };
+        if !clock.phase.is_zero() {
+            return refused(
+                "phase",
+                clock.phase.to_string(),
+                "has no meaning with local steps: leave it out",
+            );
+        }
+        Level::check(levels, plain.size())
+    }
 }
 
 /// Products of rationals for the effective stiffness beyond which reading a file would take a minute.
@@ -107,34 +157,15 @@ impl LocalSteps {
     /// # Errors
     /// A mass matrix that is not diagonal, several clocks, a phase, levels that are no parts of the ones above, too many substeps.
     pub fn new(plain: System, levels: Vec<Level>) -> Result<LocalSteps> {
-        let refused = |field: &str, value: String, remedy: &str| Err(Error::input(field, value, remedy));
-        if !plain.mass().is_diagonal() {
-            return refused(
-                "mass_matrix",
-                "not diagonal".into(),
-                "local steps are for lumped masses: give masses",
-            );
-        }
-        let [clock] = plain.clocks() else {
-            let remedy = "give all potentials one step: the levels say which parts take shorter ones";
-            return refused("potentials", format!("{} steps", plain.clocks().len()), remedy);
-        };
-        if !clock.phase.is_zero() {
-            return refused(
-                "phase",
-                clock.phase.to_string(),
-                "has no meaning with local steps: leave it out",
-            );
-        }
-        let product = Level::check(&levels, plain.size())?;
+        let product = Level::of_one_clock(&plain, &levels)?;
         let work = work(&plain, &levels);
         if work > MOST_WORK {
             let remedy =
                 format!("with {work:.0e} products of rationals is too much: at most {MOST_WORK:.0e}");
-            return refused("levels", format!("{product} substeps"), &remedy);
+            return Err(Error::input("levels", format!("{product} substeps"), remedy));
         }
-        let stiffness = effective(&plain, &levels, &(&clock.step * &clock.step));
-        let system = with_stiffness(&plain, stiffness, &clock.step)?;
+        let step = &plain.clocks()[0].step;
+        let system = with_stiffness(&plain, effective(&plain, &levels, &(step * step)), step)?;
         Ok(LocalSteps { plain, levels, system })
     }
 
@@ -177,17 +208,7 @@ impl LocalSteps {
     /// Where plain leapfrog, all with the step of the whole, becomes unstable: \[lo, hi\] holds 2/√λ of the largest λ of K x = λ M x, within
     /// 10^-9 of itself or as near as doubles tell; `None` where no λ is positive.
     pub fn plain_limit(&self) -> Option<(f64, f64)> {
-        const WITHIN: f64 = 1e-9;
-        let (mass, stiffness) = (self.plain.mass(), &self.plain.clocks()[0].stiffness);
-        let root: Vec<f64> = (0..mass.size()).map(|i| to_f64(&mass.get(i, i)).sqrt()).collect();
-        let row = |i: usize| stiffness.row(i).iter().map(move |(&j, x)| (i, j, x));
-        let entries: Vec<_> =
-            (0..mass.size()).flat_map(row).map(|(i, j, x)| (i, j, to_f64(x) / (root[i] * root[j]))).collect();
-        let (pattern, [values]) = Pattern::of(mass.size(), [&entries]).ok()?;
-        // Of each entry: its own rounding, two masses' and two roots', their product, the quotient.
-        let slack = 8.0 * U * pattern.size_of(&values).0;
-        let (lo, hi) = pattern.largest(&values, slack, WITHIN)?;
-        Some((2.0 / hi.sqrt() * (1.0 - 4.0 * U), 2.0 / lo.sqrt() * (1.0 + 4.0 * U)))
+        plain_limit(&self.plain)
     }
 
     /// f/dt² at dt² = `square` > 0.
@@ -205,6 +226,21 @@ impl LocalSteps {
         let levels = self.levels.iter().map(own).collect();
         LocalSteps { plain: self.plain.part(indices), levels, system: self.system.part(indices) }
     }
+}
+
+/// As [`LocalSteps::plain_limit`], of the stiffnesses of all clocks together, with diagonal masses.
+pub(super) fn plain_limit(plain: &System) -> Option<(f64, f64)> {
+    const WITHIN: f64 = 1e-9;
+    let (mass, stiffness) = (plain.mass(), plain.total_stiffness());
+    let root: Vec<f64> = (0..mass.size()).map(|i| to_f64(&mass.get(i, i)).sqrt()).collect();
+    let row = |i: usize| stiffness.row(i).iter().map(move |(&j, x)| (i, j, x));
+    let entries: Vec<_> =
+        (0..mass.size()).flat_map(row).map(|(i, j, x)| (i, j, to_f64(x) / (root[i] * root[j]))).collect();
+    let (pattern, [values]) = Pattern::of(mass.size(), [&entries]).ok()?;
+    // Of each entry: its own rounding, two masses' and two roots', their product, the quotient.
+    let slack = 8.0 * U * pattern.size_of(&values).0;
+    let (lo, hi) = pattern.largest(&values, slack, WITHIN)?;
+    Some((2.0 / hi.sqrt() * (1.0 - 4.0 * U), 2.0 / lo.sqrt() * (1.0 + 4.0 * U)))
 }
 
 /// f/dt² at dt² = `square` > 0.

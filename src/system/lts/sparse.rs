@@ -2,7 +2,7 @@
 
 use faer::Mat;
 
-use super::scheme::{Level, LocalSteps, SchemeSummary};
+use super::scheme::{Level, LocalSteps, Scheme, SchemeSummary};
 use crate::error::{Error, Result};
 use crate::number::U;
 use crate::system::half::norm;
@@ -283,6 +283,7 @@ impl SparseSteps {
     /// What answers tell of the scheme.
     pub fn summary(&self) -> SchemeSummary {
         SchemeSummary {
+            scheme: Scheme::Lts,
             size: self.size(),
             levels: self.levels.iter().map(|own| (own.fine.len(), own.substeps)).collect(),
             plain_limit: self.plain_limit(),
@@ -500,6 +501,7 @@ impl LocalSteps {
     /// What answers tell of the scheme.
     pub fn summary(&self) -> SchemeSummary {
         SchemeSummary {
+            scheme: Scheme::Lts,
             size: self.system().size(),
             levels: self.levels().iter().map(|own| (own.fine.len(), own.substeps)).collect(),
             plain_limit: self.plain_limit(),

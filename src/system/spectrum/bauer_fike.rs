@@ -29,6 +29,8 @@ pub(in crate::system) struct Residual {
     pub norm: f64,
     /// More than the Euclidean norm of each row of F.
     pub rows: Vec<f64>,
+    /// More than ‖V⁻¹‖₂.
+    pub inverse: f64,
 }
 
 impl Residual {
@@ -48,7 +50,7 @@ impl Residual {
         let row = |i: usize| (0..m).map(|j| moved[(i, j)] * moved[(i, j)]).sum::<f64>().sqrt();
         let norm = self.norm + 1.01 * (norm::spectral(&moved) + rest);
         let rows = self.rows.iter().enumerate().map(|(i, own)| own + 1.01 * (row(i) + rest)).collect();
-        norm.is_finite().then_some(Residual { norm, rows })
+        norm.is_finite().then_some(Residual { norm, rows, ..self })
     }
 }
 
@@ -81,5 +83,6 @@ pub(in crate::system) fn bauer_fike(
     let norm = 1.01 * w_size * off / (1.0 - y);
     let row = |i: usize| (0..m).map(|j| w[(i, j)] * w[(i, j)]).sum::<f64>().sqrt();
     let rows = (0..m).map(|i| 1.01 * (row(i) + nw * y / (1.0 - y)) * off).collect();
-    norm.is_finite().then_some(Residual { norm, rows })
+    let inverse = 1.01 * w_size / (1.0 - y);
+    norm.is_finite().then_some(Residual { norm, rows, inverse })
 }

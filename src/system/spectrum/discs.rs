@@ -33,6 +33,8 @@ pub(in crate::system) struct Spectrum {
     pub radius: Option<f64>,
     /// Bounds on the rows of F.
     rows: Vec<f64>,
+    /// More than ‖V⁻¹‖₂.
+    pub(super) inverse: Option<f64>,
     /// One column for each, in the coordinates of [`FloatBlocks`].
     pub vectors: Mat<c64>,
     /// S, and how far the true one can be.
@@ -71,8 +73,9 @@ impl Spectrum {
         let finite = mu.iter().all(|z| z.re.is_finite() && z.im.is_finite());
         let residual = s_error.filter(|_| finite).and_then(|delta| residual(&s, delta, &mu, &vectors));
         let radius = residual.as_ref().map(|own| own.norm);
+        let inverse = residual.as_ref().map(|own| own.inverse);
         let rows = residual.map_or(Vec::new(), |own| own.rows);
-        finite.then_some(Spectrum { mu, radius, rows, vectors, s, s_error })
+        finite.then_some(Spectrum { mu, radius, rows, inverse, vectors, s, s_error })
     }
 
     /// The same for matrices within another distance of S.
@@ -107,7 +110,7 @@ impl Spectrum {
 
     /// What the discs of all S' with |S' − S| ≤ `off`, entry by entry, prove, if anything.
     pub fn certified_around(&self, off: &Mat<f64>) -> Option<Kind> {
-        let residual = Residual { norm: self.radius?, rows: self.rows.clone() };
+        let residual = Residual { norm: self.radius?, rows: self.rows.clone(), inverse: self.inverse? };
         let residual = residual.widened(&real_form(&self.mu, &self.vectors)?.0, off)?;
         Spectrum { radius: Some(residual.norm), rows: residual.rows, ..self.clone() }.by_discs()
     }
@@ -136,9 +139,19 @@ impl Spectrum {
         let radius = 1.01 * self.radius?;
         let components = components(&self.mu, radius);
         let off = |component: &Vec<usize>| component.iter().all(|&i| from_segment(self.mu[i]) > radius);
-        if components.iter().any(off) || (0..self.mu.len()).any(|i| self.is_encircled(i)) {
+        if components.iter().any(off) || (0..self.mu.len()).any(|i| self.is_encircled(i, &self.rows)) {
             return Some(Kind::Hyperbolic);
         }
+        self.untold_of(components, radius).is_empty().then_some(Kind::Elliptic)
+    }
+
+    /// The eigenvalues that discs do not prove to be real, within (−1, 0) and simple; `None` where there are no discs.
+    pub(super) fn untold(&self) -> Option<Vec<usize>> {
+        let radius = 1.01 * self.radius?;
+        Some(self.untold_of(components(&self.mu, radius), radius))
+    }
+
+    fn untold_of(&self, components: Vec<Vec<usize>>, radius: f64) -> Vec<usize> {
         let inside = |component: &Vec<usize>| match component.as_slice() {
             [i] => {
                 let z = self.mu[*i];
@@ -146,45 +159,57 @@ impl Spectrum {
             }
             _ => false,
         };
-        let alone = |component: &Vec<usize>| component.iter().all(|&i| self.is_alone(i));
-        components.iter().all(|own| inside(own) || alone(own)).then_some(Kind::Elliptic)
+        components
+            .into_iter()
+            .filter(|own| !inside(own))
+            .flatten()
+            .filter(|&i| !self.is_alone(i, &self.rows))
+            .collect()
+    }
+
+    /// Bounds on the rows of T⁻¹ F T, T = 1/τ at `open` and 1 elsewhere, τ = `weight`, where these columns of F are together no longer than `column`.
+    pub(super) fn narrowed(&self, open: &[usize], column: f64, weight: f64) -> Vec<f64> {
+        let row = |(j, own): (usize, &f64)| {
+            1.001 * if open.contains(&j) { weight * own + column } else { own + column / weight }
+        };
+        self.rows.iter().enumerate().map(row).collect()
     }
 }
 
 impl Spectrum {
     /// Whether some circle about a real μ_i, within (−1, 0) and at most half as wide as the nearest other μ is far, is free of eigenvalues as in
     /// [`Spectrum::is_encircled`]: one eigenvalue of S is in it, real, and in no other such circle.
-    fn is_alone(&self, i: usize) -> bool {
+    pub(super) fn is_alone(&self, i: usize, rows: &[f64]) -> bool {
         let z = self.mu[i];
         let others =
             self.mu.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, other)| (other - z).norm() / 2.0);
         let room = 0.99 * others.fold((-z.re).min(1.0 + z.re), f64::min);
-        z.im == 0.0 && room > 0.0 && self.is_free(i, room)
+        z.im == 0.0 && room > 0.0 && self.is_free(i, room, rows)
     }
 
-    /// Whether some circle about μ_i that does not meet \[−1, 0\] is free of eigenvalues of D + tF, 0 ≤ t ≤ 1, so that it holds as
+    /// Whether some circle about μ_i that does not meet \[−1, 0\] is free of eigenvalues of D + tF, 0 ≤ t ≤ 1, whose rows have these bounds, so that it holds as
     /// many of S as of D.
     ///
     /// (D − z) y = −F y with |y| = 1 gives |d_j − z| |y_j| ≤ ρ_j, so an eigenvalue z has Σ (ρ_j/|d_j − z|)² ≥ 1 (for both rows of
     /// a conjugate pair the nearer of the two). Rows differ where some eigenvectors are nearly dependent: those that are not keep
     /// their small discs. The radii tried go down by fifths, to a hundredth of the distance.
-    fn is_encircled(&self, i: usize) -> bool {
+    pub(super) fn is_encircled(&self, i: usize, rows: &[f64]) -> bool {
         let off = 0.99 * from_segment(self.mu[i]);
-        if self.rows.get(i).is_none_or(|own| *own >= off) {
+        if rows.get(i).is_none_or(|own| *own >= off) {
             return false;
         }
-        self.is_free(i, off)
+        self.is_free(i, off, rows)
     }
 
     /// Whether one of some circles about μ_i, of at most this radius, holds no eigenvalue of D + tF.
-    fn is_free(&self, i: usize, largest: f64) -> bool {
+    fn is_free(&self, i: usize, largest: f64, rows: &[f64]) -> bool {
         let escape = |radius: f64| {
             let term = |(z, row): (&c64, &f64)| {
                 let distance = |z: c64| ((z - self.mu[i]).norm() - radius).abs();
                 let nearer = distance(*z).min(distance(z.conj()));
                 (row / nearer).powi(2)
             };
-            self.rows.len() == self.mu.len() && self.mu.iter().zip(&self.rows).map(term).sum::<f64>() < 0.99
+            rows.len() == self.mu.len() && self.mu.iter().zip(rows).map(term).sum::<f64>() < 0.99
         };
         (0..20).map(|k| largest * 0.8f64.powi(k)).any(escape)
     }

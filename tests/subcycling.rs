@@ -1,0 +1,327 @@
+//! Subcycling with held velocities and AVI on levels of elements, against both schemes run step by step.
+
+use kickdrift::number::Rational;
+use kickdrift::number::rational::{ratio, to_f64};
+use kickdrift::scene::{Span, SystemScene};
+use kickdrift::system::{
+    Analysis, Holds, Level, Limits, Model, Potential, Route, Subcycles, Symmetric, System,
+};
+use kickdrift::verdict::Kind;
+use nalgebra::DMatrix;
+use serde_json::{Value, json};
+
+/// Numbers that repeat.
+struct Numbers(u64);
+
+impl Numbers {
+    fn below(&mut self, n: u64) -> i64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        ((self.0 >> 33) % n) as i64
+    }
+
+    /// Nested parts of n, each with its substeps.
+    fn levels(&mut self, n: usize) -> Vec<Level> {
+        let mut fine: Vec<usize> = (0..n).collect();
+        let levels = (0..1 + self.below(2)).map(|_| {
+            fine.retain(|_| self.below(3) > 0);
+            Level { fine: fine.iter().copied().collect(), substeps: 1 + self.below(4) as u32 }
+        });
+        levels.collect()
+    }
+
+    /// One to five masses, a positive semidefinite stiffness BᵀB.
+    fn plain(&mut self) -> System {
+        let n = 1 + self.below(5) as usize;
+        let masses: Vec<_> = (0..n).map(|_| ratio(1 + self.below(4), 1)).collect();
+        let factor: Vec<Vec<_>> =
+            (0..n).map(|_| (0..n).map(|_| ratio(self.below(9) - 4, 4)).collect()).collect();
+        let entry = |i: usize, j: usize| factor.iter().map(|row| &row[i] * &row[j]).sum::<Rational>();
+        let stiffness = Symmetric::try_from(&DMatrix::from_fn(n, n, entry)).unwrap();
+        let potential = Potential::new(stiffness, ratio(1 + self.below(40), 10));
+        System::new(Symmetric::diagonal(&masses), vec![potential]).unwrap()
+    }
+
+    /// Two to six bars in a row on a wall, the last node free or held: elements are numbers of lengths.
+    fn bars(&mut self) -> (Vec<i64>, bool) {
+        ((0..2 + self.below(5)).map(|_| 1 + self.below(4)).collect(), self.below(2) == 0)
+    }
+}
+
+/// The largest |λ| of a period that begins and ends between kicks of all: `kicks` has how much of the whole step each force takes a substep, how many
+/// ticks lie between its kicks, and M⁻¹ times it.
+fn radius(kicks: &[(f64, u32, DMatrix<f64>)], ticks: u32, dt: f64) -> f64 {
+    let n = kicks[0].2.nrows();
+    let mut q = DMatrix::<f64>::identity(2 * n, 2 * n);
+    for tick in 0..ticks {
+        let x = q.rows(0, n).into_owned();
+        for (share, _, force) in kicks.iter().filter(|own| tick % own.1 == 0) {
+            let mut v = q.rows_mut(n, n);
+            v -= force * &x * (dt * share);
+        }
+        let moved = q.rows(n, n) * (dt / f64::from(ticks));
+        let mut x = q.rows_mut(0, n);
+        x += moved;
+    }
+    q.complex_eigenvalues().iter().fold(0.0, |most: f64, z| most.max(z.norm()))
+}
+
+/// Doubles know a pair of nearly equal multipliers to half of their digits.
+const STILL: f64 = 1e-9;
+const GROWING: f64 = 1e-5;
+
+/// Whether a radius is that of a stable period; `None` where doubles do not tell, as at an edge, where growth is linear.
+fn told(radius: f64) -> Option<bool> {
+    (!(1.0 + STILL..=1.0 + GROWING).contains(&radius)).then_some(radius < 1.0 + STILL)
+}
+
+/// Exactly at an edge doubles see a radius of 1, give or take the root of their rounding.
+fn is_edge(found: &Analysis, radius: f64) -> bool {
+    let is_edge = found.kind == Some(Kind::Parabolic);
+    assert!(!is_edge || radius < 1.0 + GROWING, "{radius}");
+    is_edge
+}
+
+/// Subcycling run by its own words: each degree of freedom kicks when its step is over, by its row of M⁻¹K.
+fn held_velocities(plain: &System, levels: &[Level], dt: f64) -> f64 {
+    let (n, stiffness) = (plain.size(), &plain.clocks()[0].stiffness);
+    let ticks: u32 = levels.iter().map(|own| own.substeps).product();
+    let row = |i: usize| {
+        let inside = levels.iter().filter(|own| own.fine.contains(&i));
+        let substeps: u32 = inside.map(|own| own.substeps).product();
+        let entry = |r, j| if r == i { to_f64(&(stiffness.get(r, j) / plain.mass().get(r, r))) } else { 0.0 };
+        (1.0 / f64::from(substeps), ticks / substeps, DMatrix::from_fn(n, n, entry))
+    };
+    radius(&(0..n).map(row).collect::<Vec<_>>(), ticks, dt)
+}
+
+#[test]
+fn verdicts_on_subcycling_are_those_of_the_scheme_run() {
+    let (mut numbers, mut seen) = (Numbers(3), [0, 0]);
+    for _ in 0..600 {
+        let plain = numbers.plain();
+        let levels = numbers.levels(plain.size());
+        let (own, clocks) = Subcycles::newmark(plain.clone(), levels.clone()).unwrap();
+        assert_eq!(own.levels(), levels);
+        let found = clocks.decide(Route::Cheapest, &Limits::default()).unwrap();
+        assert!(found.is_proof(), "{plain:?} {levels:?}");
+        let radius = held_velocities(&plain, &levels, to_f64(&plain.clocks()[0].step));
+        if is_edge(&found, radius) {
+            continue;
+        }
+        if let Some(stable) = told(radius) {
+            assert_eq!(found.is_stable(), stable, "{plain:?} {levels:?}");
+            seen[usize::from(stable)] += 1;
+        }
+    }
+    assert!(seen.iter().all(|&n| n > 100), "{seen:?}");
+}
+
+#[test]
+fn exact_arithmetic_agrees_with_discs_on_subcycling() {
+    let mut numbers = Numbers(5);
+    for _ in 0..60 {
+        let plain = numbers.plain();
+        let levels = numbers.levels(plain.size());
+        let (_, clocks) = Subcycles::newmark(plain, levels).unwrap();
+        let [cheapest, exact] = [Route::Cheapest, Route::Exact]
+            .map(|route| clocks.decide(route, &Limits::default()).unwrap().kind);
+        assert_eq!(cheapest, exact);
+    }
+}
+
+/// A system file of bars in a row, E = ρ = 1.
+fn file((lengths, held): &(Vec<i64>, bool), levels: &[Level], step: &str, scheme: &str) -> Value {
+    let ends = lengths.iter().scan(0, |x, own| {
+        *x += own;
+        Some(json!([*x]))
+    });
+    let nodes: Vec<Value> = std::iter::once(json!([0])).chain(ends).collect();
+    let elements: Vec<_> = (0..lengths.len()).map(|e| [e, e + 1]).collect();
+    let fixed = if *held { vec![0, lengths.len()] } else { vec![0] };
+    let levels: Vec<_> =
+        levels.iter().map(|own| json!({"elements": own.fine, "substeps": own.substeps})).collect();
+    json!({
+        "schema": "kickdrift/system/1", "scheme": scheme, "levels": levels,
+        "mesh": {"nodes": nodes, "elements": elements, "fixed": fixed, "young": 1, "density": 1, "step": step},
+    })
+}
+
+/// AVI run element by element: each kicks both of its nodes when its own step is over.
+fn element_by_element((lengths, held): &(Vec<i64>, bool), levels: &[Level], dt: f64) -> f64 {
+    let n = lengths.len() - usize::from(*held);
+    let length = |e: usize| lengths.get(e).map_or(0.0, |own| *own as f64);
+    // Node i + 1 is between elements i and i + 1.
+    let mass = |i: usize| (length(i) + length(i + 1)) / 2.0;
+    let ticks: u32 = levels.iter().map(|own| own.substeps).product();
+    let element = |e: usize| {
+        let inside = levels.iter().filter(|own| own.fine.contains(&e));
+        let substeps: u32 = inside.map(|own| own.substeps).product();
+        let along = |i: usize| f64::from(i + 1 == e) - f64::from(i == e);
+        let force = DMatrix::from_fn(n, n, |i, j| along(i) * along(j) / (length(e) * mass(i)));
+        (1.0 / f64::from(substeps), ticks / substeps, force)
+    };
+    radius(&(0..lengths.len()).map(element).collect::<Vec<_>>(), ticks, dt)
+}
+
+#[test]
+fn verdicts_on_avi_are_those_of_its_elements_run() {
+    let (mut numbers, mut seen) = (Numbers(9), [0, 0]);
+    for _ in 0..400 {
+        let bars = numbers.bars();
+        let (levels, step) = (numbers.levels(bars.0.len()), ratio(1 + numbers.below(40), 10));
+        let scene = SystemScene::read(&file(&bars, &levels, &step.to_string(), "avi").to_string()).unwrap();
+        let found = scene.model().decide(Route::Cheapest, &Limits::default()).unwrap();
+        assert!(found.is_proof(), "{bars:?} {levels:?} {step}");
+        let radius = element_by_element(&bars, &levels, to_f64(&step));
+        if is_edge(&found, radius) {
+            continue;
+        }
+        if let Some(stable) = told(radius) {
+            assert_eq!(found.is_stable(), stable, "{bars:?} {levels:?} {step}");
+            seen[usize::from(stable)] += 1;
+        }
+    }
+    assert!(seen.iter().all(|&n| n > 100), "{seen:?}");
+}
+
+#[test]
+fn without_substeps_all_schemes_are_verlets() {
+    let mut numbers = Numbers(13);
+    for _ in 0..40 {
+        let (bars, step) = (numbers.bars(), ratio(1 + numbers.below(40), 10).to_string());
+        let levels = [Level { fine: [0, 1].into(), substeps: 1 }];
+        let kinds = ["lts", "newmark", "avi"].map(|scheme| {
+            let scene = SystemScene::read(&file(&bars, &levels, &step, scheme).to_string()).unwrap();
+            let told = scene.local_steps_summary().unwrap();
+            assert_eq!(told.scheme.name(), scheme);
+            (scene.model().decide(Route::Cheapest, &Limits::default()).unwrap().kind, told.plain_limit)
+        });
+        assert!(kinds.iter().all(|own| own.0 == kinds[0].0), "{bars:?} {step}");
+        let limits = kinds.map(|own| own.1.unwrap());
+        assert!(limits.iter().all(|own| own.0 <= limits[0].1 && limits[0].0 <= own.1), "{limits:?}");
+    }
+}
+
+/// Two masses of THEORY section 18, A = [[1, −1], [−1, 9]], the second one takes two substeps.
+#[test]
+fn two_masses_have_two_bands_of_unstable_steps_below_their_limit() {
+    let file = json!({
+        "schema": "kickdrift/system/1", "masses": [1, 1], "scheme": "newmark",
+        "potentials": [{"step": "1/2", "stiffness": [[1, -1], [-1, 9]]}],
+        "levels": [{"fine": [1], "substeps": 2}],
+    });
+    let scene = SystemScene::read(&file.to_string()).unwrap();
+    let found =
+        scene.intervals(&"outer=1/2..3/2".parse::<Span>().unwrap(), 1e-5, &Limits::default()).unwrap();
+    let told: Vec<_> = found.stretches.iter().filter(|own| own.verdict != Holds::NotTold).collect();
+    let verdicts: Vec<_> = told.iter().map(|own| own.verdict).collect();
+    let [s, u] = [Holds::Stable, Holds::Unstable];
+    assert_eq!(verdicts, [s, u, s, u, s, u], "{told:?}");
+    // The scheme run on both sides of each edge; what is not told is narrow.
+    let (one, levels) = (ratio(1, 1), [Level { fine: [1].into(), substeps: 2 }]);
+    let stiffness = Symmetric::try_from(&DMatrix::from_row_slice(2, 2, &[1.0, -1.0, -1.0, 9.0])).unwrap();
+    let plain =
+        System::new(Symmetric::diagonal(&[one.clone(), one.clone()]), vec![Potential::new(stiffness, one)]);
+    let plain = plain.unwrap();
+    for pair in told.windows(2) {
+        let (before, after) = (pair[0].hi, pair[1].lo);
+        assert!(after - before < 1e-4, "{pair:?}");
+        for (dt, own) in [(before - 1e-3, pair[0]), (after + 1e-3, pair[1])] {
+            assert_eq!(told_of(held_velocities(&plain, &levels, dt)), own.verdict, "{dt}");
+        }
+    }
+    // Beyond 4/3 the second mass alone, 9 dt²/4 = 4, is at its limit.
+    let last = told.last().unwrap();
+    assert!((last.lo - 4.0 / 3.0).abs() < 1e-3, "{last:?}");
+}
+
+fn told_of(radius: f64) -> Holds {
+    told(radius).map_or(Holds::NotTold, |stable| if stable { Holds::Stable } else { Holds::Unstable })
+}
+
+#[test]
+fn intervals_of_the_bars_in_the_scenes_are_those_of_the_schemes_run() {
+    let levels = [Level { fine: [2, 3].into(), substeps: 2 }];
+    let bars = (vec![2, 2, 1, 1, 2, 2], true);
+    let nodes = [Level { fine: [1, 2, 3].into(), substeps: 2 }];
+    let plain = SystemScene::read(&file(&bars, &levels, "1", "lts").to_string()).unwrap();
+    let plain = plain.model().local_steps().unwrap().plain().clone();
+    for (path, is_avi) in [("data/scenes/bar-avi.json", true), ("data/scenes/subcycled.json", false)] {
+        let scene = SystemScene::read(&std::fs::read_to_string(path).unwrap()).unwrap();
+        let span = "outer=1..5/2".parse::<Span>().unwrap();
+        let found = scene.intervals(&span, 1e-5, &Limits::default()).unwrap();
+        let (mut seen, mut open) = ([0, 0], 0);
+        for k in 1..300 {
+            let dt = 1.0 + 0.005 * f64::from(k);
+            let run = if is_avi {
+                element_by_element(&bars, &levels, dt)
+            } else {
+                held_velocities(&plain, &nodes, dt)
+            };
+            let own = found.stretches.iter().find(|own| own.lo <= dt && dt <= own.hi);
+            let verdict = own.map_or(Holds::NotTold, |own| own.verdict);
+            match (told(run), verdict) {
+                (_, Holds::NotTold) => open += 1,
+                (Some(stable), verdict) => {
+                    assert_eq!(verdict == Holds::Stable, stable, "{path}: {dt}");
+                    seen[usize::from(stable)] += 1;
+                }
+                (None, _) => {}
+            }
+        }
+        assert!(seen.iter().all(|&n| n > 20) && open < 10, "{path}: {seen:?}, {open} not told");
+    }
+}
+
+#[test]
+fn a_step_of_another_ratio_is_decided_as_a_file_of_that_step() {
+    let text = std::fs::read_to_string("data/scenes/subcycled.json").unwrap();
+    let scene = SystemScene::read(&text).unwrap();
+    for dt in ["169/100", "1697/1000", "17/10", "11/5"] {
+        let mut other: Value = serde_json::from_str(&text).unwrap();
+        other["mesh"]["step"] = dt.into();
+        let other = SystemScene::read(&other.to_string()).unwrap();
+        let step: Rational = kickdrift::number::parse::parse_rational("step", dt).unwrap();
+        let [here, there] = [
+            scene.model().decide_at(&step, &Limits::default()).unwrap(),
+            other.model().decide(Route::Cheapest, &Limits::default()).unwrap(),
+        ];
+        assert_eq!(here.kind, there.kind, "{dt}");
+    }
+    assert!(matches!(scene.model(), Model::NoGradient(_)));
+}
+
+#[test]
+fn what_these_schemes_have_not_is_refused_by_its_field() {
+    let with = |scheme: &str, changes: &[(&str, Value)]| {
+        let mut file =
+            file(&(vec![1, 1, 2], true), &[Level { fine: [1].into(), substeps: 2 }], "1/2", scheme);
+        changes.iter().for_each(|(key, value)| file[*key] = value.clone());
+        SystemScene::read(&file.to_string())
+    };
+    let masses = json!([1, 1]);
+    let springs = json!([{"step": 1, "springs": [[0, 1, 1]]}]);
+    let nested = json!([{"elements": [1], "substeps": 2}, {"elements": [0], "substeps": 2}]);
+    for (scheme, changes, field) in [
+        ("newmark", vec![("friction", json!("1/10"))], "friction"),
+        ("newmark", vec![("method", json!("molly-short"))], "method"),
+        ("newmark", vec![("levels", json!([{"substeps": 2}]))], "levels[0]"),
+        ("avi", vec![("method", json!("implicit-explicit"))], "method"),
+        ("avi", vec![("levels", json!([{"fine": [0], "substeps": 2}]))], "levels[0]"),
+        ("avi", vec![("levels", json!([{"elements": [3], "substeps": 2}]))], "levels[0].elements"),
+        ("avi", vec![("levels", json!([{"elements": [0], "substeps": 0}]))], "levels[0].substeps"),
+        ("avi", vec![("levels", nested)], "levels[1].fine"),
+        ("avi", vec![("mesh", Value::Null), ("masses", masses), ("potentials", springs)], "scheme"),
+        ("asynchronous", vec![], "scheme"),
+    ] {
+        let error = with(scheme, &changes).unwrap_err();
+        assert_eq!(error.field(), field, "{error}");
+        assert!(!error.to_string().contains('\n'), "{error}");
+    }
+    let own = with("newmark", &[]).unwrap();
+    let error = own.linear_simulation(vec![0.0; 2], vec![0.0; 2]).err().unwrap();
+    assert_eq!(error.field(), "scheme");
+    // AVI with friction is a system of clocks as any.
+    let damped = with("avi", &[("friction", json!("1/10"))]).unwrap();
+    assert!(damped.friction(&Limits::default()).unwrap().is_some());
+}
