@@ -339,6 +339,8 @@ def advise(
     **made
         What else makes the system of OpenMM's or ASE's: the keywords of :func:`kickdrift.openmm.system` (``positions``,
         ``topology``, ``integrator`` and so on) or :func:`kickdrift.ase.system` (``groups``).
+        Of OpenMM's with more than 1,200 degrees of freedom the answer is that of :func:`kickdrift.openmm.bands`, which
+        takes seconds, unless ``longest`` gives the seconds that Hessians may take.
 
     Raises
     ------

@@ -42,25 +42,29 @@ def smooth(force: Force, positions: Doubles, reach: float) -> Force:
 
 @dataclass(frozen=True)
 class Work:
-    """What Hessians will take, before they are begun: their columns, how many of them, and seconds a force takes."""
+    """What Hessians will take, before they are begun: their columns, how many are kept, seconds a force takes, and how
+    many Hessians the way to a minimum or an orbit takes."""
 
     columns: int
     hessians: int
     evaluation: float
+    sought: int = 0
 
     @property
     def seconds(self) -> float:
         """Four forces a column."""
-        return 4 * self.columns * self.hessians * self.evaluation
+        return 4 * self.columns * (self.hessians + self.sought) * self.evaluation
 
     @property
     def bytes(self) -> float:
-        """Matrices of doubles: six while one is made, and of each four copies in the system."""
+        """Matrices of doubles: six while one is made, and of each that is kept four copies in the system."""
         return 8.0 * self.columns**2 * (6 + 4 * self.hessians)
 
     def __str__(self) -> str:
-        each = f"{self.hessians} Hessians of {self.columns} columns, {4 * self.columns * self.hessians} forces"
-        return f"{each} of {1e3 * self.evaluation:.3g} ms: some {self.seconds:.2g} s, {self.bytes / 1e9:.2g} GB"
+        sought = f" and some {self.sought} on the way there" if self.sought else ""
+        forces = 4 * self.columns * (self.hessians + self.sought)
+        each = f"{self.hessians} Hessians of {self.columns} columns{sought}, {forces} forces"
+        return f"{each} of {1e3 * self.evaluation:.3g} ms: some {_rounded(self.seconds)} s, {self.bytes / 1e9:.2g} GB"
 
     def begin(self, most: float, is_told: bool, remedy: str) -> None:
         """Say what it is, where that is wanted, and refuse what the library, the memory or ``most`` seconds do not let
@@ -71,17 +75,28 @@ class Work:
         KickdriftError
             Before anything is computed.
         """
+        who = f"{self.columns} degrees of freedom"
         if self.columns > LARGEST:
-            raise KickdriftError(
-                "system", f"{self.columns} degrees of freedom", f"dense ones are {LARGEST} at most: {remedy}"
-            )
+            raise KickdriftError("system", who, f"dense ones are {LARGEST} at most: {remedy}")
         free = _memory()
         if self.bytes > free:
-            raise KickdriftError("system", str(self), f"there are {free / 1e9:.2g} GB: {remedy}")
+            raise KickdriftError("system", who, f"there are {free / 1e9:.2g} GB for {self}: {remedy}")
         if self.seconds > most:
-            raise KickdriftError("system", str(self), f"is more than {most:g} s: give longest=SECONDS, or {remedy}")
+            raise KickdriftError("system", who, f"{self}, more than {most:g} s: give longest=SECONDS, or {remedy}")
         if is_told:
             print(self, file=sys.stderr, flush=True)
+
+
+def _rounded(seconds: float) -> str:
+    """Two digits, or whole seconds."""
+    return f"{seconds:.0f}" if seconds >= 100 else f"{seconds:.2g}"
+
+
+#: Hessians that Newton's method makes on its way from beside a minimum; from far away, up to ``_HESSIANS``.
+SOUGHT = 4
+
+#: Steps of Newton's method from a minimum to an orbit, some; each makes the Hessians of half a period.
+STEPS = 6
 
 
 #: The library takes dense matrices of so many rows.
@@ -195,6 +210,7 @@ def minimum(
     is_boxed: bool = False,
     reach: float = np.inf,
     far: float = np.inf,
+    progress: Progress | None = None,
 ) -> tuple[Doubles, Force]:
     """The minimum beside the positions by Newton's method, and the force whose minimum it is.
 
@@ -216,7 +232,9 @@ def minimum(
     reach : float
         Within which forces are known to be smooth; no coordinate moves by more than a seventh of it at once.
     far : float
-        How far a coordinate may go in all.
+        How far a coordinate may go in all; where a step would lead farther, it ends there.
+    progress : callable, optional
+        Called with the columns done and the columns in all, for each Hessian.
 
     Raises
     ------
@@ -240,13 +258,13 @@ def minimum(
             is_new = is_far or (size > 0.1 * smallest and size > _rounding(bend, held.masses))
             smallest, is_far = min(smallest, size), False
             if is_new:
-                bend, _ = hessian(here, own, held.masses, difference, columns)
+                bend, _ = hessian(here, own, held.masses, difference, columns, progress)
                 bend, hessians = bend + held.curvature(here(own), own, columns), hessians + 1
             if is_new or held.distances:
                 descent = _descent(frame.T @ bend @ frame)
             along = frame @ descent(pulled)
             own = _moved(here, held, own, kept, along, reach / 7)
-            if np.abs(own - positions).max() > far:
+            if max(np.abs(along / root).max(initial=0.0), np.abs(own - positions).max()) > far:
                 raise KickdriftError("positions", f"moved by {far:g}", "are not near a minimum: minimize them first")
         is_far = bool(np.abs(own - begun).max() > reach / 8)
         if is_far:
@@ -258,7 +276,7 @@ def minimum(
             break
     if best[0] < np.inf:
         _, own, here, size = best
-    bend, _ = hessian(here, own, held.masses, difference, columns)
+    bend, _ = hessian(here, own, held.masses, difference, columns, progress)
     frame = free(held, own, columns, is_boxed)
     arrived(size, frame.T @ (bend + held.curvature(here(own), own, columns)) @ frame, held.masses)
     return own, here
@@ -552,6 +570,7 @@ def compose(
     held: Held,
     difference: float,
     still: bool = False,
+    progress: Progress | None = None,
 ) -> Half:
     """Half a period along the orbit from rest at ``start``, or about ``start`` itself where ``still``.
 
@@ -564,8 +583,9 @@ def compose(
     at, going = np.hstack([first, np.zeros_like(first)]), np.hstack([np.zeros_like(first), first])
     known: dict[int, tuple[Doubles, float, float]] = {}
     struck = []
-    last = Fraction(0)
-    for kick in schedule(steps):
+    last, kicks = Fraction(0), schedule(steps)
+    strikes = sum(len(kick.groups) for kick in kicks)
+    for kick in kicks:
         drift = float(kick.time - last)
         if still:
             at = at + drift * going
@@ -581,6 +601,8 @@ def compose(
             # Of smooth forces the fourth order leaves of the second order's error what that is of the whole.
             error = correction**2 / max(own, 1e-300) + asymmetry
             struck.append(Struck(float(duration), allowed.T @ at, error, own))
+            if progress is not None:
+                progress(len(struck), strikes)
             if still:
                 stiffness = stiffness + held.curvature(forces[group](position), position)
                 going = going - float(duration) * (allowed @ (allowed.T @ (stiffness @ at)))
@@ -631,6 +653,7 @@ def _newton(
     held: Held,
     difference: float,
     firm: Doubles,
+    progress: Progress | None = None,
 ) -> _Orbit:
     """Damped Newton's method for rest after half a period.
 
@@ -646,7 +669,7 @@ def _newton(
         return float(np.abs(firm.T @ _swing(forces, steps, moved(part), held)).max())
 
     while True:
-        half = compose(forces, steps, start, held, difference)
+        half = compose(forces, steps, start, held, difference, progress=progress)
         pulls = firm.T @ half.last @ half.matrix[half.first.shape[1] :, : half.first.shape[1]] @ half.first.T @ firm
         every = half.last @ half.speed
         speed = firm.T @ every
@@ -683,6 +706,7 @@ def monodromy(
     difference: float,
     about: str,
     unit: str | None = None,
+    progress: Progress | None = None,
 ) -> Monodromy:
     """The monodromy about a minimum ``at``, or about the periodic orbit that Newton's method finds from there.
 
@@ -691,7 +715,8 @@ def monodromy(
     the minimum, it is followed from there: each group's force less (1 - t) times its value at the minimum, which in the
     total cancel, has the minimum as its orbit at t = 0 and is the force itself at t = 1. Distances are held as RATTLE
     holds them; what they take up of a force counts as none. Where neither finds it, it is followed from shorter steps,
-    and where it ends is told in the unit of the steps; ``unit=None`` leaves that out.
+    and where it ends is told in the unit of the steps; ``unit=None`` leaves that out. ``progress`` is called with the
+    Hessians of half a period that are done and all of them, at each of Newton's steps.
 
     Raises
     ------
@@ -701,7 +726,7 @@ def monodromy(
     own = list(forces.values())
     period = _common(steps)
     if about == "minimum":
-        half = compose(own, steps, at, held, difference, still=True)
+        half = compose(own, steps, at, held, difference, still=True, progress=progress)
         values = _eigenvalues(half.matrix, half.struck, 0.0)
         return Monodromy(about, frozen(at.copy()), 0.0, period, frozen(half.matrix), 0.0, *values)
     if about != "orbit":
@@ -715,12 +740,14 @@ def monodromy(
     while done < 1.0:
         share = min(done + part, 1.0)
         less = [_less(force, (1 - share) * balance) for force, balance in zip(own, balances, strict=True)]
-        found = _newton(less, steps, start, held, difference, firm)
+        found = _newton(less, steps, start, held, difference, firm, progress)
         if found.residual <= _ARRIVED:
             done, part, start = share, 2 * part, found.positions
         elif part < _SMALLEST_PART:
             ends = ", as near a resonance of the kicks"
-            other, ends = (None, ends) if unit is None else _longer(own, steps, at, held, difference, firm, unit)
+            other, ends = (
+                (None, ends) if unit is None else _longer(own, steps, at, held, difference, firm, unit, progress)
+            )
             if other is None:
                 value = f"orbit, followed to {done:.0%} of the groups' own forces"
                 raise KickdriftError("about", value, f"it ends there{ends}: choose another step, or about='minimum'")
@@ -751,6 +778,7 @@ def _longer(
     difference: float,
     firm: Doubles,
     unit: str,
+    progress: Progress | None,
 ) -> tuple[_Orbit | None, str]:
     """The orbit followed from shorter steps at the same ratios, and in words at which outer step it ends.
 
@@ -762,7 +790,7 @@ def _longer(
 
     def reached(share: Fraction, start: Doubles) -> _Orbit | None:
         try:
-            found = _newton(forces, [share * step for step in steps], start, held, difference, firm)
+            found = _newton(forces, [share * step for step in steps], start, held, difference, firm, progress)
         except (KickdriftError, np.linalg.LinAlgError):
             return None
         return found if found.residual <= _ARRIVED else None

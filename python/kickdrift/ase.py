@@ -15,12 +15,15 @@ from kickdrift._errors import KickdriftError, needs
 from kickdrift._held import Held
 from kickdrift._hessians import (
     LONGEST,
+    SOUGHT,
+    STEPS,
     Force,
     Monodromy,
     Work,
     hessian,
     minimum,
     monodromy,
+    schedule,
     seconds_of,
     seen,
     unbalanced,
@@ -97,10 +100,8 @@ def system(
     True
     """
     forces, steps, masses = _forces(atoms, groups)
-    dear = sum(seconds_of(force, atoms.positions) for force in forces.values()) / len(forces)
-    hessians = len(forces) * (4 if minimize else 1)
-    Work(3 * len(atoms), hessians, dear).begin(longest, progress is True, "fewer atoms")
-    where = _start(atoms, forces, masses, minimize, difference)
+    _begun(forces, atoms, len(forces), 0, minimize, progress, longest)
+    where = _start(atoms, forces, masses, minimize, difference, progress)
     seen_by = shown(progress)
     measured = {
         name: hessian(force, where, masses, difference, None, seen_by, symmetric) for name, force in forces.items()
@@ -139,6 +140,8 @@ def oscillations(
     about: str = "orbit",
     minimize: bool = True,
     difference: float = DIFFERENCE,
+    progress: Progress | bool = False,
+    longest: float = LONGEST,
 ) -> Monodromy:
     """Measure what small deviations do over a period, about the integrator's own orbit or about the minimum.
 
@@ -148,6 +151,8 @@ def oscillations(
         As for :func:`system`.
     about : str
         ``"orbit"`` or ``"minimum"``.
+    progress, longest
+        As for :func:`kickdrift.openmm.oscillations`.
 
     Raises
     ------
@@ -163,8 +168,26 @@ def oscillations(
     True
     """
     forces, steps, masses = _forces(atoms, groups)
-    where = _start(atoms, forces, masses, minimize, difference)
-    return monodromy(forces, steps, where, Held(masses), difference, about, "fs")
+    kicks = len(steps) if about == "minimum" else sum(len(kick.groups) for kick in schedule(steps))
+    _begun(forces, atoms, kicks, 0 if about == "minimum" else STEPS * kicks, minimize, progress, longest)
+    where = _start(atoms, forces, masses, minimize, difference, progress)
+    told = shown(progress, "Hessians of half a period")
+    return monodromy(forces, steps, where, Held(masses), difference, about, "fs", told)
+
+
+def _begun(
+    forces: Mapping[str, Force],
+    atoms: Any,
+    hessians: int,
+    sought: int,
+    minimize: bool,
+    progress: Progress | bool,
+    longest: float,
+) -> None:
+    """Say what Hessians of single groups will take, those of the way to the minimum included, or refuse it."""
+    dear = sum(seconds_of(force, atoms.positions) for force in forces.values()) / len(forces)
+    sought += SOUGHT * len(forces) if minimize else 0
+    Work(3 * len(atoms), hessians, dear, sought).begin(longest, progress is True, "fewer atoms")
 
 
 def _forces(atoms: Any, groups: Mapping[str, tuple[Any, Exact]]) -> tuple[dict[str, Force], list[Fraction], Doubles]:
@@ -196,9 +219,20 @@ def _force(atoms: Any, calculator: Any) -> Callable[[Doubles], Doubles]:
     return of
 
 
-def _start(atoms: Any, forces: Mapping[str, Force], masses: Doubles, minimize: bool, difference: float) -> Doubles:
+def _start(
+    atoms: Any,
+    forces: Mapping[str, Force],
+    masses: Doubles,
+    minimize: bool,
+    difference: float,
+    progress: Progress | bool,
+) -> Doubles:
     where = doubles("atoms", atoms.positions)
     if not minimize:
         return where
-    every = list(forces.values())
-    return minimum(lambda x: np.sum([force(x) for force in every], axis=0), where, Held(masses), difference)[0]
+    every, told = list(forces.values()), shown(progress, "columns on the way to the minimum")
+
+    def whole(at: Doubles) -> Doubles:
+        return np.asarray(np.sum([force(at) for force in every], axis=0))
+
+    return minimum(whole, where, Held(masses), difference, progress=told)[0]

@@ -27,6 +27,8 @@ from kickdrift._held import Held
 from kickdrift._hessians import (
     LARGEST,
     LONGEST,
+    SOUGHT,
+    STEPS,
     Force,
     Monodromy,
     Work,
@@ -34,6 +36,7 @@ from kickdrift._hessians import (
     hessian,
     minimum,
     monodromy,
+    schedule,
     seconds_of,
     seen,
     unbalanced,
@@ -241,19 +244,15 @@ def system(
             raise KickdriftError("system", f"{len(constraints)} constraints", remedy)
         return _sparse(system, engine, clocks, where, minimize, difference, topology, shown(progress), integrator)
     columns = 3 * (engine.count if atoms is None else len(atoms))
-    # Newton's method makes one of all forces, three or four times.
-    dear, remedy = (
-        seconds_of(engine.force(-1), where),
-        "atoms=[...] and minimize=False for some of them, or sparse=True",
-    )
-    Work(columns, len(_levels(clocks)), dear).begin(longest, progress is True, remedy)
+    dear, sought = seconds_of(engine.force(-1), where), SOUGHT if minimize else 0
+    work = Work(columns, len(_levels(clocks)), dear, sought)
+    work.begin(longest, progress is True, _instead(system))
     chosen = None if atoms is None else [3 * atom + axis for atom in atoms for axis in range(3)]
     if chosen is not None:
         constraints = [own for own in constraints if own[0] in set(atoms or ()) or own[1] in set(atoms or ())]
     notes = _notes(system, integrator, clocks)
     if minimize:
-        Work(columns, 3, dear).begin(longest, progress is True, remedy)
-        where, told = _at_rest(engine, where, constraints, difference, chosen)
+        where, told = _at_rest(engine, where, constraints, difference, chosen, _of_minimum(progress))
         notes += told
     held = Held(engine.masses, constraints)
     frame = held.frame(where, chosen)
@@ -298,6 +297,24 @@ def system(
     )
 
 
+def _instead(system: Any) -> str:
+    """What to ask where dense Hessians are too much."""
+    ewald = any(isinstance(own, mm.NonbondedForce) and own.getNonbondedMethod() in _EWALD for own in system.getForces())
+    sparse = "" if ewald or system.getNumConstraints() else ", sparse=True"
+    return f"{_BANDS}{sparse}, or atoms=[...] and minimize=False"
+
+
+_BANDS = "kickdrift.openmm.bands(...) for the fastest motions"
+
+
+#: Sums whose forces have no cutoff.
+_EWALD = (mm.NonbondedForce.Ewald, mm.NonbondedForce.PME, mm.NonbondedForce.LJPME)
+
+
+def _of_minimum(progress: Progress | bool) -> Progress | None:
+    return shown(progress, "columns on the way to the minimum")
+
+
 def _sparse(
     system: Any,
     engine: _Engine,
@@ -327,7 +344,7 @@ def _sparse(
         known = error / max(float(np.abs(diagonal).max(initial=0.0)), 1e-300)
         accuracy = max(accuracy, usable(known, name, f"{difference:g} nm", engine.smoother))
         size = max(size, float((diagonal / np.repeat(engine.masses, 3)).max(initial=0.0)))
-        pulls[name] = engine.force(sum(1 << group for group in groups))(where)
+        pulls[name] = engine.force(_mask(groups))(where)
         potentials[name] = (step, matrix)
     follow = "Orbits of so many atoms are not followed"
     notes = [*_notes(system, integrator, clocks), *unbalanced(pulls, size, engine.masses, "kJ/mol/nm", follow)]
@@ -390,8 +407,8 @@ class _Later:
 def given(own: Any, steps: Any, made: Mapping[str, Any]) -> tuple[System | _Later, Any]:
     """The system of a ``System`` or a ``Simulation``, and the schemes asked about beside its own.
 
-    It is asked for its bands where dense Hessians are too large, or where there are constraints and other than two
-    levels with forces.
+    It is asked for its bands where dense Hessians are too large, where they take long and no ``longest`` allows it, or
+    where there are constraints and other than two levels with forces.
     """
     arguments = dict(made)
     if isinstance(steps, Mapping):
@@ -409,7 +426,8 @@ def given(own: Any, steps: Any, made: Mapping[str, Any]) -> tuple[System | _Late
     plain = ("positions", "topology", "integrator", "steps", "minimize")
     asked: dict[str, Any] = {key: arguments[key] for key in plain if key in arguments}
     is_plain = arguments.keys() <= asked.keys() | {"progress", "longest"}
-    if is_plain and (3 * own.getNumParticles() > LARGEST or _is_held_fast(own, asked)):
+    most = LARGEST if "longest" in arguments else _DENSE
+    if is_plain and (3 * own.getNumParticles() > most or _is_held_fast(own, asked)):
         return _Later(own, asked), steps
     found = system(own, arguments.pop("positions"), **arguments)
     positions = found.arrays.get("positions")
@@ -435,6 +453,9 @@ def _terms_of(own: Any, groups: Sequence[int]) -> int:
     forces = [force for force in own.getForces() if force.getForceGroup() in groups and not _is_bath(force)]
     return sum(len(_forcefield._terms(force)) if _forcefield.are_bonded([force]) else 1 for force in forces)
 
+
+#: Dense Hessians of so many degrees of freedom are made unasked: of more, with PME, they take minutes to hours.
+_DENSE = 1200
 
 #: Orbits of so many degrees of freedom are followed unasked: some seconds.
 _FOLLOWED = 300
@@ -487,7 +508,7 @@ def _measured(
     where, constraints, chosen = at
     found = []
     for step, groups in _levels(clocks).items():
-        force = engine.force(sum(1 << group for group in groups))
+        force = engine.force(_mask(groups))
         full, error = hessian(force, where, engine.masses, difference, chosen, progress)
         matrix = full
         if constraints:
@@ -532,6 +553,8 @@ def oscillations(
     about: str = "orbit",
     minimize: bool = True,
     difference: float = DIFFERENCE,
+    progress: Progress | bool = False,
+    longest: float = LONGEST,
 ) -> Monodromy:
     """Measure what small deviations do over a period, about the integrator's own periodic orbit: what a run shows.
 
@@ -546,6 +569,12 @@ def oscillations(
     about : str
         ``"orbit"``, or ``"minimum"``: the fixed point of all forces together, good to some hundredths of a fs near the
         first unstable step, with rates good to 10 % there and worse beyond.
+    progress : bool or callable
+        A bar on standard error, in a log four lines for each Hessian on the way to the minimum and four for each step
+        of Newton's method, behind what it will take; or what is called with the columns, and then with the Hessians of
+        half a period, that are done and that there are in all.
+    longest : float
+        Seconds: what would take longer, or more memory than there is, is refused before it is begun.
 
     Returns
     -------
@@ -567,7 +596,9 @@ def oscillations(
     >>> kickdrift.openmm.oscillations(own, [[0, 0, 0]], steps={0: "1/100"}, about="minimum")
     Monodromy(about the minimum: stable, an estimate)
     """
-    return _oscillations(system, positions, integrator, steps, about, minimize, difference)
+    return _oscillations(
+        system, positions, integrator, steps, about, minimize, difference, progress=progress, longest=longest
+    )
 
 
 def _oscillations(
@@ -579,19 +610,26 @@ def _oscillations(
     minimize: bool = True,
     difference: float = DIFFERENCE,
     unit: str | None = "ps",
+    progress: Progress | bool = False,
+    longest: float = LONGEST,
 ) -> Monodromy:
     """:func:`oscillations`; without a ``unit`` an orbit not found at once is not followed from shorter steps."""
     clocks = _clocks(system, integrator, steps)
     engine = _engine(system)
     held = Held(engine.masses, _constraints(system))
-    where = _positions(positions, engine.count)
+    where, levels = _positions(positions, engine.count), _levels(clocks)
+    kicks = len(levels) if about == "minimum" else sum(len(kick.groups) for kick in schedule(list(levels)))
+    sought = (SOUGHT if minimize else 0) + (0 if about == "minimum" else STEPS * kicks)
+    # The mean of the groups, each of which is asked alone.
+    dear = sum(seconds_of(engine.force(_mask(own)), where) for own in levels.values()) / len(levels)
+    Work(3 * engine.count, kicks, dear, sought).begin(longest, progress is True, _BANDS)
     if minimize:
-        where = _minimized(engine, where, held.distances, difference)
+        where = _minimized(engine, where, held.distances, difference, progress=_of_minimum(progress))
     # Onto the held distances, to rounding: engines keep them to their tolerance.
     where = held.drift(where, np.zeros(where.size), 1.0)[0]
-    levels = _levels(clocks)
-    forces = {str(groups): engine.force(sum(1 << group for group in groups)) for groups in levels.values()}
-    return monodromy(forces, list(levels), where, held, difference, about, unit)
+    forces = {str(groups): engine.force(_mask(groups)) for groups in levels.values()}
+    told = shown(progress, "Hessians of half a period")
+    return monodromy(forces, list(levels), where, held, difference, about, unit, told)
 
 
 def bands(
@@ -700,7 +738,7 @@ def _band(
 
     step, groups = level
     name = " + ".join(f"group {group}" for group in groups)
-    force = engine.force(sum(1 << group for group in groups))
+    force = engine.force(_mask(groups))
     own = [each for each in system.getForces() if each.getForceGroup() in groups and not _moves_nothing(each)]
     pairs = (each for each in system.getForces() if isinstance(each, mm.NonbondedForce))
     reciprocal = (each.getReciprocalSpaceForceGroup() for each in pairs)
@@ -804,6 +842,11 @@ def _changed(system: Any, topology: Any, where: Doubles, constraints: str | None
     return own
 
 
+def _mask(groups: Sequence[int]) -> int:
+    """The bits by which OpenMM knows some groups."""
+    return sum(1 << group for group in groups)
+
+
 def _levels(clocks: Mapping[int, Fraction]) -> dict[Fraction, list[int]]:
     """The groups of each step, the smallest first."""
     levels: dict[Fraction, list[int]] = {}
@@ -840,7 +883,7 @@ def _acting(system: Any) -> dict[int, list[str]]:
             continue
         acting.setdefault(force.getForceGroup(), []).append(force.getName())
         own = getattr(force, "getReciprocalSpaceForceGroup", lambda: -1)()
-        if own >= 0 and force.getNonbondedMethod() in (force.Ewald, force.PME, force.LJPME):
+        if own >= 0 and force.getNonbondedMethod() in _EWALD:
             acting.setdefault(own, []).append(f"reciprocal space of {force.getName()}")
     return acting
 
@@ -930,9 +973,10 @@ def _minimized(
     constraints: Sequence[_Constraint],
     difference: float,
     chosen: Sequence[int] | None = None,
+    progress: Progress | None = None,
 ) -> Doubles:
     """:func:`_at_rest`, the positions alone."""
-    return _at_rest(engine, where, constraints, difference, chosen)[0]
+    return _at_rest(engine, where, constraints, difference, chosen, progress)[0]
 
 
 def _at_rest(
@@ -941,6 +985,7 @@ def _at_rest(
     constraints: Sequence[_Constraint],
     difference: float,
     chosen: Sequence[int] | None = None,
+    progress: Progress | None = None,
 ) -> tuple[Doubles, list[str]]:
     """The minimum in the engine's own context: the system given and its contexts stay as they are; and what to know of
     it.
@@ -958,7 +1003,8 @@ def _at_rest(
     is_boxed = engine.is_boxed and chosen is None
 
     def newton(near: Doubles, far: float) -> tuple[Doubles, Force]:
-        return minimum(force, near, held, difference, chosen, is_boxed, _REACH if engine.cuts else np.inf, far)
+        reach = _REACH if engine.cuts else np.inf
+        return minimum(force, near, held, difference, chosen, is_boxed, reach, far, progress)
 
     try:
         found, smooth = newton(where, _CLOSE)

@@ -376,6 +376,17 @@ def test_a_log_has_some_ten_lines_and_says_first_what_it_will_take(capsys: pytes
     first, *lines = capsys.readouterr().err.splitlines()
     assert re.fullmatch(r"2 Hessians of 36 columns, 288 forces of [\d.e-]+ ms: some [\d.e-]+ s, [\d.e-]+ GB", first)
     assert lines == 2 * [f"{done} of 36 columns" for done in (9, 18, 27, 36)]
+    # What is on the way to a minimum counts and shows, too.
+    ko.system(system, positions, steps={0: "0.5fs", 1: "2fs"}, progress=True)
+    first, *lines = capsys.readouterr().err.splitlines()
+    assert first.startswith("2 Hessians of 36 columns and some 4 on the way there, 864 forces of ")
+    assert lines[3] == "36 of 36 columns on the way to the minimum" and lines[-1] == "36 of 36 columns"
+    # Of an orbit: five kicks of the inner clock in half of 4 fs, and one of the outer.
+    ko.oscillations(system, positions, steps={0: "0.5fs", 1: "4fs"}, minimize=False, progress=True)
+    first, *lines = capsys.readouterr().err.splitlines()
+    assert first.startswith("6 Hessians of 36 columns and some 36 on the way there, 6048 forces of ")
+    assert lines[:4] == [f"{done} of 6 Hessians of half a period" for done in (2, 3, 5, 6)]
+    assert len(lines) % 4 == 0 and len(lines) <= 4 * 10
 
 
 def test_work_that_is_too_much_is_refused_before_it_begins(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -387,7 +398,14 @@ def test_work_that_is_too_much_is_refused_before_it_begins(monkeypatch: pytest.M
     monkeypatch.setattr(hessians, "_measured", begun)
     with pytest.raises(kd.KickdriftError, match="longest=SECONDS") as caught:
         ko.system(system, positions, steps={0: "0.5fs", 1: "2fs"}, minimize=False, longest=1e-6)
-    assert "2 Hessians of 36 columns" in str(caught.value.value)
+    assert "2 Hessians of 36 columns" in str(caught.value) and "sparse=True" in str(caught.value)
+    with pytest.raises(kd.KickdriftError, match="longest=SECONDS") as caught:
+        ko.oscillations(system, positions, steps={0: "0.5fs", 1: "4fs"}, minimize=False, longest=1e-6)
+    assert "6 Hessians of 36 columns" in str(caught.value)
+    # What helps must be what takes this system: no Ewald sum has sparse Hessians.
+    with pytest.raises(kd.KickdriftError, match="longest=SECONDS") as caught:
+        ko.system(*box(2), steps={0: "0.5fs", 1: "2fs", 2: "2fs"}, longest=1e-6)
+    assert "bands(...)" in str(caught.value) and "sparse" not in str(caught.value)
     monkeypatch.setattr(hessians, "_memory", lambda: 1e5)
     with pytest.raises(kd.KickdriftError, match=r"there are 0\.0001 GB"):
         ko.system(system, positions, steps={0: "0.5fs", 1: "2fs"}, minimize=False)
@@ -396,6 +414,29 @@ def test_work_that_is_too_much_is_refused_before_it_begins(monkeypatch: pytest.M
         many.addParticle(1.0)
     with pytest.raises(kd.KickdriftError, match="dense ones are 4096 at most"):
         ko.system(*grown(many), steps={0: "0.5fs"}, minimize=False)
+
+
+def test_advice_on_many_atoms_asks_for_no_dense_hessian_unless_it_may_take_its_time() -> None:
+    system, positions = box(6)
+    asked = {"positions": positions, "steps": {0: "0.5fs", 1: "2fs", 2: "4fs"}}
+    assert isinstance(ko.given(system, (), asked)[0], ko._Later)
+    with pytest.raises(kd.KickdriftError, match="1944 columns and some 4 on the way there"):
+        ko.given(system, (), asked | {"longest": 1.0})
+
+
+def test_far_from_a_minimum_newtons_method_is_left_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """An atom far beyond the rest of its bonds: the first step tells, and OpenMM's minimizer goes on."""
+    system, positions = bonds(1)
+    columns: list[int] = []
+    tell = ko._of_minimum(lambda done, of: columns.append(done))
+    relaxed = []
+    own = ko._relaxed
+    monkeypatch.setattr(ko, "_relaxed", lambda *given: relaxed.append(len(columns)) or own(*given))
+    there = positions.copy()
+    there[1] += (there[1] - there[0]) / np.linalg.norm(there[1] - there[0])
+    ko._minimized(ko._engine(system), there, [], ko.DIFFERENCE, progress=tell)
+    # One Hessian of 18 columns.
+    assert relaxed == [18]
 
 
 def grown(system: mm.System) -> tuple[mm.System, np.ndarray]:

@@ -102,14 +102,24 @@ pub fn document(own: &Intervals) -> Document {
     let places = own.stretches.iter().filter(is_place).count();
     let name = if own.number == "outer" { "the outer step" } else { &own.number };
     let inner = |steps| format!(", with {} in each", counted(steps as usize, "inner step", "inner steps"));
-    let mut lines = vec![
-        format!(
-            "{} of {name}{}",
-            counted(unstable, "unstable interval", "unstable intervals"),
-            own.inner_steps.map(inner).unwrap_or_default()
-        ),
-        format!("  {} where nothing is proven", counted(undecided - places, "stretch", "stretches")),
-    ];
+    let mut lines = vec![format!(
+        "{} of {name}{}",
+        counted(unstable, "unstable interval", "unstable intervals"),
+        own.inner_steps.map(inner).unwrap_or_default()
+    )];
+    let unproven = undecided - places - own.open.unwrap_or_default();
+    if let Some(open) = own.open.filter(|open| *open > 0) {
+        lines.push(format!(
+            "  {} that the accuracy of the data leaves open: known a thousand times better, most of each is told",
+            counted(open, "stretch", "stretches")
+        ));
+    }
+    if unproven > 0 || own.open.is_none_or(|open| open == 0) {
+        let is_measured = own.open.is_some() && unproven > 0;
+        let better = if is_measured { ", of data known a thousand times better neither" } else { "" };
+        lines
+            .push(format!("  {} where nothing is proven{better}", counted(unproven, "stretch", "stretches")));
+    }
     if places > 0 {
         let all = counted(places, "isolated place", "isolated places");
         lines.push(format!(
@@ -144,8 +154,12 @@ mod tests {
             stretch(after, 1.5, Holds::Stable),
             stretch(1.5, 1.75, Holds::NotTold),
         ];
-        let own = Intervals { number: "x".into(), is_discrete: false, inner_steps: None, stretches };
+        let own =
+            Intervals { number: "x".into(), is_discrete: false, inner_steps: None, stretches, open: None };
         let text = document(&own).render(Format::Text).unwrap();
         assert!(text.contains("  1 stretch where nothing is proven\n  1 isolated place between"), "{text}");
+        let text = document(&Intervals { open: Some(1), ..own }).render(Format::Text).unwrap();
+        assert!(text.contains("  1 stretch that the accuracy of the data leaves open"), "{text}");
+        assert!(!text.contains("where nothing is proven"), "{text}");
     }
 }

@@ -32,7 +32,9 @@ pub(super) fn lines(own: &Nearest, unit: &str) -> Vec<String> {
     lines.push(told("below", own.below, own.searched.0));
     lines.push(told("above", own.above, own.searched.1));
     for &(lo, hi) in &own.untold {
-        lines.push(format!("  nothing is proven of {}{unit}", decimal::enclosure(lo, hi)));
+        let between = decimal::enclosure(lo, hi);
+        lines
+            .push(format!("  not told, by the accuracy of the data or for want of a proof: {between}{unit}"));
     }
     lines
 }

@@ -120,15 +120,18 @@ impl SystemScene {
     pub fn intervals(&self, span: &Span, width: f64, limits: &Limits) -> Result<Intervals> {
         self.cost_of_intervals(span, width, limits)?;
         let (role, inner_steps) = (span.role()?, self.model.inner_steps());
-        let stretches = match role {
-            Role::Step => self.multiples(span, limits)?,
-            _ => {
-                self.over(span, limits, |number| self.model.stretches(number, span.ends(), width, limits))?
-            }
+        let (stretches, open) = match role {
+            Role::Step => (self.multiples(span, limits)?, None),
+            _ => self.over(span, limits, |number| {
+                let stretches = self.model.stretches(number, span.ends(), width, limits)?;
+                let open = self.model.open_by_accuracy(number, &stretches)?;
+                Ok((stretches, open))
+            })?,
         };
         let inner_steps =
             inner_steps.filter(|_| role == Role::Outer && self.model.method().has_inner_steps());
-        Ok(Intervals { number: span.path.clone(), is_discrete: role == Role::Step, inner_steps, stretches })
+        let is_discrete = role == Role::Step;
+        Ok(Intervals { number: span.path.clone(), is_discrete, inner_steps, stretches, open })
     }
 
     /// The products that these cost, roughly, where cells are narrow throughout.

@@ -104,11 +104,14 @@ pub(in crate::system) fn multipliers(
     Some(found)
 }
 
-/// The kind, where one of the half period's forms is definite: a few eliminations in integers, no polynomial; `None` where
-/// none is. The rigid modes of `frame` are set apart.
+/// The kind, where the trace of Bᵀ C tells or one of the half period's forms is definite: a few eliminations in integers, no
+/// polynomial; `None` where none is. The rigid modes of `frame` are set apart.
+///
+/// Stable motion has all n eigenvalues μ in \[−1, 0\], so a trace outside \[−n, 0\] is growth. It costs n² products: what grows by
+/// more than doubles can hold apart is decided by it, where a characteristic polynomial takes minutes.
 ///
 /// # Errors
-/// A budget error with the estimated cost, before any work.
+/// A budget error with the estimated cost, before the work that exceeds it.
 pub(in crate::system) fn decide_by_signs(
     system: &System,
     frame: &Frame,
@@ -117,12 +120,25 @@ pub(in crate::system) fn decide_by_signs(
     let program = IntegerProgram::new(system);
     let n = frame.kept.len() as f64;
     let (words, compose) = composing(system, frame, &program);
+    let allow = |cost: f64| {
+        limits.allow(cost.min(1e19) as u64, || {
+            format!("exact signs of the forms of {}", degrees_of_freedom(frame.kept.len()))
+        })
+    };
+    allow(compose + n * n * words.powi(2))?;
+    let mut blocks = program.half_period(system, frame);
+    if grows_by_trace(&blocks) {
+        return Ok(Some(Kind::Hyperbolic));
+    }
     // Four products, and four eliminations with integers of up to n times the length, half of it on average.
-    let forms = 4.0 * n.powi(3) * words.powi(2) + 4.0 * n.powi(3) / 3.0 * (n * words).powi(2);
-    limits.allow((compose + forms).min(1e19) as u64, || {
-        format!("exact signs of the forms of {}", degrees_of_freedom(frame.kept.len()))
-    })?;
-    Ok(signs::judge(&mut program.half_period(system, frame)))
+    allow(compose + 4.0 * n.powi(3) * words.powi(2) + 4.0 * n.powi(3) / 3.0 * (n * words).powi(2))?;
+    Ok(signs::judge(&mut blocks))
+}
+
+/// Whether the trace of S = Bᵀ C is outside \[−n, 0\].
+fn grows_by_trace(blocks: &IntegerBlocks) -> bool {
+    let trace: BigInt = blocks.b.iter().zip(blocks.c.iter()).map(|(b, c)| b * c).sum();
+    trace.is_positive() || trace < -&blocks.scale * BigInt::from(blocks.b.nrows())
 }
 
 impl<D: Domain> Inertias for IntegerBlocks<D> {
@@ -281,8 +297,17 @@ mod tests {
                 analysis.kind.unwrap()
             );
             // By inertias of power sums, which are what decides over ℚ[π].
-            let blocks = IntegerProgram::new(&system).half_period(&system, &frame);
+            let mut blocks = IntegerProgram::new(&system).half_period(&system, &frame);
             assert_eq!(moments::judge(&blocks), (exact.kind, exact.roots), "{system:?}");
+            // Where forms decide, they do so without the trace, too.
+            if grows_by_trace(&blocks) {
+                assert_eq!(kind, Kind::Hyperbolic, "{system:?}");
+                let forms = signs::judge(&mut blocks);
+                assert!(forms.is_none_or(|own| own == kind), "{system:?}");
+                *decided
+                    .entry(if forms.is_some() { "trace and forms" } else { "trace alone" })
+                    .or_insert(0) += 1;
+            }
             if !frame.rigid.is_empty() {
                 *decided.entry("rigid").or_insert(0) += 1;
             }
@@ -297,7 +322,8 @@ mod tests {
     fn signs_of_forms_agree_with_characteristic_polynomials() {
         let decided = agreed(300);
         // Coexistence has no definite form.
-        let seen = ["elliptic", "parabolic", "hyperbolic", "rigid"].iter().all(|kind| decided[kind] > 5);
+        let ways = ["elliptic", "parabolic", "hyperbolic", "rigid", "trace and forms", "trace alone"];
+        let seen = ways.iter().all(|kind| decided.get(kind).is_some_and(|count| *count > 5));
         assert!(seen, "{decided:?}");
     }
 

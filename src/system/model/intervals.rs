@@ -14,6 +14,10 @@ use crate::system::vary::stretches::{Stretch, most_cells};
 use crate::system::verdict::analysis::Analysis;
 use crate::system::verdict::decide::decide_by;
 use crate::system::verdict::limits::{Limits, Route};
+use crate::system::verdict::measured::Holds;
+
+/// What is open at an accuracy and told at one this much better, is open for the accuracy.
+const BETTER: f64 = 1e3;
 
 /// A number that is varied.
 pub enum Number<'a> {
@@ -40,7 +44,7 @@ impl Model {
     ) -> Result<Vec<Stretch>> {
         match (number, self) {
             (Number::Scale(level, factor), Model::Measured(own)) => {
-                own.stretches_of_scale(*level, range, *factor, width)
+                own.stretches_of_scale(*level, range, *factor, (width, own.accuracy))
             }
             (Number::Linear(at), _) => {
                 let at = |x: &Rational| Ok(at(x)?.moving()?.into_owned());
@@ -52,10 +56,39 @@ impl Model {
             }
             (_, Model::NoGradient(own)) => own.stretches(range, width),
             _ => match self.levels() {
-                Some(own) => own.stretches(range, width),
+                Some(own) => own.stretches(range, width, own.accuracy),
                 None => self.over_outer_steps(|family| family.stretches(range, width, limits)),
             },
         }
+    }
+
+    /// How many of `stretches`, which are those of [`Model::stretches`], are open for the accuracy of the data: of data known a thousand times
+    /// better most of such a stretch is told. `None` where stretches hold for the numbers given alone.
+    ///
+    /// # Errors
+    /// As [`Model::stretches`].
+    pub fn open_by_accuracy(&self, number: &Number, stretches: &[Stretch]) -> Result<Option<usize>> {
+        let Some(own) = self.levels().filter(|_| !matches!(number, Number::Linear(_))) else {
+            return Ok(None);
+        };
+        let accuracy = own.accuracy / BETTER;
+        let is_told = |of: &Stretch| -> Result<bool> {
+            let (range, all) = ((of.lo, of.hi), of.hi - of.lo);
+            // Cells of an eighth, sharpened at their ends.
+            let width = (all / of.lo.abs().max(of.hi.abs()) / 8.0).clamp(1e-9, 0.1);
+            let found = match number {
+                Number::Scale(level, factor) => {
+                    own.stretches_of_scale(*level, range, *factor, (width, accuracy))?
+                }
+                _ => own.stretches(range, width, accuracy)?,
+            };
+            let told = found.iter().filter(|of| of.verdict != Holds::NotTold).map(|of| of.hi - of.lo);
+            Ok(told.sum::<f64>() > all / 2.0)
+        };
+        // A place between neighbouring doubles is none.
+        let untold = stretches.iter().filter(|of| of.verdict == Holds::NotTold && of.lo.next_up() < of.hi);
+        let told = untold.map(is_told).collect::<Result<Vec<_>>>()?;
+        Ok(Some(told.into_iter().filter(|told| *told).count()))
     }
 
     /// The products of doubles that these cost, roughly, where cells are narrow throughout.

@@ -42,7 +42,7 @@ pub struct MeasuredSystem {
     /// The stiffnesses of steps that several potentials have: each is known to its own norm.
     shares: Vec<(Rational, Vec<DMatrix<f64>>)>,
     body: Body,
-    accuracy: f64,
+    pub(super) accuracy: f64,
     keeps_rigid: bool,
     method: Method,
     system: OnceLock<System>,
@@ -288,9 +288,9 @@ impl MeasuredSystem {
         (self.size() as u64).saturating_pow(3).saturating_mul(60)
     }
 
-    /// What is proven of all stiffnesses within the accuracy on a range of outer steps, as many inner ones in each.
-    pub(super) fn stretches(&self, range: (f64, f64), width: f64) -> Result<Vec<Stretch>> {
-        self.kernel()?.stretches(self.inner_steps(), range, width, self.accuracy)
+    /// What is proven of all stiffnesses within an accuracy on a range of outer steps, as many inner ones in each.
+    pub(super) fn stretches(&self, range: (f64, f64), width: f64, accuracy: f64) -> Result<Vec<Stretch>> {
+        self.kernel()?.stretches(self.inner_steps(), range, width, accuracy)
     }
 
     /// The same on a range of factors of one level, 0 the fast one, of the present value `factor`, all else as it is.
@@ -299,12 +299,12 @@ impl MeasuredSystem {
         level: usize,
         (lo, hi): (f64, f64),
         factor: f64,
-        width: f64,
+        (width, accuracy): (f64, f64),
     ) -> Result<Vec<Stretch>> {
         let Some((outer, _)) = self.outer() else {
             return Ok(vec![Stretch { lo, hi, verdict: Holds::NotTold }]);
         };
-        let cells = Cells::new(self.kernel()?, self.accuracy)?;
+        let cells = Cells::new(self.kernel()?, accuracy)?;
         cover((lo, hi), width, |lo, hi| {
             let (a, b) = (lo / factor, hi / factor);
             Ok(cells.verdict_scaled(&outer, level, (a.min(b), a.max(b))))
