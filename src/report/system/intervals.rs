@@ -110,13 +110,13 @@ pub fn document(own: &Intervals) -> Document {
     let unproven = undecided - places - own.open.unwrap_or_default();
     if let Some(open) = own.open.filter(|open| *open > 0) {
         lines.push(format!(
-            "  {} that the accuracy of the data leaves open: known a thousand times better, most of each is told",
+            "  {} that the accuracy of the data leaves open (data a thousand times as accurate decide most of each)",
             counted(open, "stretch", "stretches")
         ));
     }
     if unproven > 0 || own.open.is_none_or(|open| open == 0) {
         let is_measured = own.open.is_some() && unproven > 0;
-        let better = if is_measured { ", of data known a thousand times better neither" } else { "" };
+        let better = if is_measured { ", not even of data a thousand times as accurate" } else { "" };
         lines
             .push(format!("  {} where nothing is proven{better}", counted(unproven, "stretch", "stretches")));
     }

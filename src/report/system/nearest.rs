@@ -33,8 +33,9 @@ pub(super) fn lines(own: &Nearest, unit: &str) -> Vec<String> {
     lines.push(told("above", own.above, own.searched.1));
     for &(lo, hi) in &own.untold {
         let between = decimal::enclosure(lo, hi);
-        lines
-            .push(format!("  not told, by the accuracy of the data or for want of a proof: {between}{unit}"));
+        lines.push(format!(
+            "  not decided, by the accuracy of the data or for want of a proof: {between}{unit}"
+        ));
     }
     lines
 }

@@ -16,7 +16,7 @@ use crate::system::verdict::decide::decide_by;
 use crate::system::verdict::limits::{Limits, Route};
 use crate::system::verdict::measured::Holds;
 
-/// What is open at an accuracy and told at one this much better, is open for the accuracy.
+/// What is open at an accuracy and decided at one so many times as good is left open by the accuracy.
 const BETTER: f64 = 1e3;
 
 /// A number that is varied.
@@ -62,8 +62,8 @@ impl Model {
         }
     }
 
-    /// How many of `stretches`, which are those of [`Model::stretches`], are open for the accuracy of the data: of data known a thousand times
-    /// better most of such a stretch is told. `None` where stretches hold for the numbers given alone.
+    /// How many of `stretches`, which are those of [`Model::stretches`], the accuracy of the data leaves open: data a thousand times as
+    /// accurate decide most of such a stretch. `None` where stretches hold for the numbers given alone.
     ///
     /// # Errors
     /// As [`Model::stretches`].

@@ -40,7 +40,7 @@ pub struct Intervals {
     pub inner_steps: Option<u64>,
     /// They cover the range, in order; where edges were isolated exactly, neighbouring doubles end one and begin the next.
     pub stretches: Vec<Stretch>,
-    /// How many of those that are not told the accuracy of the data leaves open: known a thousand times better, most of each is told. `None`
+    /// How many of those that are not decided the accuracy of the data leaves open: data a thousand times as accurate decide most of each. `None`
     /// where stretches hold for the numbers given alone.
     pub open: Option<usize>,
 }
