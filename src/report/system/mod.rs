@@ -197,10 +197,12 @@ fn terms(family: &[i64], h: &str) -> String {
 /// One unstable multiplier in words.
 fn described(unstable: &Instability) -> String {
     let lambda = unstable.multiplier.lambda;
+    // Doubles have no digits behind the point from 10^15 on.
+    let part = |x: f64| if x.abs() < 1e9 { format!("{x:.6}") } else { format!("{x:.6e}") };
     let mut line = match unstable.origin {
-        Origin::RealPair => format!("multiplier {:.6}: one mode, ", lambda.re),
+        Origin::RealPair => format!("multiplier {}: one mode, ", part(lambda.re)),
         Origin::Collision => {
-            format!("multipliers {:.6} ± {:.6}i: two modes collide, ", lambda.re, lambda.im.abs())
+            format!("multipliers {} ± {}i: two modes collide, ", part(lambda.re), part(lambda.im.abs()))
         }
     };
     line += &format!("growth rate {}", rate(unstable.growth_rate));
