@@ -53,9 +53,7 @@ pub fn period(own: &Subcycles) -> DMatrix<f64> {
     let (n, clock) = (own.plain().size(), &own.plain().clocks()[0]);
     let pull =
         DMatrix::from_fn(n, n, |i, j| to_f64(&(clock.stiffness.get(i, j) / own.plain().mass().get(i, i))));
-    let of = |i: usize, level: &Level| if level.fine.contains(&i) { level.substeps } else { 1 };
-    let substeps: Vec<u32> =
-        (0..n).map(|i| own.levels().iter().map(|level| of(i, level)).product()).collect();
+    let substeps: Vec<u32> = (0..n).map(|i| Level::substeps_of(own.levels(), i)).collect();
     let (most, dt) = (own.levels().iter().map(|level| level.substeps).product::<u32>(), to_f64(&clock.step));
     let mut q = DMatrix::<f64>::identity(2 * n, 2 * n);
     for tick in 0..=most {

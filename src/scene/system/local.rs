@@ -47,13 +47,6 @@ impl Document {
             let remedy = "is for rational numbers in the file, without pi";
             return Err(Error::input("scheme", scheme.name(), remedy));
         };
-        if scheme != Scheme::Avi && self.friction.is_some() {
-            return Err(Error::input(
-                "friction",
-                "given",
-                "has no place in a scheme of local steps: leave it out",
-            ));
-        }
         if scheme == Scheme::Avi {
             // Its clocks are those of the elements already.
             let Some(mesh) = &self.mesh else {
@@ -63,6 +56,10 @@ impl Document {
             };
             let subcycles = Subcycles::avi(plain.clone(), mesh.elements.len(), mesh.levels(levels)?)?;
             return Ok((Model::Rational(plain), Some(subcycles)));
+        }
+        if self.friction.is_some() {
+            let remedy = "has no place in a scheme of local steps: leave it out";
+            return Err(Error::input("friction", "given", remedy));
         }
         let level = |(l, own)| self.level(l, own, &plain, moving);
         let levels = levels.iter().enumerate().map(level).collect::<Result<_>>()?;

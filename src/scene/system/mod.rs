@@ -266,12 +266,11 @@ impl SystemScene {
             self.model = Model::Measured(own.keeping_rigid());
         }
         if let Some(method) = method {
-            if self.subcycles.is_some() && method != Method::Respa {
-                let remedy = "has no place in a scheme of local steps: leave it out";
-                return Err(Error::input("method", method, remedy));
-            }
             if self.subcycles.is_none() {
                 self.model = with_method(self.model, self.bonds.as_ref(), method)?;
+            } else if method != Method::Respa {
+                let remedy = "has no place in a scheme of local steps: leave it out";
+                return Err(Error::input("method", method, remedy));
             }
         }
         if let Some(rate) = friction {

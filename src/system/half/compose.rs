@@ -181,9 +181,9 @@ pub(in crate::system) trait State<S> {
 }
 
 /// The rows of positions and of momenta over any ring.
-struct Columns<S> {
-    x: Vec<Vec<S>>,
-    p: Vec<Vec<S>>,
+pub(in crate::system) struct Columns<S> {
+    pub x: Vec<Vec<S>>,
+    pub p: Vec<Vec<S>>,
 }
 
 impl<S: Ring> State<S> for Columns<S> {

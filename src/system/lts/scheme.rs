@@ -90,6 +90,11 @@ impl Level {
         Ok(product)
     }
 
+    /// The substeps in a step of the whole of one degree of freedom, or of one element.
+    pub(crate) fn substeps_of(levels: &[Level], i: usize) -> u32 {
+        levels.iter().filter(|own| own.fine.contains(&i)).map(|own| own.substeps).product()
+    }
+
     /// The same of a system of one clock without a phase and with lumped masses.
     ///
     /// # Errors

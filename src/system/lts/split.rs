@@ -88,9 +88,7 @@ impl Subcycles {
     /// No level, levels that are no parts of the ones above, indices of `size` or more, too many substeps.
     pub fn substeps(levels: &[Level], size: usize) -> Result<Vec<u32>> {
         Level::check(levels, size)?;
-        let of =
-            |i: usize| levels.iter().filter(|own| own.fine.contains(&i)).map(|own| own.substeps).product();
-        Ok((0..size).map(of).collect())
+        Ok((0..size).map(|i| Level::substeps_of(levels, i)).collect())
     }
 
     /// Which of the schemes it is.

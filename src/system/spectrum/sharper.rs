@@ -10,11 +10,12 @@
 //! at these and 1 elsewhere: T D = D T, and the rows of T⁻¹ F T are ρ_i' ≤ τ ρ_i + c in J and ρ_j' ≤ ρ_j + c/τ elsewhere. So **a small τ narrows the discs
 //! of J to about c**, and widens the others by c/τ.
 
+use num_traits::Zero;
+
 use super::discs::Spectrum;
 use crate::number::rational::from_f64_exact;
-use crate::number::{Ball, Rational, U};
-use crate::schedule::Weight;
-use crate::system::half::compose::{Program, Row, State};
+use crate::number::{Enclosed, Ring, U};
+use crate::system::half::compose::{Columns, Program};
 use crate::system::linear::system::System;
 use crate::verdict::Kind;
 
@@ -23,6 +24,8 @@ const MOST: usize = 24;
 
 /// Of the balls: a period of some thousand kicks takes some dozen of these.
 const BITS: u32 = 192;
+
+type Fixed = Enclosed<BITS>;
 
 /// The τ that are tried.
 const WEIGHTS: [f64; 6] = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6];
@@ -35,9 +38,7 @@ impl Spectrum {
         if open.len() > MOST || open.iter().any(|&i| self.mu[i].im != 0.0) {
             return None;
         }
-        let program = Program::new(system).map(|x| Ball::from_rational(x, BITS));
-        let columns = open.iter().map(|&i| self.column(i, &program, system, scales));
-        let columns = columns.collect::<Option<Vec<f64>>>()?;
+        let columns = self.columns(&open, system, scales)?;
         let column = columns.into_iter().fold(0.0, f64::hypot);
         let narrowed = WEIGHTS.map(|weight| self.narrowed(&open, column, weight));
         for i in open {
@@ -51,52 +52,30 @@ impl Spectrum {
         Some(Kind::Elliptic)
     }
 
-    /// c_i of a real μ_i.
-    fn column(&self, i: usize, program: &Program<Ball>, system: &System, scales: &[f64]) -> Option<f64> {
-        let exact = |x: f64| from_f64_exact(x).map(|x| Ball::from_rational(&x, BITS));
-        let own: Vec<f64> = (0..self.mu.len()).map(|k| self.vectors[(k, i)].re).collect();
+    /// c_i of some real μ_i, by one period of their vectors side by side.
+    fn columns(&self, open: &[usize], system: &System, scales: &[f64]) -> Option<Vec<f64>> {
+        let exact = |x: f64| from_f64_exact(x).map(|x| Fixed::from_rational(&x));
         // Scales are powers of two.
-        let start: Vec<Ball> = own.iter().zip(scales).map(|(v, a)| exact(v / a)).collect::<Option<_>>()?;
-        let mut run = Column { x: start.clone(), p: vec![Ball::zero(); start.len()] };
+        let row = |(k, a): (usize, &f64)| {
+            open.iter().map(|&i| exact(self.vectors[(k, i)].re / a)).collect::<Option<Vec<_>>>()
+        };
+        let start: Vec<_> = scales.iter().enumerate().map(row).collect::<Option<_>>()?;
+        let mu: Vec<_> = open.iter().map(|&i| exact(self.mu[i].re)).collect::<Option<_>>()?;
+        let mut run = Columns { x: start.clone(), p: vec![vec![Fixed::zero(); open.len()]; start.len()] };
+        let program = Program::new(system).map(Fixed::from_rational);
         program.run(system.schedule().symmetric_period(), &mut run);
-        let mu = exact(self.mu[i].re)?;
-        let square = run.x.iter().zip(&start).zip(scales).try_fold(0.0, |sum, ((after, before), a)| {
-            let s = after.sub(before, BITS).scale2(-1);
-            let (lo, hi) = s.sub(&mu.mul(before, BITS), BITS).to_f64_enclosure();
-            Some(sum + (a * lo.abs().max(hi.abs())).powi(2)).filter(|sum: &f64| sum.is_finite())
-        })?;
-        // Some roundings of each term, and of their sum.
-        let rounding = (own.len() as f64 + 8.0) * U;
-        Some(1.01 * self.inverse? * square.sqrt() * (1.0 + rounding)).filter(|c| c.is_finite())
-    }
-}
-
-/// Positions and momenta in balls.
-struct Column {
-    x: Vec<Ball>,
-    p: Vec<Ball>,
-}
-
-impl State<Ball> for Column {
-    fn drift(&mut self, program: &Program<Ball>, island: usize, ticks: u64) {
-        if ticks == 0 {
-            return;
-        }
-        let ticks = Ball::from_rational(&Rational::from_integer(ticks.into()), BITS);
-        for &i in &program.islands[island] {
-            for (j, a) in &program.inverse_mass[i] {
-                let moved = ticks.mul(a, BITS).mul(&self.p[*j], BITS);
-                self.x[i] = self.x[i].add(&moved, BITS);
+        let mut squares = vec![0.0; open.len()];
+        for ((after, before), a) in run.x.iter().zip(&start).zip(scales) {
+            for (k, square) in squares.iter_mut().enumerate() {
+                let s = after[k].0.sub(&before[k].0, BITS).scale2(-1);
+                let (lo, hi) = s.sub(&mu[k].0.mul(&before[k].0, BITS), BITS).to_f64_enclosure();
+                *square += (a * lo.abs().max(hi.abs())).powi(2);
             }
         }
-    }
-
-    fn kick(&mut self, i: usize, row: &Row<Ball>, weight: Weight) {
-        let halvings = if weight == Weight::Full { 0 } else { -1 };
-        for (j, a) in row {
-            let kick = a.mul(&self.x[*j], BITS).scale2(halvings);
-            self.p[i] = self.p[i].sub(&kick, BITS);
-        }
+        // Some roundings of each term, and of their sum.
+        let factor = 1.01 * self.inverse? * (1.0 + (scales.len() as f64 + 8.0) * U);
+        let column = |square: f64| Some(factor * square.sqrt()).filter(|c| c.is_finite());
+        squares.into_iter().map(column).collect()
     }
 }
 
