@@ -159,7 +159,7 @@ impl SystemScene {
             return Err(Error::input(
                 "intervals",
                 &span.path,
-                "of subcycling name outer: the step, all in their ratios",
+                "cannot vary with scheme newmark: vary outer, the step, to which all substeps stay in proportion",
             ));
         }
         if role == Role::Outer && span.lo <= Rational::default() {

@@ -50,8 +50,7 @@ impl Document {
         if scheme == Scheme::Avi {
             // Its clocks are those of the elements already.
             let Some(mesh) = &self.mesh else {
-                let remedy =
-                    "is for the elements of a mesh: of potentials give each its own step, and no scheme";
+                let remedy = "needs a mesh, whose elements take the steps; without one give each potential its own step and leave out scheme";
                 return Err(Error::input("scheme", "avi", remedy));
             };
             let subcycles = Subcycles::avi(plain.clone(), mesh.elements.len(), mesh.levels(levels)?)?;
@@ -109,7 +108,8 @@ impl MeshDocument {
     pub fn levels(&self, levels: &[LevelDocument]) -> Result<Vec<Level>> {
         let level = |(l, own): (usize, &LevelDocument)| {
             let (Some(elements), None) = (&own.elements, &own.fine) else {
-                let remedy = "give elements: in avi these have clocks, degrees of freedom have none";
+                let remedy =
+                    "name elements: with avi elements have steps of their own, degrees of freedom have none";
                 return Err(Error::input(&format!("levels[{l}]"), "no elements", remedy));
             };
             let fine = indices(&format!("levels[{l}].elements"), elements, self.elements.len())?;

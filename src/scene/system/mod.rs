@@ -397,7 +397,7 @@ impl SystemScene {
                 return Err(Error::input(
                     "scheme",
                     "newmark",
-                    "a run is for forces kick by kick: choose avi or lts",
+                    "cannot be run by simulate: choose avi or lts",
                 ));
             }
             Model::NoGradient(_) => {

@@ -103,7 +103,7 @@ fn local_steps(document: &Document, arrays: &Arrays) -> Result<SparseSystem> {
             );
         }
         (Some(other), ..) => {
-            let remedy = "of sparse stiffnesses lts is the only one: leapfrog with local time steps";
+            let remedy = "is not there for sparse stiffnesses: choose lts, leapfrog with local time steps";
             return refused("scheme", other.into(), remedy);
         }
         (None, ..) => {

@@ -1,4 +1,4 @@
-//! Two more schemes on the levels of local time steps. Both are kicks and drifts, so that clocks decide them.
+//! Two more schemes on the levels of local time steps. Both are kicks and drifts, so each is decided as a system of clocks is.
 //!
 //! **Subcycling with held velocities** (Belytschko, Yen and Mullen 1979; Daniel, "The subcycled Newmark algorithm", Comput. Mech. 20, 272–281, 1997; in
 //! Abaqus/Explicit "selective subcycling"): explicit Newmark (central differences) node by node. A degree of freedom of the step d kicks at the multiples of d
@@ -34,7 +34,7 @@ pub struct Subcycles {
 }
 
 impl Subcycles {
-    /// Subcycling with held velocities, for a system of one clock whose step is that of what is in no level; and what decides it.
+    /// Subcycling with held velocities, and the clocks that decide it. `plain` has one clock, whose step is that of all which is in no level.
     ///
     /// ```
     /// use kickdrift::number::rational::ratio;
@@ -73,7 +73,7 @@ impl Subcycles {
         Ok((Subcycles { scheme: Scheme::Newmark, plain, size: n, levels }, clocks))
     }
 
-    /// AVI of so many elements; `clocks` has those of the levels.
+    /// AVI of `size` elements. `clocks` is the system in which the elements of each level kick with their own step.
     ///
     /// # Errors
     /// As [`Subcycles::substeps`].
@@ -106,7 +106,7 @@ impl Subcycles {
         &self.plain
     }
 
-    /// What answers tell of the scheme.
+    /// The scheme as answers state it: its levels, and plain leapfrog's limit beside them.
     pub fn summary(&self) -> SchemeSummary {
         SchemeSummary {
             scheme: self.scheme,

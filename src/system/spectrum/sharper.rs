@@ -1,4 +1,4 @@
-//! Single eigenvalues beside an edge or a neighbour, told by their own residuals where the discs of all are too wide.
+//! Eigenvalues close to an edge or to each other: their own residuals decide where the discs of all are too wide.
 //!
 //! In V⁻¹ S V = D + F the rows of F carry the error of the whole half period. A column carries that of one vector alone:
 //!
