@@ -17,8 +17,8 @@ const ROUNDED: f64 = 1e-9;
 
 /// Tr Q = Σ (λ + 1/λ) and Tr Q² = Σ (λ² + 1/λ²), a rigid mode counting as λ = 1.
 pub fn traces(scene: &SystemScene, analysis: &Analysis) -> Checked {
-    if analysis.parts.iter().any(|part| part.multipliers.len() < part.size) {
-        // Large parts tell the fastest one alone: there is no sum to compare.
+    if !analysis.has_all_multipliers() {
+        // There is no sum to compare.
         return Ok(());
     }
     let subcycles = scene.subcycles().filter(|_| scene.is_subcycled());

@@ -51,11 +51,12 @@ fn spectrum(analysis: &Analysis, shown: &[&Instability]) -> Panel {
         Axis::linear("growth rate", -0.5, 0.5).ticks(vec![zero])
     };
     let y = y.per_time();
-    let counts = format!(
-        "Multipliers: {} on the unit circle, {}",
-        counted(still.len(), "pair", "pairs"),
-        counted(moving.len(), "instability", "instabilities")
-    );
+    let grow = counted(moving.len(), "instability", "instabilities");
+    let counts = if analysis.has_all_multipliers() {
+        format!("Multipliers: {} on the unit circle, {grow}", counted(still.len(), "pair", "pairs"))
+    } else {
+        format!("Multipliers: {grow}; the others are not computed")
+    };
     let stems = moving.iter().map(|&[x, y]| vec![[x, 0.0], [x, y]]).collect();
     let panel = Panel::new(Axis::linear("angle of the multiplier, arg *λ*/π", -0.02, 1.02), y)
         .titled(&counts)

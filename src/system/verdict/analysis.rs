@@ -174,6 +174,11 @@ pub struct Analysis {
 }
 
 impl Analysis {
+    /// Whether every pair of multipliers is there: of large parts those that grow fastest are alone.
+    pub fn has_all_multipliers(&self) -> bool {
+        self.parts.iter().all(|part| part.multipliers.len() >= part.size)
+    }
+
     /// That of a system which is one part, all of its degrees of freedom its own.
     pub(in crate::system) fn of_part(part: Part, clocks: usize, warnings: Vec<String>) -> Self {
         Analysis {
