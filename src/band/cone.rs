@@ -17,15 +17,22 @@ pub struct Margins {
     pub of_middle: f64,
     /// In all of it.
     pub of_box: f64,
-    /// What of their difference is not affine in the box.
-    pub bent: f64,
+    /// What of their difference is of the second order in the box, and what of the third.
+    pub bent: [f64; 2],
 }
 
 impl Margins {
-    /// About the share of the box's sides at which it would be proven: m > l x + e x², with what is affine and what is not.
-    pub fn share(&self) -> f64 {
-        let affine = (self.of_middle - self.of_box - self.bent).max(0.0);
-        2.0 * self.of_middle / (affine + (affine * affine + 4.0 * self.of_middle * self.bent).sqrt())
+    /// About how many bisections until a part of the box is proven, where its sides are a share x: m > l x + q x² + e x³.
+    pub fn bisections(&self) -> u32 {
+        let [q, e] = self.bent;
+        let l = (self.of_middle - self.of_box - q - e).max(0.0);
+        let mut to_go = 0;
+        let mut x: f64 = 1.0;
+        while to_go < 60 && self.of_middle <= x * (l + x * (q + x * e)) {
+            to_go += 1;
+            x *= std::f64::consts::FRAC_1_SQRT_2;
+        }
+        to_go
     }
 }
 
@@ -127,12 +134,21 @@ impl Cone {
             let lost = |x: f64| if j % 2 == 0 { (sign * x).min(0.0) } else { -x.abs() };
             least.iter_mut().zip(change(*m)).for_each(|(least, x)| *least += lost(x));
         }
-        let of_middle = least.into_iter().fold(f64::INFINITY, f64::min);
-        for m in map.slopes(0).iter().chain(map.slopes(1)) {
+        let worst = |least: [f64; 4]| least.into_iter().fold(f64::INFINITY, f64::min);
+        let of_middle = worst(least);
+        for m in map.slopes().into_iter().flatten() {
             least.iter_mut().zip(change(*m)).for_each(|(least, x)| *least -= x.abs());
         }
+        let of_affine = worst(least);
+        for (k, terms) in map.squares().into_iter().enumerate() {
+            for (j, m) in terms.iter().enumerate() {
+                let lost = |x: f64| if j % 2 == 0 && k != 1 { (sign * x).min(0.0) } else { -x.abs() };
+                least.iter_mut().zip(change(*m)).for_each(|(least, x)| *least += lost(x));
+            }
+        }
+        let of_second = worst(least);
         let rounding = 1e-14 * map.size();
         let error = condition * (map.error + rounding) * UP;
-        Margins { of_middle, of_box: least.into_iter().fold(f64::INFINITY, f64::min) - error, bent: error }
+        Margins { of_middle, of_box: of_second - error, bent: [of_affine - of_second, error] }
     }
 }

@@ -12,8 +12,8 @@
 use std::f64::consts::PI;
 
 use super::UP;
-use super::affine::Affine;
-use super::family::Family;
+use super::family::{Family, Order};
+use super::taylor::Taylor;
 use super::trig::{arcsine, sine_cosine};
 use crate::number::U;
 
@@ -32,19 +32,19 @@ const MOST_TAIL: f64 = 1e-3;
 /// The clock that a box is followed by: √Λ/2 of its own stiffness, Λ'/(2 √Λ) with that of the other one.
 #[derive(Clone, Copy, Debug)]
 pub struct Base {
-    pub root: Affine,
-    pub weight: Affine,
+    pub root: Taylor,
+    pub weight: Taylor,
 }
 
 /// A box in the units of its base.
 #[derive(Clone, Debug)]
 pub struct Frame {
     /// S = sin θ/2 = √s/2.
-    pub sine: Affine,
+    pub sine: Taylor,
     /// k/4S = α cos θ/2.
-    pub pull: Affine,
+    pub pull: Taylor,
     /// The other step over the base's.
-    pub tau: Affine,
+    pub tau: Taylor,
     /// `None` where the base may be beyond its own limit.
     pub turning: Option<Turning>,
 }
@@ -52,14 +52,14 @@ pub struct Frame {
 /// A base within its own limit.
 #[derive(Clone, Debug)]
 pub struct Turning {
-    sine: Affine,
-    cosine: Affine,
-    theta: Affine,
+    sine: Taylor,
+    cosine: Taylor,
+    theta: Taylor,
     /// τθ.
-    phase: Affine,
+    phase: Taylor,
     /// k/(2 sin θ).
-    alpha: Affine,
-    tau: Affine,
+    alpha: Taylor,
+    tau: Taylor,
 }
 
 /// A family whose band may cross the box.
@@ -76,7 +76,7 @@ pub struct Candidate {
 
 impl Frame {
     /// A box of the base's step and the other one. `None` where the base's step may be zero.
-    pub fn new(own: &Affine, other: &Affine, base: &Base) -> Option<Frame> {
+    pub fn new(own: &Taylor, other: &Taylor, base: &Base) -> Option<Frame> {
         let (sine, pull) = (own.times(&base.root), other.times(&base.weight));
         let tau = other.times(&own.reciprocal()?);
         let turning = Turning::new(&sine, &pull, &tau, &other.times(&base.root));
@@ -91,20 +91,20 @@ impl Frame {
 
     /// A kick at y = (1 + t)/2, pulled back to the base's, and a step of the base, in coordinates (x, v/κ) that no angle enters: also
     /// for a base beyond its own limit. `None` where nothing moves.
-    pub fn plain(&self) -> Option<[Family; 2]> {
+    pub fn plain(&self, order: Order) -> Option<[Family; 2]> {
         let s = self.sine.times(&self.sine).scale2(2);
         let k = self.sine.times(&self.pull).scale2(2);
         let (half, quarter) = (s.scale2(-1), s.times(&s).scale2(-2));
         let square = s.minus(&quarter);
         // Any unit κ of the velocity will do.
-        let unit = Affine::constant((square.center.abs() + k.center.abs()).sqrt(), 0.0);
+        let unit = Taylor::constant((square.center.abs() + k.center.abs()).sqrt(), 0.0);
         let inverse = unit.reciprocal()?;
-        let [one, zero] = [1.0, 0.0].map(|x| Affine::constant(x, 0.0));
+        let [one, zero] = [1.0, 0.0].map(|x| Taylor::constant(x, 0.0));
         let c = one.minus(&half);
-        let step = Family::new(&[[c, unit, square.times(&inverse).negative(), c]]);
+        let step = Family::new(order, &[[c, unit, square.times(&inverse).negative(), c]]);
         // 1, y, y² by powers of t; u = 1 − s y/2.
         let powers = [[1.0, 0.5, 0.25], [0.0, 0.5, 0.5], [0.0, 0.0, 0.25]]
-            .map(|row| row.map(|x| Affine::constant(x, 0.0)));
+            .map(|row| row.map(|x| Taylor::constant(x, 0.0)));
         let terms = powers.map(|[constant, y, square]| {
             let across = k.times(&y.minus(&half.times(&square)));
             let along = constant.minus(&s.times(&y)).plus(&quarter.times(&square));
@@ -116,12 +116,12 @@ impl Frame {
                 constant.minus(&across),
             ]
         });
-        Some([Family::new(&terms), step])
+        Some([Family::new(order, &terms), step])
     }
 }
 
 impl Turning {
-    fn new(sine: &Affine, pull: &Affine, tau: &Affine, other: &Affine) -> Option<Turning> {
+    fn new(sine: &Taylor, pull: &Taylor, tau: &Taylor, other: &Taylor) -> Option<Turning> {
         let [half, cosine, share] = sine.arcsine()?;
         let alpha = pull.times(&cosine.reciprocal()?);
         // τθ = h2 θ/h1, and θ/h1 hardly depends on h1.
@@ -130,12 +130,12 @@ impl Turning {
     }
 
     /// ψ = θ − πa.
-    fn psi(&self, a: i32) -> Affine {
+    fn psi(&self, a: i32) -> Taylor {
         self.theta.minus(&half_turns(a))
     }
 
     /// τψ.
-    fn phase(&self, a: i32) -> Affine {
+    fn phase(&self, a: i32) -> Taylor {
         self.phase.minus(&self.tau.times(&half_turns(a)))
     }
 
@@ -183,11 +183,11 @@ impl Turning {
     }
 
     /// M of family a. `None` where ψ is too large for its terms.
-    pub fn kick(&self, a: i32) -> Option<Family> {
+    pub fn kick(&self, a: i32, order: Order) -> Option<Family> {
         let psi = self.psi(a);
         let [sine, cosine] = self.phase(a).sine_cosine()?;
         let (powers, tail) = powers(&psi)?;
-        let [one, zero] = [1.0, 0.0].map(|x| Affine::constant(x, 0.0));
+        let [one, zero] = [1.0, 0.0].map(|x| Taylor::constant(x, 0.0));
         // The coefficient of t^j in t^k cos ψt, and of t^k sin ψt.
         let term = |j: usize, k: usize, odd: usize| match j.checked_sub(k) {
             Some(n) if n % 2 == odd && n < powers.len() => {
@@ -203,7 +203,7 @@ impl Turning {
         let twice = self.cosine.times(&self.sine).scale2(1);
         let alpha = &self.alpha;
         let coefficient = |j: usize| {
-            let combined = |x: Affine, y: Affine, z: Affine| {
+            let combined = |x: Taylor, y: Taylor, z: Taylor| {
                 square_c.times(&x).plus(&square_s.times(&y)).plus(&twice.times(&z))
             };
             // Re Z = (C² − S²t²) cos ψt + 2CSt sin ψt, Im Z = 2CSt cos ψt − (C² − S²t²) sin ψt.
@@ -222,29 +222,29 @@ impl Turning {
                 constant.minus(&alpha.times(&im)),
             ];
             // Times R(τψ) = [[cos, sin], [−sin, cos]].
-            let row = |x: &Affine, y: &Affine| {
+            let row = |x: &Taylor, y: &Taylor| {
                 [x.times(&cosine).minus(&y.times(&sine)), x.times(&sine).plus(&y.times(&cosine))]
             };
             let ([p, q], [r, s]) = (row(&p, &q), row(&r, &s));
             [p, q, r, s]
         };
-        let terms: Vec<[Affine; 4]> = (0..powers.len() + 2).map(coefficient).collect();
+        let terms: Vec<[Taylor; 4]> = (0..powers.len() + 2).map(coefficient).collect();
         // |C + iSt| ≤ 1, and S(Z) has the norm |Z|: a sine and a cosine lack a tail each.
-        Some(Family::new(&terms).widened(2.0 * tail * self.alpha.size() * UP))
+        Some(Family::new(order, &terms).widened(2.0 * tail * self.alpha.size() * UP))
     }
 }
 
 /// πa.
-fn half_turns(a: i32) -> Affine {
+fn half_turns(a: i32) -> Taylor {
     let turns = f64::from(a) * PI;
-    Affine::constant(turns, 2.0 * U * turns.abs())
+    Taylor::constant(turns, 2.0 * U * turns.abs())
 }
 
 /// ψ^j/j!, and a bound on the sum of |ψ|^j/j! over all that are left out.
-fn powers(psi: &Affine) -> Option<(Vec<Affine>, f64)> {
-    let (most, mut powers) = (psi.size(), vec![Affine::constant(1.0, 0.0)]);
+fn powers(psi: &Taylor) -> Option<(Vec<Taylor>, f64)> {
+    let (most, mut powers) = (psi.size(), vec![Taylor::constant(1.0, 0.0)]);
     for j in 1..TERMS {
-        let next = powers[j - 1].times(psi).times(&Affine::constant(1.0 / j as f64, U));
+        let next = powers[j - 1].times(psi).times(&Taylor::constant(1.0 / j as f64, U));
         powers.push(next);
         let factor = most / (j + 1) as f64;
         let tail = next.size() * factor / (1.0 - factor) * UP;

@@ -6,14 +6,14 @@
 //! whatever order they come: **every ratio of the box is unstable**.
 //!
 //! ```text
-//!     box -> constants, affine in the box -> one kick in a turning frame -> two return maps, level by level -> a common cone
+//!     box -> constants, Taylor models in the box -> one kick in a turning frame -> two return maps, level by level -> a common cone
 //! ```
 //!
 //! | file | what is there |
 //! |---|---|
-//! | `affine` | numbers that depend on a box: affine in it, with a bound on the rest |
+//! | `taylor` | numbers that depend on a box: Taylor models of the second order, with a bound on the rest |
 //! | `trig` | sine, cosine and arcsine of doubles with proven bounds |
-//! | `family` | matrix functions of an offset that depend on a box |
+//! | `family` | matrix functions of an offset, Taylor models in the box, too |
 //! | `frame` | a box in the units of its base, and one kick in the frame of a family (a, b) |
 //! | `walk` | Euclid's algorithm on a box |
 //! | `cone` | the common cone |
@@ -33,12 +33,12 @@
 //! assert!(bands.share() > kickdrift::number::rational::ratio(1, 3));
 //! ```
 
-mod affine;
 mod cone;
 mod family;
 mod frame;
 mod ratios;
 mod search;
+mod taylor;
 mod trig;
 mod walk;
 

@@ -2,8 +2,8 @@
 
 use num_traits::ToPrimitive;
 
-use super::affine::Affine;
 use super::search::{BITS, bases, enclosed, prove};
+use super::taylor::Taylor;
 use super::walk::Found;
 use crate::number::{Laurent, Rational, Real, U};
 
@@ -46,9 +46,9 @@ pub fn unstable_ratios(
         let off = 2.0 * U * (middle + half);
         let step = |step: usize, slope: usize| match step {
             0 => h1,
-            _ => h1.times(&Affine::constant(middle, off).with_slope(slope, half)),
+            _ => h1.times(&Taylor::constant(middle, off).with_slope(slope, half)),
         };
-        from > 0 && prove(&bases, step) == Found::Certified
+        from > 0 && prove(&bases, 0, step) == Found::Certified
     };
     if from < to && !is_unstable(from, to) {
         return None;

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use super::affine::Affine;
 use super::frame::{Base, Frame};
+use super::taylor::Taylor;
 use super::walk::Found;
 use crate::error::{Error, Result};
 use crate::number::{Ball, ExactSign, Laurent, Rational, Real, Sign};
@@ -28,7 +28,7 @@ pub struct Window {
     ranges: [(Laurent, Laurent); 2],
     bases: [Option<Base>; 2],
     /// Lower ends and lengths.
-    sides: [(Affine, Affine); 2],
+    sides: [(Taylor, Taylor); 2],
 }
 
 /// A box of a window: lo + (hi − lo) k/2^d to lo + (hi − lo) (k + 1)/2^d in each step.
@@ -98,19 +98,20 @@ impl Window {
 
     /// Whether a box is proven: every ratio in it is unstable.
     pub fn proves(&self, cell: &Cell) -> bool {
-        self.prove(cell) == Found::Certified
+        // As far from being proven as the search may have thought.
+        [0, u32::MAX].into_iter().any(|to_go| self.prove(cell, to_go) == Found::Certified)
     }
 
-    fn prove(&self, cell: &Cell) -> Found {
+    fn prove(&self, cell: &Cell, to_go: u32) -> Found {
         // The base's step moves by u₁, the other one by u₂.
         let step = |step: usize, slope: usize| {
             // k + 1/2 and 1/2 over 2^d, exact in doubles.
             let half = 0.5f64.powi(cell.depths[step] as i32 + 1);
             let place =
-                Affine::constant((2 * cell.places[step] + 1) as f64 * half, 0.0).with_slope(slope, half);
+                Taylor::constant((2 * cell.places[step] + 1) as f64 * half, 0.0).with_slope(slope, half);
             self.sides[step].0.plus(&self.sides[step].1.times(&place))
         };
-        prove(&self.bases, step)
+        prove(&self.bases, to_go, step)
     }
 
     /// Bisects the window until so many boxes were tried, or boxes of a share of the window are certified. First come the boxes of which
@@ -119,7 +120,7 @@ impl Window {
     /// # Errors
     /// Where the work was stopped.
     pub fn search(&self, tries: u64, share: Option<&Rational>, tell: &dyn Fn(u64)) -> Result<Bands> {
-        let mut queue: BTreeMap<u32, Vec<Cell>> = BTreeMap::from([(0, vec![Cell::WHOLE])]);
+        let mut queue: BTreeMap<u32, Vec<(Cell, u32)>> = BTreeMap::from([(0, vec![(Cell::WHOLE, u32::MAX)])]);
         let mut bands = Bands { window: self.clone(), certified: Vec::new(), open: Vec::new(), tried: 0 };
         let mut certified = Rational::default();
         while let Some((key, cells)) = queue.pop_first() {
@@ -127,16 +128,16 @@ impl Window {
                 let left = (tries - bands.tried).min(batch.len() as u64) as usize;
                 let is_enough = share.is_some_and(|share| certified >= *share);
                 if left == 0 || is_enough {
-                    bands.open.extend(&cells[n * BATCH..]);
-                    bands.open.extend(queue.into_values().flatten());
+                    let left = cells[n * BATCH..].iter().copied().chain(queue.into_values().flatten());
+                    bands.open.extend(left.map(|(cell, _)| cell));
                     return Ok(bands.sorted());
                 }
                 go_on()?;
-                let found = try_map(&batch[..left], |cell| Ok(self.prove(cell)))?;
+                let found = try_map(&batch[..left], |(cell, to_go)| Ok(self.prove(cell, *to_go)))?;
                 tell(left as u64);
                 bands.tried += left as u64;
-                bands.open.extend(&batch[left..]);
-                for (cell, found) in batch.iter().zip(found) {
+                bands.open.extend(batch[left..].iter().map(|(cell, _)| *cell));
+                for ((cell, _), found) in batch.iter().zip(found) {
                     match found {
                         Found::Certified => {
                             certified += cell.share();
@@ -144,8 +145,9 @@ impl Window {
                         }
                         Found::Open { direction, to_go } => match cell.halves(direction) {
                             Some(halves) => {
-                                let next = (cell.depths[0] + cell.depths[1] + to_go.max(1)).max(key);
-                                queue.entry(next).or_default().extend(halves);
+                                let to_go = to_go.max(1);
+                                let next = (cell.depths[0] + cell.depths[1] + to_go).max(key);
+                                queue.entry(next).or_default().extend(halves.map(|half| (half, to_go)));
                             }
                             None => bands.open.push(*cell),
                         },
@@ -198,13 +200,13 @@ impl Bands {
 
 /// Whether every ratio in a box is unstable, with the steps `step(clock, slope)`: affine in the direction `slope`, 0 for the clock that
 /// is the base, 1 for the other.
-pub(super) fn prove(bases: &[Option<Base>; 2], step: impl Fn(usize, usize) -> Affine) -> Found {
+pub(super) fn prove(bases: &[Option<Base>; 2], to_go: u32, step: impl Fn(usize, usize) -> Taylor) -> Found {
     let frames = [0, 1].map(|own| Frame::new(&step(own, 0), &step(1 - own, 1), bases[own].as_ref()?));
     let distortion = |frame: &Option<Frame>| frame.as_ref().map_or(f64::INFINITY, Frame::distortion);
     let own = usize::from(distortion(&frames[1]) < distortion(&frames[0]));
     match &frames[own] {
         None => Found::Open { direction: own, to_go: 1 },
-        Some(frame) => match frame.prove() {
+        Some(frame) => match frame.prove(to_go) {
             Found::Open { direction, to_go } => Found::Open { direction: direction ^ own, to_go },
             found => found,
         },
@@ -225,7 +227,7 @@ fn base(own: &Laurent, other: &Laurent) -> Option<Base> {
 }
 
 /// A constant of a box.
-pub(super) fn enclosed(ball: &Ball) -> Affine {
+pub(super) fn enclosed(ball: &Ball) -> Taylor {
     let (lo, hi) = ball.to_f64_enclosure();
-    Affine::constant(lo, hi - lo)
+    Taylor::constant(lo, hi - lo)
 }

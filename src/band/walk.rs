@@ -1,10 +1,10 @@
 //! Euclid's algorithm on a box of steps: both return maps of each level, until a common cone proves all of it unstable.
 
 use super::UP;
-use super::affine::Affine;
 use super::cone::{Cone, Margins};
-use super::family::{Cut, Family};
-use super::frame::{Candidate, Frame, bisections};
+use super::family::{Cut, Family, Order};
+use super::frame::{Candidate, Frame};
+use super::taylor::{Taylor, product_of_slopes};
 use crate::number::U;
 
 /// The most levels of one path, and forks of it where the box has ratios of both kinds.
@@ -26,6 +26,9 @@ const ENOUGH: f64 = 1.5;
 const FURTHER: u32 = 6;
 const NEAREST: u32 = 3;
 const UNSEEN: u32 = 4;
+
+/// So many bisections before it may be proven a box is tried to the first order first.
+const FAR: u32 = 3;
 
 /// Beyond this |α| the coordinates that no angle enters are tried, too: where kicks are strong, turning frames are not near 1.
 const STRONG: f64 = 0.3;
@@ -61,12 +64,12 @@ impl Length {
     }
 
     /// How far it is from there at most.
-    fn reach(self, tau: &Affine) -> f64 {
+    fn reach(self, tau: &Taylor) -> f64 {
         (self.1 as f64).abs() * tau.reach() * UP
     }
 
     /// r = short/long, of this length and a shorter one. Their determinant D is ±1, so r(τ) − r(τ₀) = D (τ − τ₀)/(long(τ) long(τ₀)).
-    fn share(self, short: Length, tau: &Affine) -> Option<Affine> {
+    fn share(self, short: Length, tau: &Taylor) -> Option<Taylor> {
         let [(length, long_off), (rest, rest_off)] = [self, short].map(|own| own.at(tau.center));
         let moved = self.reach(tau);
         let least = (length - long_off - moved) * (1.0 - 4.0 * U);
@@ -75,16 +78,24 @@ impl Length {
         }
         let cross = |x: i64, y: i64| i128::from(x) * i128::from(y);
         let determinant = (cross(short.1, self.0) - cross(short.0, self.1)) as f64;
-        let (center, square) = (rest / length, length * length);
-        let by = determinant / square;
-        // 1/long(τ) − 1/long(τ₀), and what the lengths round.
-        let bent = tau.reach() * (moved + 4.0 * long_off) / (square * least);
-        let off = (rest_off + center.abs() * long_off) / least;
-        let rounding = 8.0 * U * (center.abs() + by.abs() * tau.reach());
-        Some(Affine {
+        let center = rest / length;
+        // D δ/long², −D b δ²/long³, and the rest: D b² δ³/(long³ long(τ)).
+        let by = determinant / (length * length);
+        let bend = -by * self.1 as f64 / length;
+        let squares = product_of_slopes(tau.slopes, tau.slopes);
+        let (cube, off) = (least * least * least, 4.0 * long_off / least);
+        let third = tau.reach() * moved * moved / (cube * least);
+        let curved = by.abs() * tau.error + bend.abs() * tau.square_beside_affine();
+        // What the lengths round, in each term.
+        let terms = by.abs() * tau.reach() + bend.abs() * tau.reach() * tau.reach();
+        let rounding = (rest_off + center.abs() * long_off) / least
+            + 8.0 * U * center.abs()
+            + (2.0 * off + 16.0 * U) * terms;
+        Some(Taylor {
             center,
             slopes: tau.slopes.map(|slope| slope * by),
-            error: (by.abs() * tau.error + bent + off + rounding) * (1.0 + 1e-9),
+            squares: [0, 1, 2].map(|k| tau.squares[k] * by + bend * squares[k]),
+            error: (third + curved + rounding) * (1.0 + 1e-9),
         })
     }
 }
@@ -109,11 +120,24 @@ struct Trial {
     forks: usize,
     /// About so many bisections until a level proves it.
     to_go: u32,
+    /// Whether the middle of the box has a cone on some level.
+    is_seen: bool,
+}
+
+/// Where a box is far from being proven, the second order is for those alone whose middle has a cone.
+fn tried(to_go: u32, by: impl Fn(Order) -> Option<Trial>) -> Option<Trial> {
+    if to_go >= FAR {
+        let trial = by(Order::First)?;
+        if !(trial.is_seen && trial.is_open) {
+            return Some(trial);
+        }
+    }
+    by(Order::Second)
 }
 
 impl Frame {
-    /// Whether a common cone of one level proves every ratio of the box unstable.
-    pub fn prove(&self) -> Found {
+    /// Whether a common cone of one level proves every ratio of the box unstable; it is thought to take `to_go` more bisections.
+    pub fn prove(&self, to_go: u32) -> Found {
         let mut found = Found::Dropped;
         let mut keep = |direction: usize, left: u32| {
             if !matches!(found, Found::Open { to_go, .. } if to_go <= left) {
@@ -121,7 +145,7 @@ impl Frame {
             }
         };
         let Some(turning) = &self.turning else {
-            return match self.is_strong().then(|| self.try_plain()) {
+            return match self.is_strong().then(|| tried(to_go, |order| self.try_plain(order))) {
                 Some(None) => Found::Certified,
                 Some(Some(trial)) => Found::Open { direction: 0, to_go: trial.to_go },
                 None => Found::Open { direction: 0, to_go: 1 },
@@ -132,14 +156,14 @@ impl Frame {
                 keep(candidate.direction, candidate.to_go);
                 continue;
             }
-            match self.try_family(&candidate) {
+            match tried(to_go, |order| self.try_family(&candidate, order)) {
                 None => return Found::Certified,
                 Some(trial) if trial.is_open => keep(trial.direction, candidate.to_go.max(trial.to_go)),
                 Some(_) => {}
             }
         }
         if self.is_strong() {
-            match self.try_plain() {
+            match tried(to_go, |order| self.try_plain(order)) {
                 None => return Found::Certified,
                 Some(trial) if trial.is_open && found == Found::Dropped => {
                     return Found::Open { direction: trial.direction, to_go: trial.to_go };
@@ -155,9 +179,9 @@ impl Frame {
     }
 
     /// In the frame of a family; `None` where it proves the box.
-    fn try_family(&self, candidate: &Candidate) -> Option<Trial> {
+    fn try_family(&self, candidate: &Candidate, order: Order) -> Option<Trial> {
         let mut trial = Trial::new(ENOUGH / candidate.strength, candidate.direction);
-        let Some(kick) = self.turning.as_ref().and_then(|turning| turning.kick(candidate.a)) else {
+        let Some(kick) = self.turning.as_ref().and_then(|turning| turning.kick(candidate.a, order)) else {
             return Some(trial);
         };
         // All offsets at once, whatever the ratio.
@@ -170,19 +194,19 @@ impl Frame {
             return None;
         }
         let [kick, _] = all.maps;
-        let maps = |share: &Affine, _| Some([kick.part(Cut::Last, share), kick.part(Cut::Before, share)]);
+        let maps = |share: &Taylor, _| Some([kick.part(Cut::Last, share), kick.part(Cut::Before, share)]);
         let proven = self.down_from_first(&mut trial, maps);
         (!proven).then_some(trial)
     }
 
     /// In coordinates that no angle enters; `None` where that proves the box.
-    fn try_plain(&self) -> Option<Trial> {
+    fn try_plain(&self, order: Order) -> Option<Trial> {
         let is_slow = self.turning.is_some() && self.tau.slopes[1].abs() > self.tau.slopes[0].abs();
         let mut trial = Trial::new(ENOUGH_WHERE_STRONG, usize::from(is_slow));
-        let Some([kick, step]) = self.plain() else { return Some(trial) };
+        let Some([kick, step]) = self.plain(order) else { return Some(trial) };
         let proven = self.down_from_first(&mut trial, |share, n| {
             let before = (n <= MOST_STEPS)
-                .then(|| (0..n).fold(Family::identity(), |product, _| step.after(&product)))?;
+                .then(|| (0..n).fold(Family::identity(order), |product, _| step.after(&product)))?;
             let after = step.after(&before);
             Some([kick.part(Cut::Last, share).after(&before), kick.part(Cut::Before, share).after(&after)])
         });
@@ -190,7 +214,7 @@ impl Frame {
     }
 
     /// From the first level on, for all n = ⌊τ⌋ of the box: kicks that arrive at f..1, a share 1 − f of all offsets, and at 0..f.
-    fn down_from_first(&self, trial: &mut Trial, maps: impl Fn(&Affine, u32) -> Option<[Family; 2]>) -> bool {
+    fn down_from_first(&self, trial: &mut Trial, maps: impl Fn(&Taylor, u32) -> Option<[Family; 2]>) -> bool {
         let (tau, reach) = (self.tau.center, self.tau.reach());
         let (low, high) = ((tau - reach) * (1.0 - 4.0 * U), (tau + reach) * (1.0 + 4.0 * U));
         if !(low > 0.0 && high < 1e6) {
@@ -203,7 +227,7 @@ impl Frame {
         let squares = self.tau.slopes.map(|x| x * x);
         trial.bending = squares.map(|x| x / (squares[0] + squares[1]));
         (first..=last).all(|n| {
-            let share = Affine::constant(f64::from(n) + 1.0, 0.0).minus(&self.tau);
+            let share = Taylor::constant(f64::from(n) + 1.0, 0.0).minus(&self.tau);
             let lengths = [Length(1 + i64::from(n), -1), Length(-i64::from(n), 1)];
             maps(&share, n).is_some_and(|maps| self.descend(Level { maps, lengths }, 0, trial))
         })
@@ -250,7 +274,7 @@ impl Frame {
     /// From a level on that bounds of the box are too wide for: whether its middle has a cone a few levels further, and so the box parts
     /// that will be proven. Where to look next rests on it, and no proof.
     fn look_further(&self, mut level: Level, trial: &mut Trial) {
-        let tau = Affine::constant(self.tau.center, 0.0);
+        let tau = Taylor::constant(self.tau.center, 0.0);
         for steps in 1..=FURTHER {
             let Some(difference) = level.lengths[0].minus(level.lengths[1]) else { return };
             let (center, _) = difference.at(tau.center);
@@ -258,7 +282,8 @@ impl Frame {
             let Some(next) = level.next(&tau, center > 0.0, difference) else { return };
             level = next;
             if level.margins().is_some_and(|margins| margins.iter().all(|margin| margin.of_middle > 0.0)) {
-                (trial.to_go, trial.is_settled) = (trial.to_go.min(NEAREST + steps / 2), true);
+                (trial.to_go, trial.is_settled, trial.is_seen) =
+                    (trial.to_go.min(NEAREST + steps / 2), true, true);
                 return;
             }
         }
@@ -267,7 +292,7 @@ impl Frame {
 
 impl Level {
     /// One step of Euclid where the left interval is the longer one, or the right one.
-    fn next(&self, tau: &Affine, left_is_longer: bool, difference: Length) -> Option<Level> {
+    fn next(&self, tau: &Taylor, left_is_longer: bool, difference: Length) -> Option<Level> {
         let ([left, right], [a, b]) = (&self.maps, self.lengths);
         Some(if left_is_longer {
             let share = a.share(b, tau)?;
@@ -292,7 +317,9 @@ impl Level {
 
     /// How far either step moves the maps in the middle of their intervals.
     fn moves(&self) -> [f64; 2] {
-        [0, 1].map(|direction| self.maps.iter().map(|map| map.moved_by(direction)).sum())
+        [0, 1].map(|direction| {
+            self.maps.iter().map(|map| map.moved_by(direction) + map.bent_by(direction)).sum()
+        })
     }
 
     /// What one cone leaves of both maps.
@@ -310,8 +337,9 @@ impl Level {
             return true;
         }
         if margins.iter().all(|margin| margin.of_middle > 0.0) {
-            let share = margins.iter().map(Margins::share).fold(1.0, f64::min);
-            trial.to_go = trial.to_go.min(bisections(1.0 / share).max(1));
+            trial.is_seen = true;
+            let to_go = margins.iter().map(Margins::bisections).fold(1, u32::max);
+            trial.to_go = trial.to_go.min(to_go);
             if !trial.is_settled {
                 let (moves, bent) = (self.moves(), self.maps[0].error + self.maps[1].error);
                 let [first, second] = [0, 1].map(|i| moves[i] + bent * trial.bending[i]);
@@ -337,6 +365,7 @@ impl Trial {
             bending: [1.0, 0.0],
             forks: 0,
             to_go: UNSEEN,
+            is_seen: false,
         }
     }
 }
