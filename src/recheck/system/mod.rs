@@ -114,14 +114,14 @@ fn verdict(
     };
     match exact_kind(scene, &context.work().products())? {
         Some(truth) => {
-            let route = match scene.model().local_steps() {
-                Some(_) => {
+            let route = match scene.model() {
+                Model::LocalSteps(_) => {
                     "the scheme substep by substep, the kind in exact arithmetic, multipliers by the traces of the full period"
                 }
-                None if scene.is_subcycled() => {
+                Model::Subcycled(..) => {
                     "the kind in exact arithmetic, multipliers by the traces of a period of the scheme, run substep by substep"
                 }
-                None => {
+                _ => {
                     "the kind in exact arithmetic, multipliers by the traces of the dense full period and of its square"
                 }
             };
@@ -177,7 +177,7 @@ impl Claim {
                 }
                 seen(steps, outcome(context, RUN, Ok(()))?)
             }
-            Model::NoGradient(own) if is_outer => {
+            Model::NoGradient(own) | Model::Subcycled(own, _) if is_outer => {
                 let longest = scene.model().steps().into_iter().max().unwrap_or_default();
                 for (row, stretch) in told {
                     let middle = stretch.lo + (stretch.hi - stretch.lo) / 2.0;
