@@ -235,7 +235,7 @@ impl SystemScene {
             return refused("with friction", "take the friction out of the file");
         }
         match &self.model {
-            Model::Sparse(own) if own.local_steps().is_none() => {
+            Model::Sparse(own) if own.levels().is_some() => {
                 return refused("of this file", "are for dense stiffnesses");
             }
             Model::Rational(_)

@@ -17,9 +17,6 @@ use super::document::{Document, LevelDocument, MeshDocument, Number};
 use crate::error::{Error, Result};
 use crate::system::{Level, LocalSteps, Model, Scheme, Subcycles, System};
 
-/// The scheme whose step is one of Verlet's.
-pub(super) const NAME: &str = "lts";
-
 impl Document {
     /// The scheme that the file names, with its levels.
     pub fn named_scheme(&self) -> Result<Option<(Scheme, &[LevelDocument])>> {

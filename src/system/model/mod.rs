@@ -22,7 +22,7 @@ use crate::system::implicit::{ImplicitExplicit, two_clocks};
 use crate::system::jacobian::Jacobians;
 use crate::system::levels::{Hessians, Method};
 use crate::system::linear::system::{Potential, System};
-use crate::system::lts::{LocalSteps, SchemeSummary, SparseSteps, Subcycles};
+use crate::system::lts::{LocalSteps, SchemeSummary, Subcycles};
 use crate::system::pi::PiSystem;
 use crate::system::verdict::analysis::Analysis;
 use crate::system::verdict::decide::{decide_by, exact_kind, verdict_cost};
@@ -276,7 +276,7 @@ impl Model {
         match self {
             Model::LocalSteps(own) => Some(own.summary()),
             Model::Subcycled(_, own) | Model::Elements(_, own) => Some(own.summary()),
-            Model::Sparse(own) => own.local_steps().map(SparseSteps::summary),
+            Model::Sparse(own) => own.summary(),
             _ => None,
         }
     }
