@@ -72,7 +72,7 @@ impl SparseSubcycles {
         let layered = SparseSteps::within(&masses, &stiffness, vec![none], ROUNDED)?;
         let end = match &plain.fine {
             None => Some((f64::INFINITY, f64::INFINITY)),
-            Some(fine) => fine.is_definite().then(|| fine.largest()).flatten().map(|(lo, hi)| {
+            Some(fine) => fine.is_definite().then(|| fine.largest(SHARP)).flatten().map(|(lo, hi)| {
                 let p = f64::from(level.substeps);
                 let half_turn = 2.0 * p * (std::f64::consts::PI / (2.0 * p)).sin();
                 (half_turn / hi.sqrt() * (1.0 - 8.0 * U), half_turn / lo.sqrt() * (1.0 + 8.0 * U))
@@ -111,14 +111,22 @@ impl SparseSubcycles {
         }
     }
 
-    /// \[lo, hi\]: every step in (0, lo] is proven stable, hi is proven unstable; `None` where that is not proven.
+    /// \[lo, hi\]: every step in (0, lo] is proven stable, hi is proven unstable; `None` where that is not proven, as where a resonance is coupled so
+    /// weakly to the coarse part that doubles do not see it grow.
     pub fn first_unstable(&self) -> Option<(f64, f64)> {
-        let ((end, _), (lo, hi)) = (self.end?, self.layered.plain_limit()?);
-        // The enclosure's ends may lie within the rounding of a factorization.
-        let lo = lo * (1.0 - BESIDE);
-        let hi = hi * (1.0 + BESIDE);
-        (hi < end && self.verdict(lo) == Holds::Stable && self.verdict(hi) == Holds::Unstable)
-            .then_some((lo, hi))
+        let (lo, hi) = self.edge()?;
+        Some((lo, hi?))
+    }
+
+    /// All steps up to the first are proven stable, and the second is proven unstable.
+    fn edge(&self) -> Option<(f64, Option<f64>)> {
+        let ((end, _), (lo, hi)) = (self.end?, self.layered.plain_limit_within(SHARP)?);
+        // The enclosure of an eigenvalue ends where doubles do; the verdict is proven a little beside it.
+        let beside = |at: f64, sign: f64, told: Holds| {
+            let steps = BESIDE.into_iter().map(move |by| at * (1.0 + sign * by));
+            steps.take_while(move |&dt| dt < end).find(|&dt| self.verdict(dt) == told)
+        };
+        Some((beside(lo.min(end.next_down()), -1.0, Holds::Stable)?, beside(hi, 1.0, Holds::Unstable)))
     }
 
     /// The verdicts on all steps from `lo` to `hi`, as stretches that cover them: nothing is told from where the fastest fine motion takes half a turn.
@@ -131,8 +139,9 @@ impl SparseSubcycles {
             return Err(Error::input("range", format!("{lo}..{hi}"), remedy));
         }
         // 4/dt² falls: what is below it is so at all smaller steps, what grows does at all larger ones up to the end.
-        let told = match (self.first_unstable(), self.end) {
-            (Some((stable, unstable)), Some((end, _))) => {
+        let told = match (self.edge(), self.end) {
+            (Some((stable, None)), _) => vec![(0.0, stable, Holds::Stable)],
+            (Some((stable, Some(unstable))), Some((end, _))) => {
                 vec![
                     (0.0, stable, Holds::Stable),
                     (stable, unstable, Holds::NotTold),
@@ -159,8 +168,11 @@ impl SparseSubcycles {
     }
 }
 
-/// How far beside its enclosure the first unstable step is proven, relative to it.
-const BESIDE: f64 = 1e-6;
+/// How sharp the step at which the fastest fine motion takes half a turn is, and the first unstable one: the coupling between them may be weak.
+const SHARP: f64 = 1e-12;
+
+/// How far beside its enclosure the first unstable step may be proven, relative to it.
+const BESIDE: [f64; 7] = [1e-12, 1e-11, 1e-10, 1e-9, 1e-8, 1e-7, 1e-6];
 
 /// Masses and stiffness of the body in layers: the coarse degrees of freedom first, then layer by layer.
 fn layers(masses: &[f64], stiffness: &Triplets, level: &Level) -> (Vec<f64>, Vec<(usize, usize, f64)>) {

@@ -64,9 +64,9 @@ impl Block {
         self.pattern.factored(0.0, &[(1.0, &self.values)], self.error).is_some()
     }
 
-    /// Its largest eigenvalue, enclosed; `None` where it is not positive.
-    pub fn largest(&self) -> Option<(f64, f64)> {
-        self.pattern.largest(&self.values, self.error, 1e-6)
+    /// Its largest eigenvalue, enclosed to `within` of itself or as near as doubles tell; `None` where it is not positive.
+    pub fn largest(&self, within: f64) -> Option<(f64, f64)> {
+        self.pattern.largest(&self.values, self.error, within)
     }
 }
 
@@ -298,7 +298,12 @@ impl SparseSteps {
 
     /// Where plain leapfrog, all with the step of the whole, becomes unstable, as [`LocalSteps::plain_limit`].
     pub fn plain_limit(&self) -> Option<(f64, f64)> {
-        let (lo, hi) = self.plain.largest()?;
+        self.plain_limit_within(1e-6)
+    }
+
+    /// The same as sharp as that.
+    pub(super) fn plain_limit_within(&self, within: f64) -> Option<(f64, f64)> {
+        let (lo, hi) = self.plain.largest(within)?;
         Some((2.0 / hi.sqrt() * (1.0 - 4.0 * U), 2.0 / lo.sqrt() * (1.0 + 4.0 * U)))
     }
 
