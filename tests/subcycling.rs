@@ -4,7 +4,7 @@ use kickdrift::number::Rational;
 use kickdrift::number::rational::{ratio, to_f64};
 use kickdrift::scene::{Span, SystemScene};
 use kickdrift::system::{
-    Analysis, Holds, Level, Limits, Model, Potential, Route, Subcycles, Symmetric, System,
+    Analysis, Holds, Level, Limits, Model, Potential, Route, SparseSubcycles, Subcycles, Symmetric, System,
 };
 use kickdrift::verdict::Kind;
 use nalgebra::DMatrix;
@@ -189,7 +189,7 @@ fn without_substeps_all_schemes_are_verlets() {
         let levels = [Level { fine: [0, 1].into(), substeps: 1 }];
         let kinds = ["lts", "newmark", "avi"].map(|scheme| {
             let scene = SystemScene::read(&file(&bars, &levels, &step, scheme).to_string()).unwrap();
-            let told = scene.local_steps_summary().unwrap();
+            let told = scene.model().local_steps_summary().unwrap();
             assert_eq!(told.scheme.name(), scheme);
             (scene.model().decide(Route::Cheapest, &Limits::default()).unwrap().kind, told.plain_limit)
         });
@@ -285,7 +285,72 @@ fn a_step_of_another_ratio_is_decided_as_a_file_of_that_step() {
         ];
         assert_eq!(here.kind, there.kind, "{dt}");
     }
-    assert!(matches!(scene.model(), Model::NoGradient(_)));
+    assert!(matches!(scene.model(), Model::Subcycled(..)));
+}
+
+#[test]
+fn sparse_subcycling_is_decided_below_its_first_resonance_as_by_exact_arithmetic() {
+    let (mut numbers, mut seen, mut edges) = (Numbers(11), [[0; 3]; 2], 0);
+    for case in 0..500 {
+        let plain = numbers.plain();
+        let n = plain.size();
+        let fine = (0..n).filter(|_| numbers.below(2) == 0).collect();
+        let level = Level { fine, substeps: 1 + numbers.below(6) as u32 };
+        let entry = |i: usize, j: usize| (i, j, to_f64(&plain.clocks()[0].stiffness.get(i, j)));
+        let entries: Vec<_> = (0..n).flat_map(|i| (0..=i).map(move |j| entry(i, j))).collect();
+        let masses: Vec<f64> = (0..n).map(|i| to_f64(&plain.mass().get(i, i))).collect();
+        let sparse = SparseSubcycles::new(&masses, &entries, vec![level.clone()]).unwrap();
+        // Where nothing grows below the first resonance, or the fine part is singular, any steps.
+        let first = sparse.first_unstable();
+        edges += usize::from(first.is_some());
+        let (lo, hi) = first.unwrap_or((1.0, 1.0));
+        assert!(lo <= hi && hi < lo * (1.0 + 1e-5), "{lo} {hi}");
+        for share in [0.4, 0.8, 0.999, 1.001, 1.03, 1.2] {
+            let dt = (lo * share * 1e6).round();
+            let step = ratio(dt as i64, 1_000_000);
+            let at = vec![Potential::new(plain.clocks()[0].stiffness.clone(), step)];
+            let system = System::new(plain.mass().clone(), at).unwrap();
+            let (_, clocks) = Subcycles::newmark(system, vec![level.clone()]).unwrap();
+            let truth = Holds::from(clocks.decide(Route::Exact, &Limits::default()).unwrap().kind);
+            let told = sparse.verdict(dt / 1e6);
+            let is_below = usize::from(share < 1.0);
+            seen[is_below][told as usize] += 1;
+            assert!(told == Holds::NotTold || told == truth, "{case} {share}: {told:?} {truth:?}");
+            assert!(first.is_none() || share > 1.0 || told == Holds::Stable, "{case} {share}");
+        }
+    }
+    let [above, below] = seen;
+    assert!(edges > 150 && below[Holds::Stable as usize] > 450, "{edges} {below:?}");
+    assert!(above[Holds::Unstable as usize] > 250, "{above:?}");
+}
+
+#[test]
+fn intervals_of_sparse_subcycling_hold_what_is_stable_and_end_where_nothing_is_told() {
+    // A chain on walls, its left half fine.
+    let stiffness: Vec<_> = (0..40).map(|i| (i, i, 2.0)).chain((1..40).map(|i| (i, i - 1, -1.0))).collect();
+    for substeps in 2..6 {
+        let level = Level { fine: (0..20).collect(), substeps };
+        let masses: Vec<f64> = (0..40).map(|i| if i < 20 { 0.5 } else { 1.0 }).collect();
+        let own = SparseSubcycles::new(&masses, &stiffness, vec![level]).unwrap();
+        let (lo, hi) = own.first_unstable().unwrap();
+        let (plain, _) = own.plain().plain_limit().unwrap();
+        assert!(lo > plain && hi < plain * std::f64::consts::FRAC_PI_2 * 1.01, "{substeps}: {lo} {plain}");
+        let all = own.stretches((0.1, 3.0)).unwrap();
+        let verdicts: Vec<_> = all.iter().map(|own| own.verdict).collect();
+        assert_eq!(verdicts[..3], [Holds::Stable, Holds::NotTold, Holds::Unstable], "{substeps}");
+        assert_eq!(verdicts.last(), Some(&Holds::NotTold));
+        assert_eq!((all[0].lo, all[0].hi, all[2].lo, all[all.len() - 1].hi), (0.1, lo, hi, 3.0));
+        for own_stretch in &all {
+            let middle = own_stretch.lo + (own_stretch.hi - own_stretch.lo) / 2.0;
+            // Between the first two a single step may be told.
+            let is_open = own_stretch.verdict == Holds::NotTold;
+            assert!(is_open || own.verdict(middle) == own_stretch.verdict, "{middle}");
+        }
+    }
+    assert!(SparseSubcycles::new(&[1.0; 40], &stiffness, Vec::new()).is_err());
+    let two = [0..20, 0..10].map(|fine| Level { fine: fine.collect(), substeps: 2 });
+    let error = SparseSubcycles::new(&[1.0; 40], &stiffness, two.into()).unwrap_err();
+    assert_eq!(error.field(), "levels");
 }
 
 #[test]

@@ -139,12 +139,12 @@ def waves(
         the highest dimension. Or points, shape (nodes, 1 to 3), and cells, shape (elements, 2 to 4), counted from 0.
     speed, density : float or array, shape (elements,)
         Of the wave, and of what it moves through; the unit of time follows from these.
-    scheme : "lts" or "avi"
-        Leapfrog with local time steps, where small elements make all their nodes fine; or asynchronous variational
-        integrators, where they kick with a step of their own. The nodes' subcycling with held velocities is for small
-        systems, as ``System({..., "scheme": "newmark", ...})``.
+    scheme : "lts", "newmark" or "avi"
+        Leapfrog with local time steps, where small elements make all their nodes fine; subcycling of these with held
+        velocities, of one level; or asynchronous variational integrators, where they kick with a step of their own.
     substeps : int or sequence of int
-        In a step of the level above, the coarsest level first: 2 or 3, or (2, 2); of AVI one number above 1.
+        In a step of the level above, the coarsest level first: 2 or 3, or (2, 2); of AVI
+        one number above 1, of subcycling one number.
     step : Exact, optional
         Of the coarse elements, rational.
     courant : float
@@ -180,8 +180,10 @@ def waves(
     factors = [int(own) for own in (substeps if isinstance(substeps, Sequence) else [substeps])]
     if not factors or min(factors) < 1:
         raise KickdriftError("substeps", shown(substeps), "give 1 or more, or one number for each level")
-    if scheme not in ("lts", "avi"):
-        raise KickdriftError("scheme", shown(scheme), "give lts or avi")
+    if scheme not in ("lts", "newmark", "avi"):
+        raise KickdriftError("scheme", shown(scheme), "give lts, newmark or avi")
+    if scheme == "newmark" and len(factors) > 1:
+        raise KickdriftError("substeps", shown(substeps), "of newmark give one number: one level of subcycles")
     if scheme == "avi" and (len(factors) > 1 or factors[0] < 2):
         raise KickdriftError("substeps", shown(substeps), "of avi give one number above 1: two classes of elements")
     celerity, rho = (_each(name, own, len(cells)) for name, own in (("speed", speed), ("density", density)))
@@ -221,8 +223,8 @@ def waves(
         at, matrices = _compressed(k, "stiffness", matrix) or ({}, {})
         arrays |= matrices
         potentials.append({"step": text("step", Fraction(dt) / factor), "stiffness": at})
-    if scheme == "lts":
-        document |= {"scheme": "lts", "levels": []}
+    if scheme != "avi":
+        document |= {"scheme": scheme, "levels": []}
         for level, (fine, factor) in enumerate(levels):
             moving = place[np.unique(cells[fine])]
             arrays[f"fine{level}"] = doubles("fine", moving[moving >= 0].astype(np.float64))

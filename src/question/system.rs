@@ -151,8 +151,8 @@ impl System {
             scene.nearest_unstable(width, &limits)
         };
         let nearest = width.map(nearest).transpose()?;
-        let no_gradient = model.jacobians().filter(|_| !scene.is_subcycled()).map(Jacobians::no_gradient);
-        let (friction, local) = (scene.friction(&limits)?, scene.local_steps_summary());
+        let no_gradient = model.jacobians().map(Jacobians::no_gradient);
+        let (friction, local) = (scene.friction(&limits)?, model.local_steps_summary());
         Ok(Verdict { analysis, friction, orbit, is_orbit_missing, nearest, no_gradient, local })
     }
 

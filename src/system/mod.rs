@@ -69,7 +69,7 @@ pub use jacobian::{Jacobians, NoGradient};
 pub use linear::sparse::Symmetric;
 pub use linear::system::{Potential, System};
 pub use linear::{builders, mesh};
-pub use lts::{Growth, Level, LocalSteps, Scheme, SchemeSummary, SparseSteps, Subcycles};
+pub use lts::{Growth, Level, LocalSteps, Scheme, SchemeSummary, SparseSteps, SparseSubcycles, Subcycles};
 pub use model::{Body, ManyLevels, MeasuredSystem, Model, Number, Oscillator, SparseSystem, TwoLevels};
 pub use pi::{PiPotential, PiSystem};
 pub use single::clocks::{ManyClocks, families, shortest_families, shortest_family};

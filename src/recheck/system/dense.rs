@@ -9,7 +9,7 @@ use crate::number::{Laurent, Rational};
 use crate::question::Displacement;
 use crate::recheck::context::{Checked, Fault, holds};
 use crate::scene::SystemScene;
-use crate::system::{Analysis, Limits, full_period};
+use crate::system::{Analysis, Limits, Model, full_period};
 
 /// Multipliers are rounded eigenvalues: those of nearly defective propagators are right to half their digits only, but not
 /// the sums of them.
@@ -21,10 +21,8 @@ pub fn traces(scene: &SystemScene, analysis: &Analysis) -> Checked {
         // There is no sum to compare.
         return Ok(());
     }
-    let subcycles = scene.subcycles().filter(|_| scene.is_subcycled());
-    let jacobians = scene.model().jacobians().filter(|_| subcycles.is_none());
-    // Their period is one without rigid motions.
-    let rigid = if jacobians.is_some() { 0 } else { analysis.rigid_modes.len() };
+    // The period of Jacobians is one without rigid motions.
+    let rigid = if scene.model().jacobians().is_some() { 0 } else { analysis.rigid_modes.len() };
     let mut turns = vec![Complex64::new(2.0, 0.0); rigid];
     for part in &analysis.parts {
         let times = Laurent::ratio(&analysis.period, &part.period).filter(Rational::is_integer);
@@ -36,10 +34,10 @@ pub fn traces(scene: &SystemScene, analysis: &Analysis) -> Checked {
             power + power.inv()
         }));
     }
-    let q: DMatrix<f64> = match (jacobians, subcycles) {
-        (Some(own), _) => own.full_period(),
-        (_, Some(own)) => local::period(own),
-        _ => full_period(scene.model().moving()?.as_ref()),
+    let q: DMatrix<f64> = match scene.model() {
+        Model::NoGradient(own) => own.full_period(),
+        Model::Subcycled(_, own) => local::period(own),
+        other => full_period(other.moving()?.as_ref()),
     };
     let (norm, n) = (q.norm(), q.nrows() as f64 / 2.0);
     let sums = [

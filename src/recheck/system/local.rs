@@ -8,7 +8,9 @@ use crate::number::Rational;
 use crate::number::rational::to_f64;
 use crate::recheck::context::{Checked, holds};
 use crate::system::stretches::Stretch;
-use crate::system::{Analysis, Holds, Level, LocalSteps, SchemeSummary, SparseSteps, Subcycles};
+use crate::system::{
+    Analysis, Holds, Level, LocalSteps, SchemeSummary, SparseSteps, SparseSubcycles, Subcycles,
+};
 
 /// Degrees of freedom of which one is displaced, at most.
 const MOST: usize = 16;
@@ -71,6 +73,63 @@ pub fn period(own: &Subcycles) -> DMatrix<f64> {
         }
     }
     q
+}
+
+/// Eigenvalues of Q11 that meet move by the root of a rounding times their condition.
+const MEETING: f64 = 1e-5;
+
+/// The verdict on large subcycling and its limits, where all eigenvalues of Q11 can be seen: run from rest, the scheme turns positions by it.
+pub fn subcycles(
+    own: &SparseSubcycles,
+    dt: f64,
+    analysis: &Analysis,
+    told: Option<&SchemeSummary>,
+) -> Checked {
+    held(own, dt, analysis.holds())?;
+    let Some((lo, hi)) = told.and_then(|told| told.first_unstable) else { return Ok(()) };
+    held(own, lo, Holds::Stable)?;
+    held(own, hi, Holds::Unstable)
+}
+
+/// What is said of a stretch of steps, in the middle of it.
+pub fn stretch_of_subcycles(own: &SparseSubcycles, told: &Stretch) -> Checked {
+    held(own, told.lo + (told.hi - told.lo) / 2.0, told.verdict)
+}
+
+fn held(own: &SparseSubcycles, dt: f64, told: Holds) -> Checked {
+    let n = own.size();
+    let unit = |k: usize| (0..n).map(|i| f64::from(u8::from(i == k))).collect::<Vec<_>>();
+    let columns: Vec<f64> = (0..n).flat_map(|k| half_period(own, dt, unit(k))).collect();
+    let all = DMatrix::from_vec(n, n, columns).complex_eigenvalues();
+    let excess = all.iter().map(|mu| mu.im.abs().max(mu.re.abs() - 1.0)).fold(f64::NEG_INFINITY, f64::max);
+    let right = match told {
+        Holds::Stable => excess <= MEETING,
+        Holds::Unstable => excess >= -MEETING,
+        Holds::NotTold => true,
+    };
+    holds(right, || {
+        format!("at a step of {dt} the scheme, run, has Q11 off (-1, 1) by {excess}: not {}", told.name())
+    })
+}
+
+/// Positions after a step from rest, mass-weighted, kicks of half weight at both ends.
+fn half_period(own: &SparseSubcycles, dt: f64, mut y: Vec<f64>) -> Vec<f64> {
+    let (p, fine) = (own.level().substeps, &own.level().fine);
+    let short = dt / f64::from(p);
+    let mut velocity = vec![0.0; y.len()];
+    for tick in 0..=p {
+        let is_end = tick % p == 0;
+        for (i, pull) in
+            own.plain().pull(&y).into_iter().enumerate().filter(|own| is_end || fine.contains(&own.0))
+        {
+            let step = if fine.contains(&i) { short } else { dt };
+            velocity[i] -= if is_end { 0.5 * step } else { step } * pull;
+        }
+        if tick < p {
+            y.iter_mut().zip(&velocity).for_each(|(y, v)| *y += short * v);
+        }
+    }
+    y
 }
 
 /// The verdict on a large scheme, its growth and its limits.

@@ -22,7 +22,7 @@ use crate::report::system::SystemMap;
 use crate::scene::{Arrays, SystemScene};
 use crate::system::stretches::Stretch;
 use crate::system::vary::Intervals;
-use crate::system::{Analysis, Holds, Limits, Model, SchemeSummary, SparseSteps};
+use crate::system::{Analysis, Holds, Limits, Model, SchemeSummary, SparseSteps, SparseSubcycles};
 use crate::verdict::Kind;
 
 /// Points of a map whose kind is decided by the other route (where it costs no more than is allowed), unless all are.
@@ -91,6 +91,10 @@ fn verdict(
             let checked = levels::modes(own, outer, analysis);
             return Ok(levels::unseen(analysis, outcome(context, levels::ROUTE, checked)?));
         }
+        if let Some(own) = own.subcycles() {
+            let dt = to_f64(&scene.model().steps()[0]);
+            return run(own, context, || local::subcycles(own, dt, analysis, local));
+        }
         let Some(steps) = own.local_steps() else { return outcome(context, ALONE, Ok(())) };
         let checked = local::sparse(steps, to_f64(&scene.model().steps()[0]), analysis, local);
         return Ok(seen(steps, outcome(context, RUN, checked)?));
@@ -114,14 +118,14 @@ fn verdict(
     };
     match exact_kind(scene, &context.work().products())? {
         Some(truth) => {
-            let route = match scene.model().local_steps() {
-                Some(_) => {
+            let route = match scene.model() {
+                Model::LocalSteps(_) => {
                     "the scheme substep by substep, the kind in exact arithmetic, multipliers by the traces of the full period"
                 }
-                None if scene.is_subcycled() => {
+                Model::Subcycled(..) => {
                     "the kind in exact arithmetic, multipliers by the traces of a period of the scheme, run substep by substep"
                 }
-                None => {
+                _ => {
                     "the kind in exact arithmetic, multipliers by the traces of the dense full period and of its square"
                 }
             };
@@ -137,6 +141,14 @@ fn verdict(
 
 /// The scheme run, of large ones.
 const RUN: &str = "the scheme substep by substep, and the eigenvalues of its steps by Lanczos's recursion";
+
+/// Subcycling run, where it is not too large to see all of it.
+fn run(own: &SparseSubcycles, context: &Context, check: impl FnOnce() -> Checked) -> Result<Outcome> {
+    if own.size() > local::SEEN {
+        return outcome(context, ALONE, Ok(()));
+    }
+    outcome(context, "the scheme substep by substep, and the eigenvalues of its period", check())
+}
 
 /// With what Lanczos's recursion does not see.
 fn seen(steps: &SparseSteps, mut outcome: Outcome) -> Outcome {
@@ -170,6 +182,11 @@ impl Claim {
         let (mut failures, mut decided) = (Vec::new(), 0);
         let mut outcome = match scene.model() {
             Model::Sparse(own) if is_outer => {
+                if let Some(own) = own.subcycles() {
+                    let mut told = told.map(|own| own.1);
+                    let check = || told.try_for_each(|stretch| local::stretch_of_subcycles(own, stretch));
+                    return run(own, context, check);
+                }
                 let Some(steps) = own.local_steps() else { return outcome(context, ALONE, Ok(())) };
                 for (row, own) in told {
                     decided += 1;
@@ -177,7 +194,7 @@ impl Claim {
                 }
                 seen(steps, outcome(context, RUN, Ok(()))?)
             }
-            Model::NoGradient(own) if is_outer => {
+            Model::NoGradient(own) | Model::Subcycled(own, _) if is_outer => {
                 let longest = scene.model().steps().into_iter().max().unwrap_or_default();
                 for (row, stretch) in told {
                     let middle = stretch.lo + (stretch.hi - stretch.lo) / 2.0;

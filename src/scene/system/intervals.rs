@@ -155,13 +155,6 @@ impl SystemScene {
     fn over<T>(&self, span: &Span, limits: &Limits, ask: impl FnOnce(&Number) -> Result<T>) -> Result<T> {
         self.allow_intervals("intervals", limits)?;
         let role = span.role()?;
-        if role != Role::Outer && self.is_subcycled() {
-            return Err(Error::input(
-                "intervals",
-                &span.path,
-                "cannot vary with scheme newmark: vary outer, the step, to which all substeps stay in proportion",
-            ));
-        }
         if role == Role::Outer && span.lo <= Rational::default() {
             return Err(Error::input("intervals", span, "steps are positive"));
         }
@@ -242,7 +235,7 @@ impl SystemScene {
             return refused("with friction", "take the friction out of the file");
         }
         match &self.model {
-            Model::Sparse(own) if own.local_steps().is_none() => {
+            Model::Sparse(own) if own.levels().is_some() => {
                 return refused("of this file", "are for dense stiffnesses");
             }
             Model::Rational(_)
@@ -250,6 +243,8 @@ impl SystemScene {
             | Model::LocalSteps(_)
             | Model::Implicit(_)
             | Model::NoGradient(_)
+            | Model::Subcycled(..)
+            | Model::Elements(..)
             | Model::Sparse(_)
                 if self.is_linear() => {}
             _ => return refused("of this file", "are for linear systems of rational numbers"),

@@ -17,12 +17,6 @@ use super::document::{Document, LevelDocument, MeshDocument, Number};
 use crate::error::{Error, Result};
 use crate::system::{Level, LocalSteps, Model, Scheme, Subcycles, System};
 
-/// The scheme whose step is one of Verlet's.
-pub(super) const NAME: &str = "lts";
-
-/// A model, and the scheme that its clocks stand for, where that is none of its own.
-pub(super) type Stepped = (Model, Option<Subcycles>);
-
 impl Document {
     /// The scheme that the file names, with its levels.
     pub fn named_scheme(&self) -> Result<Option<(Scheme, &[LevelDocument])>> {
@@ -41,8 +35,8 @@ impl Document {
     }
 
     /// The model with the scheme of the file, where it names one; `moving` are node and axis of each degree of freedom of a mesh.
-    pub fn with_scheme(&self, model: Model, moving: &[(usize, usize)]) -> Result<Stepped> {
-        let Some((scheme, levels)) = self.named_scheme()? else { return Ok((model, None)) };
+    pub fn with_scheme(&self, model: Model, moving: &[(usize, usize)]) -> Result<Model> {
+        let Some((scheme, levels)) = self.named_scheme()? else { return Ok(model) };
         let Model::Rational(plain) = model else {
             let remedy = "is for rational numbers in the file, without pi";
             return Err(Error::input("scheme", scheme.name(), remedy));
@@ -54,7 +48,7 @@ impl Document {
                 return Err(Error::input("scheme", "avi", remedy));
             };
             let subcycles = Subcycles::avi(plain.clone(), mesh.elements.len(), mesh.levels(levels)?)?;
-            return Ok((Model::Rational(plain), Some(subcycles)));
+            return Ok(Model::Elements(plain, subcycles));
         }
         if self.friction.is_some() {
             let remedy = "has no place in a scheme of local steps: leave it out";
@@ -63,10 +57,10 @@ impl Document {
         let level = |(l, own)| self.level(l, own, &plain, moving);
         let levels = levels.iter().enumerate().map(level).collect::<Result<_>>()?;
         if scheme == Scheme::Lts {
-            return Ok((Model::LocalSteps(LocalSteps::new(plain, levels)?), None));
+            return Ok(Model::LocalSteps(LocalSteps::new(plain, levels)?));
         }
         let (subcycles, clocks) = Subcycles::newmark(plain, levels)?;
-        Ok((Model::NoGradient(Box::new(clocks)), Some(subcycles)))
+        Ok(Model::Subcycled(Box::new(clocks), subcycles))
     }
 
     fn level(

@@ -79,9 +79,7 @@ use crate::number::rational::to_f64;
 use crate::scene::json;
 use crate::system::friction::Friction;
 use crate::system::levels::Method;
-use crate::system::{
-    Limits, Model, OwnOrbit, Potential, Scheme as LocalScheme, SchemeSummary, Subcycles, System,
-};
+use crate::system::{Limits, Model, OwnOrbit, Potential, Scheme as LocalScheme, Subcycles, System};
 pub use array::{Array, Arrays};
 use bonds::Nonlinear;
 use document::{Document, no_system};
@@ -179,8 +177,6 @@ pub struct SystemScene {
     labels: Option<Vec<String>>,
     /// γ per unit time.
     friction: Option<Rational>,
-    /// The scheme of local steps that the model's clocks stand for, where it is none of the model's own.
-    subcycles: Option<Subcycles>,
 }
 
 impl SystemScene {
@@ -218,18 +214,18 @@ impl SystemScene {
                 measured::read(&document, &arrays)?
             };
             let labels = document.labels.map(|labels| spread(&labels, model.size())).transpose()?;
-            let (bonds, friction, subcycles) = (None, None, None);
-            return Ok(SystemScene { source, arrays, model, bonds, labels, friction, subcycles });
+            let (bonds, friction) = (None, None);
+            return Ok(SystemScene { source, arrays, model, bonds, labels, friction });
         }
         // Once more from the text, for the error to name its line.
         let document =
             Document::deserialize(&source).or_else(|error| text.map_or(Err(error), json::from_str));
         let document = document.map_err(no_system)?;
         check_schema(&document.schema)?;
-        let Described { model, bonds, labels, subcycles } = document.model()?;
+        let Described { model, bonds, labels } = document.model()?;
         let given = document.labels.as_ref().map(|labels| spread(labels, model.size())).transpose()?;
         let labels = given.or(labels);
-        let scene = SystemScene { source, arrays, model, bonds, labels, friction: None, subcycles };
+        let scene = SystemScene { source, arrays, model, bonds, labels, friction: None };
         let friction = document.friction.as_ref().map(|own| own.read("friction")).transpose()?;
         let method = document.method.as_deref().map(str::parse).transpose()?;
         scene.asked(None, false, friction.as_ref(), method)
@@ -266,18 +262,9 @@ impl SystemScene {
             self.model = Model::Measured(own.keeping_rigid());
         }
         if let Some(method) = method {
-            if self.subcycles.is_none() {
-                self.model = with_method(self.model, self.bonds.as_ref(), method)?;
-            } else if method != Method::Respa {
-                let remedy = "has no place in a scheme of local steps: leave it out";
-                return Err(Error::input("method", method, remedy));
-            }
+            self.model = with_method(self.model, self.bonds.as_ref(), method)?;
         }
         if let Some(rate) = friction {
-            if self.is_subcycled() {
-                let remedy = "has no place in a scheme of local steps: leave it out";
-                return Err(Error::input("friction", rate, remedy));
-            }
             if *rate <= Rational::default() {
                 return Err(Error::input("friction", rate, "a rate of friction must be positive"));
             }
@@ -297,21 +284,6 @@ impl SystemScene {
     /// As [`Model::friction`].
     pub fn friction(&self, limits: &Limits) -> Result<Option<Friction>> {
         self.friction.as_ref().map(|rate| self.model.friction(rate, limits)).transpose()
-    }
-
-    /// The scheme of local steps that the model's clocks stand for, where it is none of the model's own.
-    pub fn subcycles(&self) -> Option<&Subcycles> {
-        self.subcycles.as_ref()
-    }
-
-    /// What verdicts tell of its local time steps, where it has such.
-    pub fn local_steps_summary(&self) -> Option<SchemeSummary> {
-        self.subcycles.as_ref().map(Subcycles::summary).or_else(|| self.model.local_steps_summary())
-    }
-
-    /// Whether its Jacobians are those of subcycling: the forces themselves are gradients.
-    pub fn is_subcycled(&self) -> bool {
-        self.subcycles.as_ref().is_some_and(|own| own.scheme() == LocalScheme::Newmark)
     }
 
     /// What each degree of freedom is called, where the file tells.
@@ -393,7 +365,7 @@ impl SystemScene {
     fn masses(&self) -> Result<Vec<Rational>> {
         match &self.model {
             Model::Measured(own) => own.refuse_constraints().and(own.refuse_method("a run"))?,
-            Model::NoGradient(_) if self.is_subcycled() => {
+            Model::Subcycled(..) => {
                 return Err(Error::input(
                     "scheme",
                     "newmark",
@@ -441,12 +413,11 @@ fn check_schema(schema: &str) -> Result<()> {
     Err(Error::input("schema", schema, format!("this version reads {SCHEMA}")))
 }
 
-/// A model, the bonds at whose equilibrium it is, labels of its degrees of freedom, where the file implies some, and the scheme of its clocks.
+/// A model, the bonds at whose equilibrium it is, and labels of its degrees of freedom, where the file implies some.
 struct Described {
     model: Model,
     bonds: Option<Nonlinear>,
     labels: Option<Vec<String>>,
-    subcycles: Option<Subcycles>,
 }
 
 impl Document {
@@ -454,8 +425,8 @@ impl Document {
         let is_explicit = self.masses.is_some() || self.potentials.is_some();
         match (&self.build, &self.mesh) {
             (Some(build), None) if !is_explicit => {
-                let (model, subcycles) = self.with_scheme(Model::Rational(build.system()?), &[])?;
-                Ok(Described { model, bonds: None, labels: None, subcycles })
+                let model = self.with_scheme(Model::Rational(build.system()?), &[])?;
+                Ok(Described { model, bonds: None, labels: None })
             }
             (None, Some(mesh)) if !is_explicit => {
                 let substeps = match self.named_scheme()? {
@@ -465,8 +436,8 @@ impl Document {
                     _ => None,
                 };
                 let (system, moving) = mesh.system(substeps.as_deref())?;
-                let (model, subcycles) = self.with_scheme(Model::Rational(system), &moving)?;
-                Ok(Described { model, bonds: None, labels: Some(mesh::labels(&moving)), subcycles })
+                let model = self.with_scheme(Model::Rational(system), &moving)?;
+                Ok(Described { model, bonds: None, labels: Some(mesh::labels(&moving)) })
             }
             (None, None) => {
                 let (model, bonds) = self.explicit()?;
@@ -477,8 +448,8 @@ impl Document {
                         "is for linear systems: give springs in place of bonds",
                     ));
                 }
-                let (model, subcycles) = self.with_scheme(model, &[])?;
-                Ok(Described { model, bonds, labels: None, subcycles })
+                let model = self.with_scheme(model, &[])?;
+                Ok(Described { model, bonds, labels: None })
             }
             _ => {
                 let remedy = "give either build, or mesh, or masses and potentials";

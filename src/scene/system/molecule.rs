@@ -47,11 +47,6 @@ impl SystemScene {
     /// As [`SystemScene::femtoseconds`]; labels that do not fit.
     pub fn direct(&self) -> Result<Option<Direct>> {
         let Some(own) = self.model.jacobians() else { return Ok(None) };
-        if self.is_subcycled() {
-            let remedy =
-                "is no scheme of molecules: ask system FILE --intervals outer=LO..HI for its unstable steps";
-            return Err(Error::input("scheme", "newmark", remedy));
-        }
         let names = match own.accuracy() {
             Some(_) => self.names(own.body())?,
             None => Names::of_labels(self.labels.clone().unwrap_or_default()),

@@ -13,8 +13,8 @@
 //! ```
 //!
 //! `csr` names the three arrays `data`, `indices` and `indptr` of compressed rows: `slow.data` and so on, or, where it is empty, those of a file
-//! of `scipy.sparse.save_npz`. With `"scheme": "lts"` there is one stiffness, and `"levels": [{"fine": [4, 5], "substeps": 2}]` are local time steps
-//! (see `local`); `fine` may stand by reference, too, as `{"npz": "mesh.npz", "array": "fine"}`. A stiffness is K, not mass-weighted, symmetric to rounding; both triangles stand in it.
+//! of `scipy.sparse.save_npz`. With `"scheme": "lts"` or `"newmark"` there is one stiffness, and `"levels": [{"fine": [4, 5], "substeps": 2}]` are local
+//! time steps (see `local`), of newmark one level; `fine` may stand by reference, too, as `{"npz": "mesh.npz", "array": "fine"}`. A stiffness is K, not mass-weighted, symmetric to rounding; both triangles stand in it.
 
 use std::collections::BTreeSet;
 
@@ -22,13 +22,12 @@ use faer::Mat;
 use serde_json::Value;
 
 use super::array::{Arrays, Reference};
-use super::local::NAME;
 use super::measured::{self, Document, FineDocument, LevelDocument};
 use crate::error::{Error, Result};
 use crate::number::Rational;
 use crate::system::levels::sparse::SparseLevels;
 use crate::system::levels::{rigid_motions, translations};
-use crate::system::{Level, LocalSteps, Removed, SparseSteps, SparseSystem};
+use crate::system::{Level, LocalSteps, Removed, Scheme, SparseSteps, SparseSubcycles, SparseSystem};
 
 /// The most degrees of freedom.
 const LARGEST: usize = 1 << 20;
@@ -86,28 +85,29 @@ pub(super) fn with_steps(own: &SparseSystem, files: [&Value; 2]) -> Result<Optio
 /// One stiffness with local time steps.
 fn local_steps(document: &Document, arrays: &Arrays) -> Result<SparseSystem> {
     let refused = |field: &str, value: String, remedy: &str| Err(Error::input(field, value, remedy));
-    let (levels, potential) = match (document.scheme.as_deref(), &document.levels, &document.potentials[..]) {
-        (Some(NAME), Some(levels), [potential]) => (levels, potential),
-        (Some(NAME), Some(_), all) => {
+    let scheme = document.scheme.as_deref().map(str::parse).transpose()?;
+    let (levels, potential) = match (scheme, &document.levels, &document.potentials[..]) {
+        (Some(Scheme::Avi), ..) => {
+            let remedy = "is two stiffnesses here, each with its step: leave out scheme and levels";
+            return refused("scheme", "avi".into(), remedy);
+        }
+        (Some(_), Some(levels), [potential]) => (levels, potential),
+        (Some(_), Some(_), all) => {
             return refused(
                 "potentials",
                 format!("{} of them", all.len()),
                 "local steps are for one stiffness",
             );
         }
-        (Some(NAME), None, _) => {
+        (Some(_), None, _) => {
             return refused(
                 "levels",
                 "missing".into(),
                 "give levels, as [{\"fine\": [3, 4], \"substeps\": 2}]",
             );
         }
-        (Some(other), ..) => {
-            let remedy = "is not there for sparse stiffnesses: choose lts, leapfrog with local time steps";
-            return refused("scheme", other.into(), remedy);
-        }
         (None, ..) => {
-            let remedy = "are those of a scheme: give \"scheme\": \"lts\", too";
+            let remedy = "are those of a scheme: give \"scheme\": \"lts\", too, or newmark";
             return refused("levels", "given".into(), remedy);
         }
     };
@@ -120,8 +120,12 @@ fn local_steps(document: &Document, arrays: &Arrays) -> Result<SparseSystem> {
     }
     let masses = document.masses(n, arrays)?.ok_or_else(|| Error::missing("masses", "give them"))?;
     let levels = levels.iter().enumerate().map(|(l, own)| own.read(l, n, arrays));
-    let steps = SparseSteps::new(&masses, &stiffness, levels.collect::<Result<_>>()?)?;
-    SparseSystem::with_local_steps(steps, &potential.step(0)?)
+    let (levels, step) = (levels.collect::<Result<_>>()?, potential.step(0)?);
+    if scheme == Some(Scheme::Newmark) {
+        let steps = SparseSubcycles::new(&masses, &stiffness, levels)?;
+        return SparseSystem::with_subcycles(steps, &step);
+    }
+    SparseSystem::with_local_steps(SparseSteps::new(&masses, &stiffness, levels)?, &step)
 }
 
 impl LevelDocument {

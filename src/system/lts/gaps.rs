@@ -87,7 +87,7 @@ impl SparseSteps {
     /// Where the fastest fine motion has θ = π: every step above the second one is unstable, every resonance below it.
     fn limit(&self) -> Option<(f64, f64)> {
         let (level, fine) = self.one()?;
-        let (lo, hi) = fine.pattern.largest(&fine.values, fine.error, 1e-6)?;
+        let (lo, hi) = fine.largest(1e-6)?;
         let of = |y: f64| 2.0 * f64::from(level.substeps) / y.sqrt();
         Some((of(hi) * (1.0 - 4.0 * U), of(lo) * (1.0 + 4.0 * U)))
     }
@@ -116,7 +116,7 @@ impl SparseSteps {
     pub fn first_unstable(&self) -> Option<(f64, f64)> {
         let (level, fine) = self.one()?;
         // The first odd multiple of π is reached by the fastest fine motion: below it there is none.
-        let (low, high) = fine.pattern.largest(&fine.values, fine.error, 1e-6)?;
+        let (low, high) = fine.largest(1e-6)?;
         let z = SparseSteps::marks(level.substeps).first().map_or(4.0, |mark| mark.z);
         let at = |y: f64, round: f64| f64::from(level.substeps) * (z / y).sqrt() * (1.0 + round * 8.0 * U);
         let (top, resonance) = (at(high, -1.0), at(low, 1.0));

@@ -18,13 +18,16 @@
 //! | `split` | subcycling with held velocities, AVI: the same levels as kicks and drifts |
 //! | `sparse` | many thousands of degrees of freedom: f in sparse doubles, its verdicts, what grows fastest |
 //! | `gaps` | the unstable intervals of dt of these |
+//! | `held` | subcycling of as many: its first stable region |
 
 mod gaps;
+mod held;
 mod intervals;
 mod scheme;
 mod sparse;
 mod split;
 
+pub use held::SparseSubcycles;
 pub use scheme::{Level, LocalSteps, Scheme, SchemeSummary};
 pub use sparse::{Growth, SparseSteps};
 pub use split::Subcycles;

@@ -58,6 +58,18 @@ pub(super) struct Block {
     pub error: f64,
 }
 
+impl Block {
+    /// Whether it is proven positive definite.
+    pub fn is_definite(&self) -> bool {
+        self.pattern.factored(0.0, &[(1.0, &self.values)], self.error).is_some()
+    }
+
+    /// Its largest eigenvalue, enclosed to `within` of itself or as near as doubles tell; `None` where it is not positive.
+    pub fn largest(&self, within: f64) -> Option<(f64, f64)> {
+        self.pattern.largest(&self.values, self.error, within)
+    }
+}
+
 /// Sums of rows as small beside those of |entries| are rounding: then all may move together.
 const RIGID: f64 = 1e-12;
 
@@ -77,6 +89,16 @@ impl SparseSteps {
     /// # Errors
     /// Masses that are not positive, numbers that are not finite, indices beyond the rows; levels as [`LocalSteps::new`].
     pub fn new(masses: &[f64], stiffness: &Triplets, levels: Vec<Level>) -> Result<SparseSteps> {
+        SparseSteps::within(masses, stiffness, levels, 0.0)
+    }
+
+    /// The same of entries that are each off by so much, relative to it.
+    pub(super) fn within(
+        masses: &[f64],
+        stiffness: &Triplets,
+        levels: Vec<Level>,
+        off: f64,
+    ) -> Result<SparseSteps> {
         let n = masses.len();
         if let Some((i, mass)) = masses.iter().enumerate().find(|(_, m)| !(m.is_finite() && **m > 0.0)) {
             return Err(Error::input(&format!("masses[{i}]"), mass, "a mass must be positive"));
@@ -90,7 +112,7 @@ impl SparseSteps {
         let rigid = rigid(stiffness, &roots);
         let below = |&(i, j, x): &(usize, usize, f64)| (i >= j).then(|| (i, j, x / (roots[i] * roots[j])));
         let lower: Vec<_> = stiffness.iter().filter_map(below).collect();
-        let whole = Sparse::symmetric(n, &lower);
+        let whole = Sparse::symmetric(n, &lower, off);
         let plain = whole.block(0..n)?;
         let fine = levels.first().filter(|own| !own.fine.is_empty());
         let fine = fine.map(|own| whole.block(own.fine.iter().copied())).transpose()?;
@@ -276,7 +298,12 @@ impl SparseSteps {
 
     /// Where plain leapfrog, all with the step of the whole, becomes unstable, as [`LocalSteps::plain_limit`].
     pub fn plain_limit(&self) -> Option<(f64, f64)> {
-        let (lo, hi) = self.plain.pattern.largest(&self.plain.values, self.plain.error, 1e-6)?;
+        self.plain_limit_within(1e-6)
+    }
+
+    /// The same as sharp as that.
+    pub(super) fn plain_limit_within(&self, within: f64) -> Option<(f64, f64)> {
+        let (lo, hi) = self.plain.largest(within)?;
         Some((2.0 / hi.sqrt() * (1.0 - 4.0 * U), 2.0 / lo.sqrt() * (1.0 + 4.0 * U)))
     }
 
@@ -381,8 +408,8 @@ struct Sparse {
 }
 
 impl Sparse {
-    /// From its lower triangle, weighed with masses: two roots, their product, the quotient.
-    fn symmetric(n: usize, lower: &Triplets) -> Sparse {
+    /// From its lower triangle, each entry off by so much, weighed with masses: two roots, their product, the quotient.
+    fn symmetric(n: usize, lower: &Triplets, off: f64) -> Sparse {
         let upper = lower.iter().filter(|own| own.0 != own.1).map(|&(i, j, x)| (j, i, x));
         let mut all: Vec<_> = lower.iter().copied().chain(upper).collect();
         all.sort_by_key(|own| (own.1, own.0));
@@ -395,7 +422,7 @@ impl Sparse {
         }
         (0..n).for_each(|j| own.ends[j + 1] += own.ends[j]);
         own.size = own.sums();
-        own.error = 4.1 * U * own.size;
+        own.error = (4.1 * U + 1.01 * off) * own.size;
         own
     }
 

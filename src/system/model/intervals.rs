@@ -54,7 +54,7 @@ impl Model {
             (_, Model::Sparse(own)) => {
                 own.stretches(range, width).unwrap_or_else(|| Err(self.no_intervals()))
             }
-            (_, Model::NoGradient(own)) => own.stretches(range, width),
+            (_, Model::NoGradient(own) | Model::Subcycled(own, _)) => own.stretches(range, width),
             _ => match self.levels() {
                 Some(own) => own.stretches(range, width, own.accuracy),
                 None => self.over_outer_steps(|family| family.stretches(range, width, limits)),
@@ -113,7 +113,7 @@ impl Model {
                 Family { linear: Linear::Number, at: &at }.cost(range, width, limits)
             }
             (_, Model::LocalSteps(own)) => Ok(own.cost()),
-            (_, Model::NoGradient(own)) => Ok(own.cost_of_stretches(range, width)),
+            (_, Model::NoGradient(own) | Model::Subcycled(own, _)) => Ok(own.cost_of_stretches(range, width)),
             (_, Model::Sparse(own)) => own.cost_of_stretches(range).ok_or_else(|| self.no_intervals()),
             _ => self.over_outer_steps(|family| family.cost(range, width, limits)),
         }
@@ -156,7 +156,8 @@ impl Model {
             let all = self.stretches(&Number::Outer, Nearest::reach(step), width, limits)?;
             return Ok(Nearest::of(step, &all));
         }
-        if self.levels().is_none() && self.jacobians().is_none() {
+        let is_decided_by_jacobians = matches!(self, Model::NoGradient(_) | Model::Subcycled(..));
+        if self.levels().is_none() && !is_decided_by_jacobians {
             let exactly = |family: &Family| family.exactly(Nearest::reach(step), limits);
             if let Some(all) = self.over_outer_steps(exactly)? {
                 return Ok(Nearest::of(step, &all));
@@ -176,7 +177,9 @@ impl Model {
         }
         let factor = outer / self.outer_step();
         match self {
-            Model::NoGradient(own) => own.slowed(&factor)?.decide(Route::Cheapest, limits),
+            Model::NoGradient(own) | Model::Subcycled(own, _) => {
+                own.slowed(&factor)?.decide(Route::Cheapest, limits)
+            }
             Model::Sparse(own) => match own.at_step(outer) {
                 Some(own) => own?.decide(limits),
                 None => Err(self.refused("the verdict at another step")),

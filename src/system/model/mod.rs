@@ -22,7 +22,7 @@ use crate::system::implicit::{ImplicitExplicit, two_clocks};
 use crate::system::jacobian::Jacobians;
 use crate::system::levels::{Hessians, Method};
 use crate::system::linear::system::{Potential, System};
-use crate::system::lts::{LocalSteps, SchemeSummary, SparseSteps};
+use crate::system::lts::{LocalSteps, SchemeSummary, Subcycles};
 use crate::system::pi::PiSystem;
 use crate::system::verdict::analysis::Analysis;
 use crate::system::verdict::decide::{decide_by, exact_kind, verdict_cost};
@@ -51,6 +51,10 @@ pub enum Model {
     Implicit(Box<ImplicitExplicit>),
     /// Forces that are no gradient: their Jacobians are not symmetric.
     NoGradient(Box<Jacobians>),
+    /// Subcycling with held velocities: the kicks of its levels are no gradients, though the force is one.
+    Subcycled(Box<Jacobians>, Subcycles),
+    /// AVI of elements in levels, each level a clock of rational stiffness.
+    Elements(System, Subcycles),
     /// Sparse stiffnesses of thousands of degrees of freedom: two levels, or one with local time steps.
     Sparse(Box<SparseSystem>),
 }
@@ -66,13 +70,13 @@ impl Model {
     /// gradient, and sparse stiffnesses, have none: what is returned has their size and their clocks, no more.
     pub fn system(&self) -> &System {
         match self {
-            Model::Rational(own) => own,
+            Model::Rational(own) | Model::Elements(own, _) => own,
             Model::Pi(own) => own.near(),
             Model::Oscillator(own) => &own.rounded,
             Model::Measured(own) => own.system(),
             Model::LocalSteps(own) => own.system(),
             Model::Implicit(own) => own.system(),
-            Model::NoGradient(own) => own.symmetric(),
+            Model::NoGradient(own) | Model::Subcycled(own, _) => own.symmetric(),
             Model::Sparse(own) => own.system(),
         }
     }
@@ -89,7 +93,7 @@ impl Model {
     pub fn cost(&self) -> u64 {
         match self {
             Model::Measured(own) => own.cost(),
-            Model::NoGradient(own) => own.cost(),
+            Model::NoGradient(own) | Model::Subcycled(own, _) => own.cost(),
             Model::Sparse(own) => own.cost(),
             _ => verdict_cost(self.system()),
         }
@@ -111,13 +115,13 @@ impl Model {
     /// As [`decide_by`]; a budget error where what would decide exceeds the limits.
     pub fn decide(&self, route: Route, limits: &Limits) -> Result<Analysis> {
         match self {
-            Model::Rational(own) => decide_by(route, own, limits),
+            Model::Rational(own) | Model::Elements(own, _) => decide_by(route, own, limits),
             Model::Pi(own) => own.decide(route, limits),
             Model::Oscillator(own) => own.decide(limits),
             Model::Measured(own) => own.decide(route, limits),
             Model::LocalSteps(own) => decide_by(route, own.system(), limits),
             Model::Implicit(own) => decide_by(route, own.system(), limits),
-            Model::NoGradient(own) => own.decide(route, limits),
+            Model::NoGradient(own) | Model::Subcycled(own, _) => own.decide(route, limits),
             Model::Sparse(_) if route == Route::Exact => Err(self.refused("exact arithmetic")),
             Model::Sparse(own) => own.decide(limits),
         }
@@ -151,7 +155,9 @@ impl Model {
     pub fn moving(&self) -> Result<Cow<'_, System>> {
         match self {
             Model::Measured(own) => own.moving(),
-            Model::NoGradient(_) | Model::Sparse(_) => Err(self.refused("a rational system")),
+            Model::NoGradient(_) | Model::Subcycled(..) | Model::Sparse(_) => {
+                Err(self.refused("varying another number than outer"))
+            }
             _ => Ok(Cow::Borrowed(self.system())),
         }
     }
@@ -165,10 +171,10 @@ impl Model {
         match self {
             Model::Pi(own) => own.exact_kind(limits),
             Model::Oscillator(own) => own.exact_kind(limits),
-            Model::Rational(own) => exact_kind(own, limits),
+            Model::Rational(own) | Model::Elements(own, _) => exact_kind(own, limits),
             Model::LocalSteps(own) => exact_kind(own.system(), limits),
             Model::Implicit(own) => exact_kind(own.system(), limits),
-            Model::NoGradient(own) => own.exact(limits).map(|(kind, _)| kind),
+            Model::NoGradient(own) | Model::Subcycled(own, _) => own.exact(limits).map(|(kind, _)| kind),
             Model::Sparse(_) => Err(self.refused("exact arithmetic")),
             Model::Measured(own) => exact_kind(own.moving()?.as_ref(), limits),
         }
@@ -180,12 +186,12 @@ impl Model {
     /// As [`damped_system`]; π in the stiffnesses of several degrees of freedom, irrational steps.
     pub fn friction(&self, rate: &Rational, limits: &Limits) -> Result<Friction> {
         match self {
-            Model::Rational(own) => damped_system(own, rate, limits),
+            Model::Rational(own) | Model::Elements(own, _) => damped_system(own, rate, limits),
             Model::Pi(_) => {
                 let remedy = "with several degrees of freedom write stiffnesses without pi";
                 Err(Error::input("friction", rate, remedy))
             }
-            Model::LocalSteps(_) => {
+            Model::LocalSteps(_) | Model::Subcycled(..) => {
                 Err(Error::input("friction", rate, "has no place in a scheme of local steps: leave it out"))
             }
             Model::Implicit(_) => {
@@ -207,6 +213,10 @@ impl Model {
             Model::Sparse(_) => {
                 Error::input("stiffness", "sparse", format!("{what} needs dense stiffnesses"))
             }
+            Model::Subcycled(_, own) => {
+                let remedy = format!("{what} needs kicks that are gradients: choose avi or lts");
+                Error::input("scheme", own.scheme().name(), remedy)
+            }
             _ => Error::input("symmetric", "false", format!("{what} needs forces that are gradients")),
         }
     }
@@ -220,7 +230,12 @@ impl Model {
         let refused = |remedy: &str| Err(Error::input("method", method, remedy));
         match self {
             Model::Measured(own) => Ok(Model::Measured(own.with_method(method)?)),
-            Model::Rational(_) | Model::Pi(_) | Model::Oscillator(_) | Model::LocalSteps(_)
+            Model::Rational(_)
+            | Model::Pi(_)
+            | Model::Oscillator(_)
+            | Model::LocalSteps(_)
+            | Model::Subcycled(..)
+            | Model::Elements(..)
                 if method == Method::Respa =>
             {
                 Ok(self)
@@ -237,7 +252,9 @@ impl Model {
             Model::Oscillator(_) => refused(
                 "is for rational numbers: of one mass with pi ask kickdrift word --method, or compare --methods",
             ),
-            Model::LocalSteps(_) => refused("has no place in a scheme of local steps: leave it out"),
+            Model::LocalSteps(_) | Model::Subcycled(..) | Model::Elements(..) => {
+                refused("has no place in a scheme of local steps: leave it out")
+            }
             Model::NoGradient(_) => refused("is for forces that are gradients: leave it out"),
             Model::Sparse(_) => refused("is for dense stiffnesses: give these, or leave it out"),
         }
@@ -258,7 +275,8 @@ impl Model {
     pub fn local_steps_summary(&self) -> Option<SchemeSummary> {
         match self {
             Model::LocalSteps(own) => Some(own.summary()),
-            Model::Sparse(own) => own.local_steps().map(SparseSteps::summary),
+            Model::Subcycled(_, own) | Model::Elements(_, own) => Some(own.summary()),
+            Model::Sparse(own) => own.summary(),
             _ => None,
         }
     }
@@ -311,7 +329,7 @@ impl Model {
     }
 
     fn of_two(&self) -> Result<&MeasuredSystem> {
-        if matches!(self, Model::NoGradient(_) | Model::Sparse(_)) {
+        if matches!(self, Model::NoGradient(_) | Model::Subcycled(..) | Model::Sparse(_)) {
             return Err(self.refused("advice"));
         }
         let remedy = "give stiffnesses by reference, as {\"npz\": \"water.npz\", \"array\": \"fast\"}";
@@ -339,7 +357,7 @@ impl Model {
     pub fn two_clocks(&self) -> Option<propagator::Oscillator> {
         let system = match self {
             Model::Oscillator(own) => return own.as_two_clocks(),
-            Model::Rational(own) if own.size() == 1 => own,
+            Model::Rational(own) | Model::Elements(own, _) if own.size() == 1 => own,
             _ => return None,
         };
         let [fast, slow] = system.clocks() else { return None };

@@ -12,7 +12,7 @@ use crate::system::levels::sparse::{Growing, GrowingMode, SparseLevels};
 use crate::system::levels::{Method, Outer};
 use crate::system::linear::sparse::Symmetric;
 use crate::system::linear::system::{Potential, System};
-use crate::system::lts::{Growth, SparseSteps};
+use crate::system::lts::{Growth, SchemeSummary, SparseSteps, SparseSubcycles};
 use crate::system::spectrum::modes::Origin;
 use crate::system::spectrum::rate::{Multiplier, about, per_time};
 use crate::system::vary::stretches::Stretch;
@@ -36,6 +36,8 @@ enum Of {
     Levels { levels: Arc<SparseLevels>, outer: Outer, accuracy: f64, removed: Option<Removed> },
     /// One stiffness, with local time steps.
     Steps(Box<SparseSteps>),
+    /// One stiffness, with subcycles.
+    Subcycles(Box<SparseSubcycles>),
 }
 
 /// What is left out of the answer: of a verdict in the first region, or of none,
@@ -48,6 +50,12 @@ const NO_MODE: &str =
 
 /// The same of local time steps.
 const FASTEST: &str = "of sparse stiffnesses only the motion that grows fastest is computed";
+
+/// And of subcycles.
+const NO_RATE: &str = "of sparse stiffnesses that subcycle the verdict alone is computed, up to where the fastest fine motion takes half a turn in a step: \
+                       no rate, and nothing beyond";
+
+const TOGETHER: &str = "all may move together: that motion is set apart";
 
 /// Of one resonance: to find it, and both edges of its unstable steps.
 const A_RESONANCE: f64 = 60.0;
@@ -101,17 +109,28 @@ impl SparseSystem {
     /// # Errors
     /// A step that is not positive.
     pub fn with_local_steps(steps: SparseSteps, step: &Rational) -> Result<SparseSystem> {
-        let n = steps.size();
+        SparseSystem::of_one(steps.size(), Of::Steps(Box::new(steps)), step)
+    }
+
+    /// Subcycling with held velocities.
+    ///
+    /// # Errors
+    /// A step that is not positive.
+    pub fn with_subcycles(steps: SparseSubcycles, step: &Rational) -> Result<SparseSystem> {
+        SparseSystem::of_one(steps.size(), Of::Subcycles(Box::new(steps)), step)
+    }
+
+    fn of_one(n: usize, of: Of, step: &Rational) -> Result<SparseSystem> {
         let clock = Potential::new(Symmetric::zero(n), step.clone());
         let clocks = System::new(Symmetric::diagonal(&vec![Rational::one(); n]), vec![clock])?;
-        Ok(SparseSystem { of: Of::Steps(Box::new(steps)), step: step.clone(), clocks })
+        Ok(SparseSystem { of, step: step.clone(), clocks })
     }
 
     /// Both levels with the outer step, where it has them.
     pub fn levels(&self) -> Option<(&SparseLevels, &Outer)> {
         match &self.of {
             Of::Levels { levels, outer, .. } => Some((levels, outer)),
-            Of::Steps(_) => None,
+            _ => None,
         }
     }
 
@@ -119,17 +138,41 @@ impl SparseSystem {
     pub fn local_steps(&self) -> Option<&SparseSteps> {
         match &self.of {
             Of::Steps(own) => Some(own),
+            _ => None,
+        }
+    }
+
+    /// Where it has subcycles.
+    pub fn subcycles(&self) -> Option<&SparseSubcycles> {
+        match &self.of {
+            Of::Subcycles(own) => Some(own),
+            _ => None,
+        }
+    }
+
+    /// What answers tell of its scheme, where it has one.
+    pub(super) fn summary(&self) -> Option<SchemeSummary> {
+        match &self.of {
             Of::Levels { .. } => None,
+            Of::Steps(own) => Some(own.summary()),
+            Of::Subcycles(own) => Some(own.summary()),
         }
     }
 
     /// The verdicts on all steps in a range, as [`SparseSteps::stretches`]; `None` for two levels.
     pub(super) fn stretches(&self, range: (f64, f64), width: f64) -> Option<Result<Vec<Stretch>>> {
-        self.local_steps().map(|own| own.stretches(range, width))
+        match &self.of {
+            Of::Levels { .. } => None,
+            Of::Steps(own) => Some(own.stretches(range, width)),
+            Of::Subcycles(own) => Some(own.stretches(range)),
+        }
     }
 
     /// What these cost, as [`SparseSystem::cost`].
     pub(super) fn cost_of_stretches(&self, range: (f64, f64)) -> Option<f64> {
+        if let Of::Subcycles(own) = &self.of {
+            return Some(A_RESONANCE / FASTER * own.products());
+        }
         let own = self.local_steps()?;
         let top = own.plain_limit().map_or(range.1, |(lo, _)| lo * f64::from(own.substeps()) * 0.99);
         let range = (range.0, range.1.min(top));
@@ -139,7 +182,11 @@ impl SparseSystem {
 
     /// Local time steps in another step; `None` for two levels.
     pub(super) fn at_step(&self, step: &Rational) -> Option<Result<SparseSystem>> {
-        self.local_steps().map(|own| SparseSystem::with_local_steps(own.clone(), step))
+        let of = match &self.of {
+            Of::Levels { .. } => return None,
+            of => of.clone(),
+        };
+        Some(SparseSystem::of_one(self.clocks.size(), of, step))
     }
 
     /// The same with another accuracy.
@@ -152,7 +199,7 @@ impl SparseSystem {
             Of::Levels { levels, outer, removed, .. } => {
                 Ok(SparseSystem { of: Of::Levels { levels, outer, accuracy, removed }, ..self })
             }
-            Of::Steps(_) => {
+            Of::Steps(_) | Of::Subcycles(_) => {
                 Err(Error::input("accuracy", accuracy, "has no meaning with local steps: leave it out"))
             }
         }
@@ -181,6 +228,7 @@ impl SparseSystem {
         let products = match &self.of {
             Of::Levels { levels, .. } => levels.products(),
             Of::Steps(own) => own.products(),
+            Of::Subcycles(own) => own.products(),
         };
         (FACTORIZATIONS / FASTER * products).min(1e19) as u64
     }
@@ -195,6 +243,7 @@ impl SparseSystem {
         let (levels, outer, accuracy, removed) = match &self.of {
             Of::Levels { levels, outer, accuracy, removed } => (levels, outer, *accuracy, removed),
             Of::Steps(own) => return Ok(self.of_steps(own)),
+            Of::Subcycles(own) => return Ok(self.of_subcycles(own)),
         };
         levels.look(outer.inner_steps());
         let margin = if levels.is_unstable(outer) { None } else { levels.margin(outer) };
@@ -248,6 +297,7 @@ impl SparseSystem {
         Ok(match &self.of {
             Of::Levels { levels, outer, .. } => levels.verdict(outer, 0.0),
             Of::Steps(own) => own.verdict(to_f64(&self.step)),
+            Of::Subcycles(own) => own.verdict(to_f64(&self.step)),
         })
     }
 
@@ -278,9 +328,21 @@ impl SparseSystem {
         let part = Part::new(own.size(), period, decided(verdict), (multipliers, instabilities));
         let mut notes = vec![FASTEST.into()];
         if own.rigid_motions() > 0 {
-            notes.push("all may move together: that motion is set apart".into());
+            notes.push(TOGETHER.into());
         }
         Analysis::of_part(Part { largest, ..part }, 1, notes)
+    }
+
+    /// The verdict on subcycles.
+    fn of_subcycles(&self, own: &SparseSubcycles) -> Analysis {
+        let period = Laurent::from_rational(self.step.clone());
+        let part =
+            Part::new(own.size(), period, decided(own.verdict(to_f64(&self.step))), Default::default());
+        let mut notes = vec![NO_RATE.into()];
+        if own.plain().rigid_motions() > 0 {
+            notes.push(TOGETHER.into());
+        }
+        Analysis::of_part(part, 1, notes)
     }
 }
 
