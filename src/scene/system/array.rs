@@ -238,12 +238,16 @@ fn elements(kind: &str, data: &[u8], count: usize) -> Option<Vec<f64>> {
     }
 }
 
-/// Elements of a matrix by columns, by rows; of anything else as they are.
+/// Elements whose first index runs fastest, in the order in which the last one does.
 fn c_order(values: &[f64], shape: &[usize]) -> Vec<f64> {
-    match *shape {
-        [rows, columns] => (0..rows * columns).map(|k| values[k / columns + rows * (k % columns)]).collect(),
-        _ => values.to_vec(),
-    }
+    let place = |k: usize| {
+        let (mut left, mut index) = (k, vec![0; shape.len()]);
+        for (own, size) in index.iter_mut().zip(shape).rev() {
+            (*own, left) = (left % size, left / size);
+        }
+        index.iter().zip(shape).rev().fold(0, |at, (own, size)| at * size + own)
+    };
+    (0..values.len()).map(|k| values[place(k)]).collect()
 }
 
 impl Array {
@@ -286,6 +290,19 @@ impl Array {
                 "give a matrix, an array of two axes",
             )),
         }
+    }
+
+    /// As matrices of one size, one after the other.
+    ///
+    /// # Errors
+    /// Names the shape where it is not of three axes.
+    pub fn matrices(self, field: &str) -> Result<Vec<DMatrix<f64>>> {
+        let [_, rows, columns] = *self.shape else {
+            let remedy = "give a matrix for each kick of half a period, an array of three axes";
+            return Err(Error::input(field, format!("shape {:?}", self.shape), remedy));
+        };
+        let all = self.values.chunks_exact((rows * columns).max(1));
+        Ok(all.map(|own| DMatrix::from_row_slice(rows, columns, own)).collect())
     }
 
     /// All elements, by rows.
