@@ -253,7 +253,10 @@ impl SystemScene {
             | Model::Sparse(_)
                 if self.is_linear() => {}
             Model::Along(_) => {
-                return refused("along an orbit", "are for Hessians at one place: another step has another orbit");
+                return refused(
+                    "along an orbit",
+                    "are for Hessians at one place: another step has another orbit",
+                );
             }
             _ => return refused("of this file", "are for linear systems of rational numbers"),
         }

@@ -355,17 +355,20 @@ impl Half<'_> {
         FloatBlocks { m, y: turned(&whole.y), p: turned(&whole.p), error, norm, scales: vec![1.0; m] }
     }
 
-    /// That some Hessians within the accuracy leave the rigid motions free, C J₀ = 0: else what is proven would be so of none.
+    /// That some Hessians within the accuracy leave the rigid motions free, C J₀ = 0 and J₁ᵀ C = 0: else what is proven would be so of none. (A J₀ is in
+    /// the span of J₁ then, as Cᵀ A = Aᵀ C, and J₁ᵀ D in that of J₀ᵀ.)
     fn check_rigid(&self) -> Result<()> {
-        let Rigid::Turning([start, _]) = &self.own.rigid else { return Ok(()) };
+        let Rigid::Turning([start, turned]) = &self.own.rigid else { return Ok(()) };
         let n = self.own.size();
         let Some(error) = self.propagated.error_within(if self.own.accuracy.is_some() { 1.0 } else { 0.0 })
         else {
             return Ok(());
         };
         let whole = self.propagated.matrix();
-        let pulled = whole.submatrix(n, 0, n, n) * start;
-        let longest = (0..start.ncols()).map(|k| pulled.col(k).norm_l2()).fold(0.0, f64::max);
+        let c = whole.submatrix(n, 0, n, n);
+        let pulled = [c * start, c.transpose() * turned];
+        let longest = |own: &Mat<f64>| (0..own.ncols()).map(|k| own.col(k).norm_l2()).fold(0.0, f64::max);
+        let longest = pulled.iter().map(longest).fold(0.0, f64::max);
         // The positions are known about as well as the Hessians.
         let known = self.own.accuracy.unwrap_or(0.0).max(n as f64 * U) * norm::frobenius(&whole);
         if longest <= 1.01 * (error + known) {
