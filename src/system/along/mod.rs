@@ -19,7 +19,8 @@
 //! ```
 //!
 //! and with orthonormal bases U₀, U₁ of what is orthogonal to them the map U₁ᵀ H U₀, block by block, is symplectic: it is H on what has no momentum,
-//! up to rigid motions. The span of J₁ is that of A J₀, as Cᵀ A = Aᵀ C. Its S is U₀ᵀ Bᵀ C U₀, whose eigenvalues are those of Bᵀ C but for the zeros of J₀. In a periodic box the translations are
+//! up to rigid motions. Its S is U₀ᵀ Bᵀ U₁ U₁ᵀ C U₀ = U₀ᵀ Bᵀ C U₀, whose eigenvalues are those of Bᵀ C but for the zeros of J₀. What is proven holds for
+//! the Hessians within the accuracy for which C J₀ = 0 and J₁ᵀ C = 0; that there may be such is checked. In a periodic box the translations are
 //! projected out of each Hessian, as of any other.
 //!
 //! | file | what |
