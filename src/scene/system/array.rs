@@ -332,6 +332,14 @@ mod tests {
         assert_eq!((rows[(0, 2)], rows[(1, 0)]), (3.0, 4.0));
         let columns = parse(&file(&header("True"), &data)).unwrap().matrix("k").unwrap();
         assert_eq!((columns[(0, 2)], columns[(1, 0)]), (5.0, 2.0));
+        // Two matrices of one row each.
+        let three =
+            |order: &str| format!("{{'descr': '<f8', 'fortran_order': {order}, 'shape': (2, 1, 3), }}\n");
+        let of = |order: &str| parse(&file(&three(order), &data)).unwrap().matrices("k").unwrap();
+        let [last, first] = [of("False"), of("True")];
+        assert_eq!((last[0][(0, 1)], last[1][(0, 0)], last[1][(0, 2)]), (2.0, 4.0, 6.0));
+        assert_eq!((first[0][(0, 1)], first[1][(0, 0)], first[1][(0, 2)]), (3.0, 2.0, 6.0));
+        assert_eq!(parse(&file(&header("True"), &data)).unwrap().matrices("k").unwrap_err().field(), "k");
         assert!(parse(&file(&header("False"), &data[..5])).is_err());
         assert!(parse(b"not an array").is_err());
         let held = |shape: &[usize]| Array::new(shape.to_vec(), data.to_vec());
