@@ -60,7 +60,7 @@ fn output(line: &str) -> Value {
 }
 
 /// One line for every shape that a command's answer can take.
-const LINES: [&str; 73] = [
+const LINES: [&str; 74] = [
     "verdict --lambda1 pi^2 --lambda2 pi^2/25 --h1 1/100 --h2 0.98",
     "verdict --lambda1 pi^2 --lambda2 pi^2/25 --h1 1/100 --h2 1/2",
     "verdict --lambda1 11/4 --lambda2 57/10 --h1 1 --h2 5/3",
@@ -94,6 +94,7 @@ const LINES: [&str; 73] = [
     "system data/scenes/bar-resonant.json",
     "system data/scenes/water4.json --accuracy 1e-7 --friction 1",
     "system data/scenes/water4.json --method molly-short",
+    "system data/scenes/water4-orbit.json",
     "system data/scenes/water4.json --method implicit-explicit --intervals outer=1/100..1/70 --resolution 1e-3",
     "system data/scenes/two-bars.json --nearest --resolution 1e-3",
     "system data/scenes/no-gradient.json",

@@ -13,7 +13,7 @@ from fractions import Fraction
 from functools import cached_property
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -24,7 +24,8 @@ from kickdrift._errors import KickdriftError
 from kickdrift._held import Held
 from kickdrift._numbers import frozen
 from kickdrift._progress import Progress
-from kickdrift._rigid import Doubles, norm, rigid_motions
+from kickdrift._rigid import Doubles, is_held, norm, rigid_motions
+from kickdrift._system import System, SystemVerdict
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -434,7 +435,10 @@ def _common(steps: Sequence[Fraction]) -> Fraction:
 
 @dataclass(frozen=True, eq=False)
 class Monodromy(Frozen):
-    """What small deviations from a state do over one period of the clocks, in doubles: measured, not proven.
+    """What small deviations from a state do over one period of the clocks: measured in doubles, and what is proven.
+
+    About an orbit without held bonds :attr:`verdict` is proven for all Hessians within the accuracy of those measured.
+    Rates, multipliers and doubts are estimates, :attr:`growth_bounds` proven.
 
     Attributes
     ----------
@@ -457,6 +461,13 @@ class Monodromy(Frozen):
     doubts : array, shape (n',)
         How far each mu may be off, to first order in the errors of the Hessians: what the differences leave, and what
         the residual moves.
+    along : System or None
+        The Hessians at the kicks of half a period along an orbit, with their ``accuracy``: ten times what the
+        differences are seen to leave and what Newton's next step would change, relative to their norms.
+    unproven : str
+        Why there are none; empty where there are.
+    time_unit : str
+        That of the period and of rates, where it is known.
     """
 
     about: str
@@ -467,6 +478,59 @@ class Monodromy(Frozen):
     residual: float
     mu: npt.NDArray[np.complex128]
     doubts: Doubles
+    along: System | None = None
+    unproven: str = ""
+    time_unit: str = ""
+
+    @cached_property
+    def _decided(self) -> tuple[SystemVerdict | None, str]:
+        """The verdict, or why there is none."""
+        if self.along is None:
+            return None, self.unproven
+        try:
+            return self.along.decide(), ""
+        except KickdriftError as error:
+            return None, str(error)
+
+    @property
+    def verdict(self) -> SystemVerdict | None:
+        """What the library says of the Hessians :attr:`along` the orbit; None where it says nothing."""
+        return self._decided[0]
+
+    @property
+    def proven(self) -> bool:
+        """Whether it is proven stable, or unstable, for all Hessians within the accuracy of those measured."""
+        return self._holds is not None
+
+    @property
+    def _holds(self) -> bool | None:
+        measured = None if self.verdict is None else self.verdict.measured
+        return None if measured is None else {"stable": True, "unstable": False}.get(measured["holds"])
+
+    @property
+    def growth_bounds(self) -> tuple[float, float] | None:
+        """Doubles that enclose the largest growth rate for all Hessians within the accuracy; None where it is not
+        proven."""
+        return self.verdict.growth_bounds if self.verdict is not None and self.proven else None
+
+    @property
+    def words(self) -> str:
+        """What holds in a few words: proven or an estimate, and why no more is known."""
+        does = (
+            "nothing grows" if self.stable else f"deviations grow at {self.growth_rate:.3g}/{self.time_unit or 'time'}"
+        )
+        if self.proven and self.along is not None:
+            bounds = self.growth_bounds
+            is_enclosed = bounds is not None and bounds[1] - bounds[0] <= _SHARP * bounds[1]
+            rate = "" if self.stable or is_enclosed else ", the rate an estimate"
+            return f"{does} (proven for all Hessians within {self.along.accuracy:.0e} of those measured{rate})"
+        decided, why = self._decided
+        if decided is not None and decided.measured is not None:
+            margin = decided.measured["margin"]
+            known = "nothing is proven" if margin is None else f"proven only within {margin:.0e} of the Hessians' norms"
+            accuracy = decided.measured["accuracy"]
+            why = f"{known}, they are known to {accuracy:.0e}"
+        return f"{does} (an estimate in doubles{f': {why}' if why else ''})"
 
     @cached_property
     def matrix(self) -> Doubles:
@@ -485,15 +549,17 @@ class Monodromy(Frozen):
     @property
     def growth_rate(self) -> float:
         """The largest growth rate, 1/time, of multipliers that are off the unit circle by more than their doubt: the
-        numbers mu of bounded ones lie between -1 and 0."""
+        numbers mu of bounded ones lie between -1 and 0. An estimate: 0 where it is proven that nothing grows."""
+        if self._holds is True:
+            return 0.0
         apart = np.abs(self.mu - np.clip(self.mu.real, -1.0, 0.0))
         grown = np.abs(_multipliers(self.mu[apart > self.doubts]))
         return float(np.log(grown.max())) / float(self.period) if grown.size else 0.0
 
     @property
     def stable(self) -> bool:
-        """Whether no deviation is seen to grow."""
-        return self.growth_rate == 0.0
+        """Whether no deviation grows: proven where :attr:`proven` says so, else whether none is seen to."""
+        return self.growth_rate == 0.0 if self._holds is None else self._holds
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the multipliers in the complex plane."""
@@ -501,7 +567,70 @@ class Monodromy(Frozen):
 
     def __repr__(self) -> str:
         words = "stable" if self.stable else f"growth rate {self.growth_rate:.4g}"
-        return f"Monodromy(about the {self.about}: {words}, an estimate)"
+        known = "an estimate"
+        if self.proven:
+            known = "proven" if self.stable else "proven unstable"
+        return f"Monodromy(about the {self.about}: {words}, {known})"
+
+
+#: A rate of which so small a part is open is known to the digits that are shown.
+_SHARP = 0.01
+
+#: Orbits are followed unasked where there are so many degrees of freedom, and where it takes so many seconds at most.
+FOLLOWED, _UNASKED = 300, 20.0
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Followed(Frozen):
+    """The integrator's own orbit beside a minimum, found when it is asked for; a copy in another process has none.
+
+    Attributes
+    ----------
+    find : callable or None
+        Returns the monodromy about it.
+    step : str
+        The outer step, with its unit.
+    length : str
+        The unit of length.
+    """
+
+    find: Callable[[], Monodromy] | None
+    step: str
+    length: str
+
+    @staticmethod
+    def beside(
+        work: Work, notes: Sequence[str], find: Callable[[], Monodromy], step: str, length: str
+    ) -> Followed | None:
+        """That of a system with these notes, where its orbit is another state than the minimum and found soon."""
+        swings = any("swings about an orbit" in note for note in notes)
+        soon = work.columns <= FOLLOWED and work.seconds <= _UNASKED
+        return Followed(find, step, length) if swings and soon else None
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {"find": None, "step": self.step, "length": self.length}
+
+    @cached_property
+    def _asked(self) -> tuple[Monodromy | None, str]:
+        """The monodromy, or why there is none."""
+        try:
+            return (None, "") if self.find is None else (self.find(), "")
+        except KickdriftError as error:
+            return None, str(error)
+
+    @property
+    def found(self) -> Monodromy | None:
+        """The monodromy about the orbit; None where it is not found."""
+        return self._asked[0]
+
+    @property
+    def sentence(self) -> str:
+        """What small deviations do about the orbit, which is what a run shows first: a line, or nothing."""
+        found, why = self._asked
+        begin = f"own orbit: at {self.step} a run swings about an orbit beside the minimum"
+        if found is None:
+            return f"{begin} that is not found: {why}\n" if why else ""
+        return f"{begin}, {found.away:.2g} {self.length} away at most; about it {found.words}\n"
 
 
 def _multipliers(mu: npt.NDArray[np.complex128]) -> npt.NDArray[np.complex128]:
@@ -512,12 +641,15 @@ def _multipliers(mu: npt.NDArray[np.complex128]) -> npt.NDArray[np.complex128]:
 @dataclass(frozen=True)
 class Struck:
     """A kick that was made: how long its group acted, the rows of the propagator that say where the atoms were, the
-    error of its Hessian, which the differences leave, and its norm."""
+    error of its Hessian, which the differences leave, and its norm; the group, the positions, and the Hessian."""
 
     duration: float
     rows: Doubles
     error: float
     size: float
+    group: int
+    positions: Doubles
+    stiffness: Doubles
 
 
 def _eigenvalues(
@@ -600,7 +732,8 @@ def compose(
             own = norm(stiffness)
             # Of smooth forces the fourth order leaves of the second order's error what that is of the whole.
             error = correction**2 / max(own, 1e-300) + asymmetry
-            struck.append(Struck(float(duration), allowed.T @ at, error, own))
+            made = (group, position, stiffness)
+            struck.append(Struck(float(duration), allowed.T @ at, error, own, *made))
             if progress is not None:
                 progress(len(struck), strikes)
             if still:
@@ -707,6 +840,10 @@ def monodromy(
     about: str,
     unit: str | None = None,
     progress: Progress | None = None,
+    *,
+    time_unit: str = "",
+    is_boxed: bool = False,
+    has_field: bool = False,
 ) -> Monodromy:
     """The monodromy about a minimum ``at``, or about the periodic orbit that Newton's method finds from there.
 
@@ -716,7 +853,8 @@ def monodromy(
     total cancel, has the minimum as its orbit at t = 0 and is the force itself at t = 1. Distances are held as RATTLE
     holds them; what they take up of a force counts as none. Where neither finds it, it is followed from shorter steps,
     and where it ends is told in the unit of the steps; ``unit=None`` leaves that out. ``progress`` is called with the
-    Hessians of half a period that are done and all of them, at each of Newton's steps.
+    Hessians of half a period that are done and all of them, at each of Newton's steps. ``time_unit`` is that of the
+    steps. In a box translations are rigid motions, where a field holds the atoms none.
 
     Raises
     ------
@@ -728,13 +866,15 @@ def monodromy(
     if about == "minimum":
         half = compose(own, steps, at, held, difference, still=True, progress=progress)
         values = _eigenvalues(half.matrix, half.struck, 0.0)
-        return Monodromy(about, frozen(at.copy()), 0.0, period, frozen(half.matrix), 0.0, *values)
+        why = "about the minimum a system of its Hessians is proven"
+        return Monodromy(about, frozen(at.copy()), 0.0, period, frozen(half.matrix), 0.0, *values, None, why, time_unit)
     if about != "orbit":
         raise KickdriftError("about", about, "choose orbit or minimum")
     free = held.frame(at)
     balances = [((free @ (free.T @ (force(at).ravel() / held.root))) * held.root).reshape(at.shape) for force in own]
     every = _sum(own)
-    stiffness = hessian(every, at, held.masses, difference)[0] + held.curvature(every(at), at)
+    total, error = hessian(every, at, held.masses, difference)
+    stiffness = total + held.curvature(every(at), at)
     firm = free @ _firm(free.T @ stiffness @ free)
     done, part, start = 0.0, 1.0, at
     while done < 1.0:
@@ -763,7 +903,68 @@ def monodromy(
     half = found.half
     away = float(np.linalg.norm(start - at, axis=1).max())
     values = _eigenvalues(half.matrix, half.struck, found.residual)
-    return Monodromy(about, frozen(start.copy()), away, period, frozen(half.matrix), found.residual, *values)
+    measured = (about, frozen(start.copy()), away, period, frozen(half.matrix), found.residual, *values)
+    if held.distances:
+        why = "held bonds turn along an orbit, which no proof follows yet"
+        return Monodromy(*measured, None, why, time_unit)
+    moved = rigid_motions(start, held.masses, rotations=False)
+    keep = has_field or (not is_boxed and is_held(total, moved, error))
+    try:
+        ahead = found.residual * (float(np.ptp(start, axis=0).max()) or 1.0)
+        potentials, accuracy = along(half.struck, dict(zip(forces, steps, strict=True)), held.root, ahead)
+    except KickdriftError as refused:
+        return Monodromy(*measured, None, str(refused), time_unit)
+    made = System.along_orbit(
+        held.masses,
+        potentials,
+        positions=start,
+        turned=half.struck[-1].positions,
+        accuracy=accuracy,
+        time_unit=time_unit,
+        periodic=is_boxed,
+        keep_rigid=keep,
+    )
+    return Monodromy(*measured, made, "", time_unit)
+
+
+#: What is proven is so for Hessians ten times farther from those measured than these are seen to be off. Of a power law
+#: x^-n differences of fourth order leave 1.2 (n + 4) (n + 5)/(n + 2)/(n + 3) of what is seen: 3 of Coulomb's, less of
+#: others; and rounding leaves of the symmetric part some times more or less than of the other, which is seen.
+_FARTHER = 10.0
+
+
+def along(
+    struck: Sequence[Struck], steps: Mapping[str, Fraction], root: Doubles, ahead: float
+) -> tuple[dict[str, tuple[Fraction, Doubles]], float]:
+    """The Hessians along the orbit by step, in force over length, and how well all are known.
+
+    Newton's next step, of the length ``ahead``, would change the Hessians in its share of the way along which they are
+    seen to change.
+
+    Raises
+    ------
+    KickdriftError
+        Where a tenth of a Hessian is unknown.
+    """
+    kinds = list(steps)
+    potentials, worst = {}, 1e-12
+    for step in sorted(set(steps.values())):
+        groups = [place for place, name in enumerate(kinds) if steps[name] == step]
+        own = [[kick for kick in struck if kick.group == place] for place in groups]
+        matrices = [np.sum([kick.stiffness for kick in kicks], axis=0) for kicks in zip(*own, strict=True)]
+        errors = [sum(kick.error for kick in kicks) for kicks in zip(*own, strict=True)]
+        sizes = [max(norm(matrix), 1e-300) for matrix in matrices]
+        where = [kick.positions for kick in own[0]]
+        changes = 0.0
+        for k in range(len(where) - 1):
+            way = float(np.abs(where[k + 1] - where[k]).max())
+            if way > ahead:
+                changes = max(changes, norm(matrices[k + 1] - matrices[k]) / way)
+        for error, size in zip(errors, sizes, strict=True):
+            worst = max(worst, _FARTHER * (error + changes * ahead) / size)
+        name = ", ".join(kinds[place] for place in groups)
+        potentials[name] = (step, np.array(matrices) * np.outer(root, root))
+    return potentials, usable(worst, "a kick along the orbit", "the one that was taken", SMOOTHER)
 
 
 #: The steps at which an orbit ends are told to this part of those asked about.

@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     import pandas
     from matplotlib.axes import Axes
 
+    from kickdrift._hessians import Followed, Monodromy
+
 _SCHEMA = "kickdrift/system/1"
 _FILE, _ARRAYS = "system.json", "arrays.npz"
 
@@ -62,7 +64,7 @@ class System(Frozen):
     notes: Sequence[str] = ()
     _path: Path | None = None
     _source: str = ""
-    _orbit: str = ""
+    _orbit: Followed | None = None
 
     def __post_init__(self) -> None:
         own = {name: doubles(name, array) for name, array in self.arrays.items()}
@@ -209,6 +211,74 @@ class System(Frozen):
                 arrays[f"force{place}"] = doubles(name, forces[name]).ravel()
                 potential["force"] = _at(f"force{place}")
             document["potentials"].append(potential)
+        return System(MappingProxyType(document), arrays, tuple(notes))
+
+    @staticmethod
+    def along_orbit(
+        masses: npt.ArrayLike,
+        potentials: Mapping[str, tuple[Exact, npt.ArrayLike]],
+        *,
+        positions: npt.ArrayLike | None = None,
+        turned: npt.ArrayLike | None = None,
+        accuracy: float = 1e-6,
+        title: str = "",
+        time_unit: str = "",
+        labels: Sequence[str] = (),
+        notes: Sequence[str] = (),
+        periodic: bool = False,
+        keep_rigid: bool = False,
+    ) -> System:
+        """Make a system of Hessians along half a period of the integrator's own orbit, each kick with its own.
+
+        The orbit starts at rest in the middle of a kick of every clock, and turns at rest half a period later.
+
+        Parameters
+        ----------
+        masses : array of doubles, shape (n,) or (n/3,)
+            One for each degree of freedom, or for each particle of three.
+        potentials : mapping of str to (step, Hessians)
+            By increasing step; the symmetric matrices at all kicks from t = 0 to half the period, both counted, shape
+            (k, n, n), energy/length².
+        positions, turned : array of doubles, shape (n/3, 3), optional
+            Where the particles of a free molecule are at t = 0 and half a period later: its rigid motions are set
+            apart.
+        accuracy : float
+            How well each Hessian is known, relative to its norm: what is proven is so for all within it.
+        title, time_unit, labels, notes, periodic, keep_rigid
+            As for :meth:`from_hessians`.
+
+        Raises
+        ------
+        KickdriftError
+            As :meth:`from_hessians`.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import kickdrift as kd
+        >>> stiff = np.array([[[400.0]], [[402.0]], [[404.0]]])
+        >>> system = kd.System.along_orbit([1.0], {"stiff": ("1/40", stiff), "soft": ("1/10", [[[1.0]]] * 2)})
+        >>> verdict = system.decide()
+        >>> verdict.stable, verdict.measured["holds"]
+        (True, 'stable')
+        """
+        if not isinstance(potentials, Mapping):
+            raise KickdriftError("potentials", shown(potentials), "give a mapping of names to (step, Hessians)")
+        arrays = {"masses": doubles("masses", masses)}
+        ends = {"positions": positions, "turned": turned}
+        if not (periodic or keep_rigid):
+            arrays |= {name: doubles(name, own) for name, own in ends.items() if own is not None}
+        document: dict[str, Any] = {"along_orbit": True, "accuracy": float(doubles("accuracy", accuracy))}
+        document |= {name: _at(name) for name in arrays}
+        named: dict[str, Any] = {"title": title, "time_unit": time_unit, "labels": list(labels)}
+        named |= {"periodic": periodic, "keep_rigid": keep_rigid}
+        document |= {key: value for key, value in named.items() if value}
+        document["potentials"] = []
+        for place, (name, (step, hessians)) in enumerate(potentials.items()):
+            at, own = _dense(place, name, hessians)
+            exact = written(name, _step(name, step, time_unit))
+            document["potentials"].append({"name": name, "step": exact, "stiffness": at})
+            arrays |= own
         return System(MappingProxyType(document), arrays, tuple(notes))
 
     def save(self, folder: str | PathLike[str]) -> Path:
@@ -427,8 +497,12 @@ class System(Frozen):
         # What a run does at these steps, where that is known to be about another state; then three sentences: what is
         # safe, what limits it, what would let it grow.
         lines = found.render("text").splitlines(keepends=True)
-        text = self._orbit + "".join(lines[:3]) + _warned(warnings) + "".join(lines[3:])
+        text = self._told() + "".join(lines[:3]) + _warned(warnings) + "".join(lines[3:])
         return SystemAdvice(found.render("json"), text, warnings)
+
+    def _told(self) -> str:
+        """What comes first: the integrator's own orbit, where a run is about it and not about the minimum."""
+        return "" if self._orbit is None else self._orbit.sentence
 
     def __repr__(self) -> str:
         potentials = self.document.get("potentials", ())
@@ -588,6 +662,18 @@ class SystemVerdict(Document):
         """What limits the verdict, in words; what was left out when the system was made comes first."""
         return (*self.system.notes, *self.data["warnings"])
 
+    @property
+    def orbit(self) -> Monodromy | None:
+        """What small deviations do about the integrator's own orbit, where the groups' forces do not vanish at the
+        minimum: that is what a run shows. None where they vanish, where the orbit is not found, or would not be soon.
+        It is looked for when it is first asked for."""
+        own = self.system._orbit
+        return own.found if own is not None and self._is_respa else None
+
+    @property
+    def _is_respa(self) -> bool:
+        return self._asked.fields.get("method", "respa") == "respa"
+
     def _beside(self, name: str) -> Mapping[str, Any] | None:
         found = self.data.get(name)
         return None if found is None else MappingProxyType(found)
@@ -669,7 +755,8 @@ class SystemVerdict(Document):
         return f"SystemVerdict({words}, {self.kind}{told})"
 
     def __str__(self) -> str:
-        return _warned(self.system.notes) + self._asked.render("text").rstrip()
+        told = self.system._told() if self._is_respa else ""
+        return told + _warned(self.system.notes) + self._asked.render("text").rstrip()
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -6,6 +6,7 @@ Units: lengths in Å, energies in eV, masses in u as ASE has them; steps in fs, 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
@@ -17,6 +18,7 @@ from kickdrift._hessians import (
     LONGEST,
     SOUGHT,
     STEPS,
+    Followed,
     Force,
     Monodromy,
     Work,
@@ -118,7 +120,7 @@ def system(
     for (name, (matrix, _)), step in zip(measured.items(), steps, strict=True):
         own = (matrix + matrix.T) / 2 if symmetric else matrix
         potentials[name] = (step, own * np.outer(root, root))
-    return System.from_hessians(
+    made = System.from_hessians(
         masses,
         potentials,
         positions=None if held else where,
@@ -131,6 +133,18 @@ def system(
         keep_rigid=held,
         symmetric=symmetric,
     )
+    if not symmetric:
+        return made
+
+    def find() -> Monodromy:
+        at = atoms.copy()
+        at.positions = where
+        return _oscillations(at, groups, "orbit", False, difference, unit=None)
+
+    kicks = sum(len(kick.groups) for kick in schedule(steps))
+    dear = sum(seconds_of(force, where) for force in forces.values()) / len(forces)
+    work = Work(3 * len(atoms), kicks, dear, STEPS * kicks)
+    return replace(made, _orbit=Followed.beside(work, notes, find, f"{float(max(steps)):g} fs", "Å"))
 
 
 def oscillations(
@@ -167,12 +181,29 @@ def oscillations(
     >>> kickdrift.ase.oscillations(ase.Atoms("Cu2", [[0, 0, 0], [2.2, 0, 0]]), {"all": (EMT(), 5)}).stable
     True
     """
+    return _oscillations(atoms, groups, about, minimize, difference, "fs", progress, longest)
+
+
+def _oscillations(
+    atoms: Any,
+    groups: Mapping[str, tuple[Any, Exact]],
+    about: str,
+    minimize: bool,
+    difference: float,
+    unit: str | None,
+    progress: Progress | bool = False,
+    longest: float = LONGEST,
+) -> Monodromy:
+    """:func:`oscillations`; without a ``unit`` an orbit not found at once is not followed from shorter steps."""
     forces, steps, masses = _forces(atoms, groups)
     kicks = len(steps) if about == "minimum" else sum(len(kick.groups) for kick in schedule(steps))
     _begun(forces, atoms, kicks, 0 if about == "minimum" else STEPS * kicks, minimize, progress, longest)
     where = _start(atoms, forces, masses, minimize, difference, progress)
     told = shown(progress, "Hessians of half a period")
-    return monodromy(forces, steps, where, Held(masses), difference, about, "fs", told)
+    is_boxed = bool(atoms.pbc.any())
+    return monodromy(
+        forces, steps, where, Held(masses), difference, about, unit, told, time_unit="fs", is_boxed=is_boxed
+    )
 
 
 def _begun(

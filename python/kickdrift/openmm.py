@@ -25,10 +25,12 @@ from kickdrift._bands import Atoms, Band, Bands
 from kickdrift._errors import KickdriftError, needs
 from kickdrift._held import Held
 from kickdrift._hessians import (
+    FOLLOWED,
     LARGEST,
     LONGEST,
     SOUGHT,
     STEPS,
+    Followed,
     Force,
     Monodromy,
     Work,
@@ -279,7 +281,7 @@ def system(
     keep = chosen is not None or _is_held(system, where, engine.masses, frame, measured)
     root = np.sqrt(np.repeat(engine.masses[kept], 3))
     labels, elements, bonded = _named(engine.masses, topology, kept)
-    return System.from_hessians(
+    made = System.from_hessians(
         engine.masses[kept],
         {own.name: (own.step, own.full * np.outer(root, root)) for own in measured},
         positions=where[kept],
@@ -295,6 +297,17 @@ def system(
         periodic=system.usesPeriodicBoundaryConditions(),
         keep_rigid=keep,
     )
+    if chosen is not None:
+        return made
+
+    def find() -> Monodromy:
+        # Where no orbit is found at once, others are not sought unasked: that takes ten times as long.
+        return _oscillations(system, where, integrator, steps, "orbit", False, difference, unit=None)
+
+    own = list(_levels(clocks))
+    kicks = sum(len(kick.groups) for kick in schedule(own))
+    work = Work(columns, kicks, dear, STEPS * kicks)
+    return replace(made, _orbit=Followed.beside(work, notes, find, f"{float(max(own)) * 1000:g} fs", "nm"))
 
 
 def _instead(system: Any) -> str:
@@ -429,13 +442,7 @@ def given(own: Any, steps: Any, made: Mapping[str, Any]) -> tuple[System | _Late
     most = LARGEST if "longest" in arguments else _DENSE
     if is_plain and (3 * own.getNumParticles() > most or _is_held_fast(own, asked)):
         return _Later(own, asked), steps
-    found = system(own, arguments.pop("positions"), **arguments)
-    positions = found.arrays.get("positions")
-    is_whole = positions is not None and len(positions) == own.getNumParticles() and positions.size <= _FOLLOWED
-    if not is_whole or not any("swings about an orbit" in note for note in found.notes):
-        return found, steps
-    scheme: dict[str, Any] = {key: arguments[key] for key in ("integrator", "steps", "difference") if key in arguments}
-    return replace(found, _orbit=_about_orbit(own, np.asarray(positions), scheme)), steps
+    return system(own, arguments.pop("positions"), **arguments), steps
 
 
 def _is_held_fast(own: Any, asked: Mapping[str, Any]) -> bool:
@@ -456,22 +463,6 @@ def _terms_of(own: Any, groups: Sequence[int]) -> int:
 
 #: Dense Hessians of so many degrees of freedom are made unasked: of more, with PME, they take minutes to hours.
 _DENSE = 1200
-
-#: Orbits of so many degrees of freedom are followed unasked: some seconds.
-_FOLLOWED = 300
-
-
-def _about_orbit(own: Any, positions: Doubles, scheme: Mapping[str, Any]) -> str:
-    """What small deviations do about the integrator's own orbit: what a run shows first."""
-    outer = float(max(_clocks(own, scheme.get("integrator"), scheme.get("steps")).values())) * 1000
-    begin = f"own orbit: at {outer:g} fs a run swings about an orbit beside the minimum"
-    try:
-        # Where no orbit is found at once, others are not sought unasked: that takes ten times as long.
-        found = _oscillations(own, positions, **scheme, minimize=False, unit=None)
-    except KickdriftError as error:
-        return f"{begin} that is not found: {error}\n"
-    does = "nothing grows" if found.stable else f"deviations grow at {found.growth_rate:.3g}/ps"
-    return f"{begin}, {found.away:.2g} nm away at most; about it {does} (an estimate in doubles)\n"
 
 
 def _symbol(mass: float) -> str:
@@ -579,7 +570,8 @@ def oscillations(
     Returns
     -------
     Monodromy
-        An estimate in doubles; :func:`system` gives what can be proven, about the minimum.
+        About the orbit its ``verdict`` is proven for all Hessians within the accuracy of those measured, unless bonds
+        are held; rates are estimates. About the minimum :func:`system` gives what can be proven.
 
     Raises
     ------
@@ -629,7 +621,20 @@ def _oscillations(
     where = held.drift(where, np.zeros(where.size), 1.0)[0]
     forces = {str(groups): engine.force(_mask(groups)) for groups in levels.values()}
     told = shown(progress, "Hessians of half a period")
-    return monodromy(forces, list(levels), where, held, difference, about, unit, told)
+    field = any(isinstance(force, mm.CustomExternalForce) for force in system.getForces())
+    return monodromy(
+        forces,
+        list(levels),
+        where,
+        held,
+        difference,
+        about,
+        unit,
+        told,
+        time_unit="ps",
+        is_boxed=engine.is_boxed,
+        has_field=field,
+    )
 
 
 def bands(
@@ -688,7 +693,7 @@ def bands(
     given = _positions(positions, system.getNumParticles())
     before, system = system, _changed(system, topology, given, constraints, hmr)
     names = [mm.Platform.getPlatform(n).getName() for n in range(mm.Platform.getNumPlatforms())]
-    is_small = 3 * system.getNumParticles() <= _FOLLOWED
+    is_small = 3 * system.getNumParticles() <= FOLLOWED
     engine = _engine(system, "CPU" if "CPU" in names and not is_small else "Reference")
     difference = difference or (DIFFERENCE if is_small else WIDE)
     where, held = given, Held(engine.masses, _constraints(system))

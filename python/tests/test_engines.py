@@ -46,8 +46,13 @@ def of_engine(system: mm.System, found: Any, levels: Sequence[tuple[int, int]]) 
     return own_multipliers(system, found, levels, closed=1e-5)
 
 
-def agrees(found: Any, own: np.ndarray) -> None:
-    """Verdicts are equal and rates within 2 %, as the engine's map has them."""
+def agrees(found: Any, own: np.ndarray, proven: bool = True) -> None:
+    """Verdicts are equal and rates within 2 %, as the engine's map has them; the verdict is proven, the rate in its
+    bounds."""
+    assert found.proven == proven, found.words
+    if proven:
+        lo, hi = found.growth_bounds
+        assert found.stable == (hi == 0.0) and lo <= found.growth_rate <= hi
     # Rigid motions are defective eigenvalues at 1, which differences part by the root of their error.
     firm = own[np.abs(own - 1) > 1e-2]
     rate = np.log(np.abs(firm).max()) / float(found.period)
@@ -134,7 +139,8 @@ def test_a_box_with_a_reciprocal_group_grows_as_the_engine_has_it(outer: str) ->
     step = Fraction(outer) / 1000
     steps = {0: step / 10, 1: step / 2, 2: step}
     found = ko.oscillations(system, at, steps=steps, minimize=False)
-    agrees(found, of_engine(system, found, [(2, 1), (1, 2), (0, 10)]))
+    # At 2 fs a pair of the first kick jumps at the cutoff: that Hessian is known to some hundredths.
+    agrees(found, of_engine(system, found, [(2, 1), (1, 2), (0, 10)]), proven=outer != "2")
 
 
 def dipeptide(**options: Any) -> tuple[mm.System, np.ndarray]:
@@ -156,7 +162,17 @@ def test_the_dipeptide_grows_as_the_engine_has_it(options: dict[str, Any], outer
     step = Fraction(outer) / 1000
     inner = int(-(-step // Fraction(1, 2000)))
     found = ko.oscillations(system, positions, steps={0: step / inner, 1: step})
-    agrees(found, of_engine(system, found, [(1, 1), (0, inner)]))
+    agrees(found, of_engine(system, found, [(1, 1), (0, inner)]), proven=not options)
+
+
+@pytest.mark.parametrize(("outer", "rate"), [("4.4", 0.0), ("4.5", 8.26)])
+def test_27_waters_are_proven_about_their_orbit(outer: str, rate: float) -> None:
+    system, positions = cluster(27, "tip3pfb")
+    at = ko._minimized(ko._engine(system), positions, [], ko.DIFFERENCE)
+    step = Fraction(outer) / 1000
+    found = ko.oscillations(system, at, steps={0: step / 9, 1: step}, minimize=False)
+    assert found.proven and found.stable == (rate == 0.0)
+    assert found.growth_rate == pytest.approx(rate, rel=2e-3)
 
 
 #: 1/ps² of a mass of 1 u: without it the chain bends freely, and drifts.

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import importlib.util
 import json
+import pickle
 import re
+import tempfile
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from fractions import Fraction
@@ -98,6 +100,9 @@ def test_four_waters_grow_as_their_own_orbit_predicts(outer: str) -> None:
     steps, inner = levels(step)
     found = ko.oscillations(system, positions, steps=steps, minimize=False)
     assert found.residual < 1e-9
+    assert found.proven and found.along is not None and found.along.accuracy < 1e-8
+    lo, hi = found.growth_bounds
+    assert found.stable == (hi == 0.0) and lo <= found.growth_rate <= hi
     values, vectors = np.linalg.eig(found.matrix)
     fastest = np.argmax(np.abs(values))
     if found.stable:
@@ -120,6 +125,55 @@ def test_four_waters_grow_as_their_own_orbit_predicts(outer: str) -> None:
     rate = np.polyfit(np.arange(len(sizes)), sizes, 1)[0] / float(step)
     # Two in a hundred are asked for; a part in 10^4 is what is found.
     assert rate == pytest.approx(found.growth_rate, rel=2e-3)
+
+
+def test_hessians_along_an_orbit_are_known_as_well_as_is_said() -> None:
+    """By differences half as large, and by those twice as large, which are off by 16 times as much."""
+    system, positions = waters()
+    found = ko.oscillations(system, positions, steps=levels(Fraction("4.50") / 1000)[0], minimize=False)
+    assert found.along is not None and found.verdict is not None
+    engine, root = ko._engine(system), np.sqrt(np.repeat([system.getParticleMass(n)._value for n in range(12)], 3))
+    for place, mask in ((0, 1), (1, 2)):
+        first = found.along.arrays[f"hessian{place}"][0] / np.outer(root, root)
+        for difference in (ko.DIFFERENCE / 2, 2 * ko.DIFFERENCE):
+            other, _ = hessians.hessian(engine.force(mask), found.positions, engine.masses, difference)
+            assert np.linalg.norm(other - first, 2) < found.along.accuracy * np.linalg.norm(first, 2)
+    assert found.verdict.measured["margin"] > 10 * found.along.accuracy
+    # A Hessian of another place along the orbit lies outside of it, and the verdict's document is verified.
+    arrays = dict(found.along.arrays)
+    moved = np.linalg.norm(arrays["hessian0"][1] - arrays["hessian0"][0], 2) / np.linalg.norm(arrays["hessian0"][0], 2)
+    assert moved > 1e3 * found.along.accuracy
+    with tempfile.TemporaryDirectory() as folder:
+        found.along.save(folder)
+        (Path(folder) / "verdict.json").write_text(found.verdict.to_json())
+        checked = kd.recheck(Path(folder) / "verdict.json")
+    assert checked.holds and "dense full period" in checked.route
+
+
+def test_what_holds_or_turns_the_atoms_is_not_taken_for_free() -> None:
+    """Rigid motions that an outer field holds, and what is asked of an orbit alone."""
+    system, positions = waters()
+    steps = levels(Fraction("4") / 1000)[0]
+    found = ko.oscillations(system, positions, steps=steps, minimize=False)
+    assert found.along is not None
+    with pytest.raises(kd.KickdriftError, match="another step has another orbit"):
+        found.along.intervals((Fraction("0.004"), Fraction("0.005")))
+    with pytest.raises(kd.KickdriftError, match="Hessians at one place"):
+        found.along.advise()
+    wrong = dict(found.along.arrays)
+    wrong["turned"] = wrong["turned"] + np.eye(12)[:, :3] * 0.05
+    with pytest.raises(kd.KickdriftError, match="rigid motions are not free"):
+        replace(found.along, arrays=wrong).decide()
+    for field, is_free in (("5*(x^2+y^2+z^2)", True), ("5*(x^2+2*y^2+4*z^2)", False)):
+        held = mm.XmlSerializer.clone(system)
+        walls = mm.CustomExternalForce(field)
+        for atom in range(12):
+            walls.addParticle(atom)
+        held.addForce(walls)
+        orbit = ko.oscillations(held, positions, steps=steps)
+        assert orbit.verdict is not None and orbit.verdict.data["rigid_modes"] == 0
+        # A round field leaves rotations free, and nothing says that all Hessians near by do: nothing is proven.
+        assert orbit.stable and orbit.proven is not is_free, orbit.words
 
 
 @pytest.mark.parametrize("outer", ["10"])
@@ -658,9 +712,19 @@ def test_forces_that_do_not_vanish_at_the_minimum_are_told_first() -> None:
     found = ko.system(system, positions, steps={0: "0.5fs", 1: "4fs"})
     for told in (found.decide().warnings[0], found.advise().warnings[0]):
         assert "do not vanish" in told and "oscillations(...)" in told and "group 0" in told
-    assert str(found.decide()).startswith("warning: the forces of") and "warnings: " in repr(found.decide())
+    # The orbit that a run is about stands first, then what the answer about the minimum leaves out.
+    verdict, advice = found.decide(), str(found.advise()).splitlines()
+    orbit = ko.oscillations(system, positions, steps={0: "0.5fs", 1: "4fs"})
+    first, warning = str(verdict).splitlines()[:2]
+    assert first == advice[0] and first.startswith("own orbit: at 4 fs a run swings about an orbit beside the minimum")
+    assert "about it nothing grows (proven for all Hessians within" in first and orbit.proven
+    assert warning.startswith("warning: the forces of") and "warnings: " in repr(verdict)
+    assert verdict.orbit is not None and verdict.orbit.away == pytest.approx(orbit.away, rel=1e-3)
+    # Of another integrator it is no orbit; a copy from elsewhere was not asked for it.
+    assert found.decide(method="implicit-explicit").orbit is None
+    assert str(pickle.loads(pickle.dumps(found)).decide()).startswith("warning: the forces of")
     # Behind the three sentences of the answer, before everything else.
-    assert str(found.advise()).splitlines()[3].startswith("warning: the forces of")
+    assert advice[1].startswith("advice: ") and advice[4].startswith("warning: the forces of")
     alone = ko.system(system, positions, steps={0: "0.5fs", 1: "0.5fs"})
     assert not any("do not vanish" in note for note in alone.notes)
     moved = ko.system(system, positions * 1.02, steps={0: "0.5fs", 1: "4fs"}, minimize=False)
@@ -740,7 +804,7 @@ def test_motions_are_called_by_their_topology_or_by_masses_and_distances() -> No
     advice = kd.advise(simulation)
     # What a run shows stands first: it is not about the minimum.
     orbit, safe, limit, longer, warning = str(advice).splitlines()[:5]
-    assert orbit.startswith("own orbit: at 4 fs ") and "about it nothing grows" in orbit
+    assert orbit.startswith("own orbit: at 4 fs ") and "about it nothing grows (proven for all Hessians" in orbit
     grown = kd.advise(system, positions=where, steps={0: "23/50fs", 1: "4.6fs"}, levers=False)
     found = ko.oscillations(system, where, steps={0: "23/50fs", 1: "4.6fs"})
     assert f"deviations grow at {found.growth_rate:.3g}/ps" in str(grown).splitlines()[0]
@@ -851,7 +915,8 @@ def test_held_bonds_swing_and_grow_as_the_engine_does(make: Any, outer: str, gro
         verdict = ko.system(system, positions, steps=steps).decide()
         assert about.growth_rate == pytest.approx(verdict.growth_rate, rel=1e-3)
         told = str(kd.advise(system, positions=positions, steps=steps, levers=False))
-        assert f"deviations grow at {found.growth_rate:.3g}/ps" in told
+        assert f"deviations grow at {found.growth_rate:.3g}/ps (an estimate in doubles: held bonds turn" in told
+    assert not found.proven and found.verdict is None and found.growth_bounds is None
 
 
 def test_drifts_too_long_for_held_distances_are_refused() -> None:

@@ -64,7 +64,9 @@ def told(result: Any) -> list[Any]:
     arrays = getattr(result, "arrays", {})
     arrays = {**arrays, **{name: getattr(result, name) for name in ARRAYS if hasattr(type(result), name)}}
     document = result.to_json() if hasattr(result, "to_json") else None
-    return [repr(result), str(result), document, {name: own.tobytes() for name, own in arrays.items()}]
+    # The verdict about an orbit is no array.
+    arrays = {name: own.tobytes() for name, own in arrays.items() if isinstance(own, np.ndarray)}
+    return [repr(result), str(result), document, arrays]
 
 
 ARRAYS = ("verdict", "tier", "stable_pairs", "h1_steps", "multipliers", "matrix", "growth_rates")

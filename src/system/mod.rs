@@ -22,6 +22,7 @@
 //! | `pi` | stiffnesses that involve π: decided over ℚ\[π\] |
 //! | `levels` | two levels of dense stiffnesses in doubles, with margins |
 //! | `verdict` | the verdict, part by part, and what is known beside it |
+//! | `along` | about the integrator's own orbit: a Hessian for each kick, measured to an accuracy |
 //! | `jacobian` | forces that are no gradient: Jacobians that are not symmetric |
 //! | `lts` | local time steps, as codes for waves have them: leapfrog, Newmark subcycling, AVI |
 //! | `geometry` | where degrees of freedom are in space |
@@ -42,6 +43,7 @@
 //! assert!(analysis.is_stable());
 //! ```
 
+mod along;
 mod exact;
 pub mod friction;
 mod geometry;
@@ -61,6 +63,7 @@ mod spectrum;
 pub mod vary;
 mod verdict;
 
+pub use along::{Along, OwnOrbit, decide_along};
 pub use exact::decide::{ExactVerdict, MuCount, decide_exact};
 pub use geometry::Geometry;
 pub use half::compose::{full_period, half_period};
@@ -77,7 +80,6 @@ pub use single::decide::decide_oscillator;
 pub use spectrum::modes::{Origin, Resonance};
 pub use spectrum::rate::{Multiplier, middle};
 pub use vary::{edges, nearest, scan, stretches};
-pub use verdict::along::{OwnOrbit, decide_along};
 pub use verdict::analysis::{Analysis, Clocked, Evidence, Instability, Part};
 pub use verdict::decide::{decide_by, decide_system, exact_kind, verdict_cost};
 pub use verdict::limits::{Limits, Route};

@@ -238,12 +238,16 @@ fn elements(kind: &str, data: &[u8], count: usize) -> Option<Vec<f64>> {
     }
 }
 
-/// Elements of a matrix by columns, by rows; of anything else as they are.
+/// Elements whose first index runs fastest, in the order in which the last one does.
 fn c_order(values: &[f64], shape: &[usize]) -> Vec<f64> {
-    match *shape {
-        [rows, columns] => (0..rows * columns).map(|k| values[k / columns + rows * (k % columns)]).collect(),
-        _ => values.to_vec(),
-    }
+    let place = |k: usize| {
+        let (mut left, mut index) = (k, vec![0; shape.len()]);
+        for (own, size) in index.iter_mut().zip(shape).rev() {
+            (*own, left) = (left % size, left / size);
+        }
+        index.iter().zip(shape).rev().fold(0, |at, (own, size)| at * size + own)
+    };
+    (0..values.len()).map(|k| values[place(k)]).collect()
 }
 
 impl Array {
@@ -288,6 +292,19 @@ impl Array {
         }
     }
 
+    /// As matrices of one size, one after the other.
+    ///
+    /// # Errors
+    /// Names the shape where it is not of three axes.
+    pub fn matrices(self, field: &str) -> Result<Vec<DMatrix<f64>>> {
+        let [_, rows, columns] = *self.shape else {
+            let remedy = "give a matrix for each kick of half a period, an array of three axes";
+            return Err(Error::input(field, format!("shape {:?}", self.shape), remedy));
+        };
+        let all = self.values.chunks_exact((rows * columns).max(1));
+        Ok(all.map(|own| DMatrix::from_row_slice(rows, columns, own)).collect())
+    }
+
     /// All elements, by rows.
     pub fn into_values(self) -> Vec<f64> {
         self.values
@@ -315,6 +332,14 @@ mod tests {
         assert_eq!((rows[(0, 2)], rows[(1, 0)]), (3.0, 4.0));
         let columns = parse(&file(&header("True"), &data)).unwrap().matrix("k").unwrap();
         assert_eq!((columns[(0, 2)], columns[(1, 0)]), (5.0, 2.0));
+        // Two matrices of one row each.
+        let three =
+            |order: &str| format!("{{'descr': '<f8', 'fortran_order': {order}, 'shape': (2, 1, 3), }}\n");
+        let of = |order: &str| parse(&file(&three(order), &data)).unwrap().matrices("k").unwrap();
+        let [last, first] = [of("False"), of("True")];
+        assert_eq!((last[0][(0, 1)], last[1][(0, 0)], last[1][(0, 2)]), (2.0, 4.0, 6.0));
+        assert_eq!((first[0][(0, 1)], first[1][(0, 0)], first[1][(0, 2)]), (3.0, 2.0, 6.0));
+        assert_eq!(parse(&file(&header("True"), &data)).unwrap().matrices("k").unwrap_err().field(), "k");
         assert!(parse(&file(&header("False"), &data[..5])).is_err());
         assert!(parse(b"not an array").is_err());
         let held = |shape: &[usize]| Array::new(shape.to_vec(), data.to_vec());

@@ -247,6 +247,12 @@ impl SystemScene {
             | Model::Elements(..)
             | Model::Sparse(_)
                 if self.is_linear() => {}
+            Model::Along(_) => {
+                return refused(
+                    "along an orbit",
+                    "are for Hessians at one place: another step has another orbit",
+                );
+            }
             _ => return refused("of this file", "are for linear systems of rational numbers"),
         }
         let work = || format!("a verdict on {} degrees of freedom", self.model.size());

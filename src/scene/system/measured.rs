@@ -25,6 +25,9 @@
 //! of the force, is no Hessian, and its asymmetry no error.
 //! Of particles in space `labels` may be of three words, as `H1 HOH 4`; `elements` are their symbols, `bonded` pairs of them: by these, or by
 //! masses and distances, the motions of a molecule are named.
+//! `"along_orbit": true` says that the Hessians are those along half a period of the integrator's own orbit, which is at rest at t = 0 and at T/2: each
+//! `stiffness` is an array (k, n, n), one matrix for each kick of its clock from t = 0 to T/2, both counted, not mass-weighted. A free molecule has
+//! `positions` at t = 0 and `turned`, those at T/2, by which its rigid motions are set apart.
 //! `"keep_rigid": true` projects no rigid motions out: there are none, as of atoms among others that stand still.
 
 use nalgebra::DMatrix;
@@ -37,7 +40,7 @@ use super::held::{Constraints, Particles, reweigh};
 use crate::error::{Error, Result};
 use crate::number::Rational;
 use crate::number::rational::to_f64;
-use crate::system::{Body, Jacobians, MeasuredSystem, Model};
+use crate::system::{Along, Body, Jacobians, MeasuredSystem, Model};
 
 /// How well a measured stiffness is known unless its file says so: a Hessian by differences is good to some 10^-6 of its norm.
 const USUAL_ACCURACY: f64 = 1e-6;
@@ -62,6 +65,9 @@ pub(super) struct Document {
     pub hydrogen_mass: Option<Number>,
     #[serde(default)]
     pub keep_rigid: bool,
+    #[serde(default)]
+    pub along_orbit: bool,
+    pub turned: Option<Reference>,
     #[serde(default = "yes")]
     pub symmetric: bool,
     pub method: Option<String>,
@@ -125,6 +131,12 @@ pub(super) fn read(document: &Document, arrays: &Arrays) -> Result<Model> {
         let remedy = "a dense stiffness by reference takes none: name its compressed rows (csr), or write its numbers in the file";
         return Err(Error::input("scheme", "local time steps", remedy));
     }
+    if document.along_orbit {
+        return document.along(arrays);
+    }
+    if document.turned.is_some() {
+        return Err(Error::input("turned", "given", "is for \"along_orbit\": true: leave it out"));
+    }
     let read = document.potentials.iter().enumerate().map(|(k, own)| own.read(k, arrays));
     let mut read = read.collect::<Result<Vec<_>>>()?;
     let n = read.first().map_or(0, |own| own.stiffness.nrows());
@@ -160,6 +172,52 @@ pub(super) fn read(document: &Document, arrays: &Arrays) -> Result<Model> {
         Model::NoGradient(Box::new(Jacobians::measured(&body, &potentials, accuracy, document.keep_rigid)?))
     };
     Ok(model)
+}
+
+impl Document {
+    /// Hessians along an orbit.
+    fn along(&self, arrays: &Arrays) -> Result<Model> {
+        let refused = [
+            ("mass_weighted", self.mass_weighted),
+            ("constraints", self.constraints.is_some()),
+            ("hydrogen_mass", self.hydrogen_mass.is_some()),
+            ("method", self.method.is_some()),
+            ("symmetric", !self.symmetric),
+        ];
+        if let Some((field, _)) = refused.iter().find(|(_, is_given)| *is_given) {
+            return Err(Error::input(field, "given", "has no place along an orbit: leave it out"));
+        }
+        let (mut steps, mut kicks) = (Vec::new(), Vec::new());
+        for (k, own) in self.potentials.iter().enumerate() {
+            let field = format!("potentials[{k}].stiffness");
+            steps.push(own.step(k)?);
+            if own.scale.is_some() || own.force.is_some() {
+                let remedy = "scale and force have no place along an orbit: leave them out";
+                return Err(Error::input(&format!("potentials[{k}]"), "given", remedy));
+            }
+            kicks.push(own.stiffness.read(&field, arrays)?.matrices(&field)?);
+        }
+        let n = kicks.first().and_then(|own: &Vec<DMatrix<f64>>| own.first()).map_or(0, DMatrix::nrows);
+        if n == 0 || n > LARGEST {
+            return Err(Error::input("potentials", n, format!("give 1 to {LARGEST} degrees of freedom")));
+        }
+        let masses = self.masses(n, arrays)?.ok_or_else(|| Error::missing("masses", "give them"))?;
+        let own = Along::new(&masses, &steps, &kicks)?.at_accuracy(self.accuracy()?)?;
+        let turned = self.turned.as_ref().map(|at| at.read("turned", arrays)).transpose()?;
+        let turned = turned.map(|own| triples(&own.into_values(), n)).transpose()?;
+        Ok(Model::Along(Box::new(match (self.positions(n, arrays)?, turned) {
+            _ if self.keep_rigid => own,
+            _ if self.periodic => own.in_box()?,
+            (Some(start), Some(turned)) => own.turning([&start, &turned])?,
+            (None, None) => own,
+            (start, _) => {
+                let missing = if start.is_some() { "turned" } else { "positions" };
+                let remedy =
+                    "give where the atoms are at both ends of the half period, or say \"keep_rigid\": true";
+                return Err(Error::missing(missing, remedy));
+            }
+        })))
+    }
 }
 
 /// A potential as it was read, its stiffness times its scale.

@@ -248,6 +248,7 @@ impl SystemScene {
             self.model = match self.model {
                 Model::Measured(own) => Model::Measured(own.at_accuracy(accuracy)?),
                 Model::NoGradient(own) => Model::NoGradient(Box::new(own.at_accuracy(accuracy)?)),
+                Model::Along(own) => Model::Along(Box::new(own.at_accuracy(accuracy)?)),
                 Model::Sparse(own) => Model::Sparse(Box::new(own.at_accuracy(accuracy)?)),
                 _ => return Err(Error::input("accuracy", accuracy, exact)),
             };
@@ -255,7 +256,8 @@ impl SystemScene {
         if keeps_rigid {
             let Model::Measured(own) = self.model else {
                 let no_gradient = "say \"keep_rigid\": true in the file";
-                let is_by_reference = matches!(self.model, Model::NoGradient(_) | Model::Sparse(_));
+                let is_by_reference =
+                    matches!(self.model, Model::NoGradient(_) | Model::Along(_) | Model::Sparse(_));
                 let remedy = if is_by_reference { no_gradient } else { exact };
                 return Err(Error::input("rigid motions", "kept", remedy));
             };
@@ -374,6 +376,9 @@ impl SystemScene {
             }
             Model::NoGradient(_) => {
                 return Err(Error::input("symmetric", "false", "a run is for forces that are gradients"));
+            }
+            Model::Along(_) => {
+                return Err(Error::input("along_orbit", "true", "a run is for Hessians at one place"));
             }
             Model::Sparse(_) => {
                 return Err(Error::input("stiffness", "sparse", "a run is for dense stiffnesses"));

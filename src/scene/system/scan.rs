@@ -91,6 +91,10 @@ impl Scan {
     /// # Errors
     /// As [`SystemScene::read`] at the first point; a path that leads nowhere; too many points.
     pub fn new(scene: SystemScene, x: Axis, y: Option<Axis>) -> Result<Scan> {
+        if scene.model().along().is_some() {
+            let remedy = "varies no number of Hessians along an orbit: another step has another orbit";
+            return Err(Error::input("scan", &x.path, remedy));
+        }
         let points = x.values().len().saturating_mul(y.as_ref().map_or(1, |y| y.values().len()));
         if points > MOST_POINTS {
             let remedy = format!("at most {MOST_POINTS}: choose larger spacings");

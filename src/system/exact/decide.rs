@@ -13,6 +13,7 @@
 use nalgebra::DMatrix;
 use num_bigint::BigInt;
 use num_complex::Complex64;
+use num_integer::Integer;
 use num_traits::{One, Signed, Zero};
 
 use crate::error::Result;
@@ -184,12 +185,24 @@ fn judge(blocks: &IntegerBlocks) -> ExactVerdict {
     ExactVerdict { kind, roots, half_product: product.map(|x| Rational::new(x, d.clone())) }
 }
 
-/// The kind from d S in integers, d > 0, and multiples of the blocks A, B, C, D of the half period.
-pub(in crate::system) fn judged(
-    product: &DMatrix<BigInt>,
-    scale: &BigInt,
-    [a, b, c, d]: [&DMatrix<BigInt>; 4],
+/// The kind from S and the blocks A, B, C, D of the half period over ℚ.
+pub(in crate::system) fn judged_blocks(
+    product: &DMatrix<Rational>,
+    blocks: [&DMatrix<Rational>; 4],
 ) -> (Kind, MuCount) {
+    let (product, d) = whole(product);
+    let blocks = blocks.map(|block| whole(block).0);
+    judged(&product, &d, blocks.each_ref())
+}
+
+/// d m in integers, and d > 0.
+fn whole(m: &DMatrix<Rational>) -> (DMatrix<BigInt>, BigInt) {
+    let d = m.iter().fold(BigInt::one(), |lcm, x| lcm.lcm(x.denom()));
+    (m.map(|x| x.numer() * (&d / x.denom())), d)
+}
+
+/// The kind from d S in integers, d > 0, and multiples of the blocks A, B, C, D of the half period.
+fn judged(product: &DMatrix<BigInt>, scale: &BigInt, [a, b, c, d]: [&DMatrix<BigInt>; 4]) -> (Kind, MuCount) {
     let polynomial = roots::characteristic(product);
     let (at_zero, rest) = roots::divided_out(polynomial, &BigInt::zero());
     let (at_minus_one, rest) = roots::divided_out(rest, &-scale);

@@ -193,7 +193,8 @@ fn at(part: &System, rate: &Rational) -> At {
     let frame = Frame::whole(part.size());
     let (program, _) = scaled_program(part, &frame);
     // Entries within one rounding of the true ones are in the bound of [`follow`].
-    let stiff = |kick: &Kick<f64>| Stiff { stiffness: Stiffness::Rows(kick.rows.clone()), off: 0.0 };
+    let stiff =
+        |kick: &Kick<f64>| Stiff { stiffness: Stiffness::Rows(kick.rows.clone()), off: 0.0, known: 0.0 };
     let kicks: Vec<_> = program.kicks.iter().map(stiff).collect();
     let drifts = Drifts { inverse_mass: &program.inverse_mass, decay: &(rate * part.tick()), off: 0.0 };
     let q = follow(&drifts, part.schedule().symmetric_period(), |_, clock| &kicks[clock]);

@@ -18,11 +18,12 @@ use crate::system::half::compose::Row;
 use crate::system::half::float::FloatBlocks;
 use crate::system::half::norm;
 
-/// One kick: F, and how far (2-norm) the true F may be from it.
+/// One kick: F, and how far (2-norm) the true F may be from it: `off`, and `known` beside it where F was measured.
 #[derive(Clone, Debug)]
 pub(in crate::system) struct Stiff {
     pub stiffness: Stiffness,
     pub off: f64,
+    pub known: f64,
 }
 
 #[derive(Clone, Debug)]
@@ -49,31 +50,36 @@ pub(in crate::system) struct Propagated {
     x: Vec<f64>,
     p: Vec<f64>,
     pub error: Option<f64>,
+    account: Account,
 }
 
-/// ‖R‖ and ‖X‖ ‖R‖ of one step's errors, with P in place of X for errors of positions.
+/// ‖R‖ and ‖X‖ ‖R‖ of one step's errors, with P in place of X for errors of positions; and of a kick's `known` alone.
 struct Step {
     error: f64,
     taken_back: f64,
+    known: [f64; 2],
 }
 
 /// From so many columns on sums of rows and columns are worth their time.
 const MANY: usize = 32;
 
-/// The sums of the bound.
+/// The sums of the bound: of what rounding and `off` leave, and of what is `known` beside them.
+#[derive(Clone, Debug)]
 struct Account {
-    rho: f64,
-    sigma: f64,
+    rho: [f64; 2],
+    sigma: [f64; 2],
     largest: f64,
     /// d_k.
     volume: f64,
 }
 
 impl Account {
-    fn add(&mut self, Step { error, taken_back }: Step, size: f64) {
+    fn add(&mut self, Step { error, taken_back, known }: Step, size: f64) {
         self.largest = self.largest.max(size);
-        self.rho += error / self.volume;
-        self.sigma += taken_back / self.volume;
+        for (k, [error, taken_back]) in [[error, taken_back], known].into_iter().enumerate() {
+            self.rho[k] += error / self.volume;
+            self.sigma[k] += taken_back / self.volume;
+        }
     }
 }
 
@@ -92,7 +98,7 @@ pub(in crate::system) fn follow_proven<'a>(
     events: impl Iterator<Item = Event>,
     kick: impl Fn(usize, usize) -> &'a Stiff,
 ) -> Option<Propagated> {
-    followed(drifts, events, kick, |account| !account.holds()).filter(|state| state.error.is_some())
+    followed(drifts, events, kick, |account| !account.holds(0.0)).filter(|state| state.error.is_some())
 }
 
 fn followed<'a>(
@@ -105,9 +111,9 @@ fn followed<'a>(
     let unit = |first: usize| {
         (0..2 * n * n).map(|k| f64::from(u8::from(k % (2 * n) == first + k / (2 * n)))).collect()
     };
-    let mut state = Propagated { n, x: unit(0), p: unit(n), error: None };
+    let mut account = Account { rho: [0.0; 2], sigma: [0.0; 2], largest: 1.0, volume: 1.0 };
+    let mut state = Propagated { n, x: unit(0), p: unit(n), error: None, account: account.clone() };
     let mut sizes = [1.0; 2];
-    let mut account = Account { rho: 0.0, sigma: 0.0, largest: 1.0, volume: 1.0 };
     let mut known: BTreeMap<u64, f64> = BTreeMap::new();
     for (k, event) in events.enumerate() {
         if event.drift > 0 {
@@ -124,9 +130,8 @@ fn followed<'a>(
             return None;
         }
     }
-    if account.holds() {
-        state.error = account.bound(state.norm());
-    }
+    state.account = account;
+    state.error = state.error_within(0.0);
     Some(state)
 }
 
@@ -138,21 +143,33 @@ pub(in crate::system) fn decayed(decay: &Rational, ticks: u64) -> f64 {
 
 impl Account {
     /// The bound's condition; once it fails it fails for good, as both factors only grow.
-    fn holds(&self) -> bool {
+    fn holds(&self, times: f64) -> bool {
         // 1.01: as in the bound. A sum that is no number fails the comparison, too.
-        8.0 * (1.01 * self.largest) * (1.01 * self.rho) <= 1.0
+        8.0 * (1.01 * self.largest) * (1.01 * within(self.rho, times)) <= 1.0
     }
 
     /// Where it holds.
-    fn bound(&self, end: f64) -> Option<f64> {
+    fn bound(&self, end: f64, times: f64) -> f64 {
         // 1.01: the roundings of norms, of d_k and of the sums.
-        let (rho, sigma, largest) = (1.01 * self.rho, 1.01 * self.sigma, 1.01 * self.largest);
+        let [rho, sigma] = [self.rho, self.sigma].map(|sums| 1.01 * within(sums, times));
+        let largest = 1.01 * self.largest;
         let s = sigma + 2.0 * largest * sigma * rho;
-        Some(1.02 * end * s / (1.0 - s))
+        1.02 * end * s / (1.0 - s)
     }
 }
 
+/// With so many times what is known.
+fn within([own, known]: [f64; 2], times: f64) -> f64 {
+    // Exact where nothing is added.
+    if times > 0.0 { own + times * known } else { own }
+}
+
 impl Propagated {
+    /// The bound on the error where each F is off by `off` and so many times its `known`; `None` where its condition fails.
+    pub fn error_within(&self, times: f64) -> Option<f64> {
+        self.account.holds(times).then(|| self.account.bound(self.norm(), times))
+    }
+
     fn row(rows: &[f64], columns: usize, i: usize) -> &[f64] {
         &rows[i * columns..(i + 1) * columns]
     }
@@ -182,13 +199,14 @@ impl Propagated {
         let of_positions = 1.01 * (U * squares.sqrt() + moved);
         *x_size = bound(&self.x, columns);
         if c == 1.0 {
-            return Step { error: of_positions, taken_back: of_positions * *p_size };
+            return Step { error: of_positions, taken_back: of_positions * *p_size, known: [0.0; 2] };
         }
         let of_momenta = 1.01 * U * 2.0 * norm2(&self.p).sqrt();
         self.p.iter_mut().for_each(|p| *p *= c);
         // 1.01: the rounding of the rows just scaled.
         *p_size *= 1.01 * c;
-        Step { error: of_positions + of_momenta, taken_back: of_positions * *p_size + of_momenta * *x_size }
+        let taken_back = of_positions * *p_size + of_momenta * *x_size;
+        Step { error: of_positions + of_momenta, taken_back, known: [0.0; 2] }
     }
 
     /// p ← p − w F x; more than the error. The sizes as in `drift`.
@@ -200,8 +218,13 @@ impl Propagated {
             Stiffness::Whole(stiffness) => self.kick_whole(stiffness, weight),
         };
         *p_size = bound(&self.p, columns);
+        if stiff.known > 0.0 {
+            // What is known of a kick exceeds its roundings by far: the norm is worth the products.
+            *x_size = x_size.min(spectral(&self.x, self.n));
+        }
         let error = 1.01 * (U * squares.sqrt() + weight.abs() * stiff.off * *x_size);
-        Step { error, taken_back: error * *x_size }
+        let known = 1.01 * weight.abs() * stiff.known * *x_size;
+        Step { error, taken_back: error * *x_size, known: [known, known * *x_size] }
     }
 
     /// p ← p + w F x row by row; the square of what U times bounds the rounding.

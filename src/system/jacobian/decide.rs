@@ -2,16 +2,13 @@
 
 use faer::{Mat, c64};
 use nalgebra::DMatrix;
-use num_bigint::BigInt;
-use num_integer::Integer;
-use num_traits::One;
 
 use super::friction::MOST_MASKED;
 use super::model::{Clock, Jacobians};
 use super::orbit;
 use crate::error::Result;
 use crate::number::{Laurent, Rational, U};
-use crate::system::exact::decide::{MuCount, judged};
+use crate::system::exact::decide::{MuCount, judged_blocks};
 use crate::system::half::norm;
 use crate::system::spectrum::discs::Spectrum;
 use crate::system::spectrum::explain::explained;
@@ -160,10 +157,7 @@ impl Jacobians {
             format!("exact arithmetic on {}", degrees_of_freedom(self.size()))
         })?;
         let own = orbit::exact(self);
-        let (product, d) = whole(&own.product);
-        let blocks = own.blocks.each_ref().map(|block| whole(block).0);
-        let (kind, roots) = judged(&product, &d, blocks.each_ref());
-        Ok((kind, roots))
+        Ok(judged_blocks(&own.product, own.blocks.each_ref()))
     }
 
     /// The bits of an entry of a kick.
@@ -205,10 +199,4 @@ impl Jacobians {
         };
         Some(rate::largest(own.mu.iter().enumerate().map(growth)))
     }
-}
-
-/// d m in integers, and d > 0.
-fn whole(m: &DMatrix<Rational>) -> (DMatrix<BigInt>, BigInt) {
-    let d = m.iter().fold(BigInt::one(), |lcm, x| lcm.lcm(x.denom()));
-    (m.map(|x| x.numer() * (&d / x.denom())), d)
 }

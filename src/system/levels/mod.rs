@@ -78,4 +78,5 @@ pub use kernel::{Kernel, Outer};
 pub use method::Method;
 pub use nested::{AtStep, Nested, Steps};
 pub use paths::Near;
+pub(in crate::system) use rigid::projected;
 pub use rigid::{Hessians, rigid_motions, translations};

@@ -456,7 +456,7 @@ impl Steps<'_> {
             let stiffness = Stiffness::Whole(Mat::from_fn(n, n, |i, j| factor * own.stiffness[(i, j)]));
             let rounding = ROUNDINGS as f64 * U * own.frobenius;
             let off = 1.01 * factor * (self.nested.error_within(k, epsilon) + rounding);
-            Stiff { stiffness, off }
+            Stiff { stiffness, off, known: 0.0 }
         };
         let kicks = self.nested.levels.iter().enumerate().map(kick).collect();
         (kicks, (0..n).map(|i| vec![(i, a)]).collect())

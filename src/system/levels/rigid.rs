@@ -197,7 +197,7 @@ fn is_symmetric(k: &[f64], n: usize) -> bool {
 }
 
 /// Vᵀ k V for orthonormal columns V but for this defect, and how far (2-norm) it is from that of exactly orthonormal ones.
-fn projected(k: &Mat<f64>, kept: &Mat<f64>, defect: f64) -> (Mat<f64>, f64) {
+pub(in crate::system) fn projected(k: &Mat<f64>, kept: &Mat<f64>, defect: f64) -> (Mat<f64>, f64) {
     let image = kept.transpose() * k * kept;
     let size = norm::frobenius(k);
     let rounding = 2.2 * (k.nrows() as f64 + 4.0) * U * norm::frobenius(kept).powi(2) * size;

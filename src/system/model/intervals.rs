@@ -51,6 +51,7 @@ impl Model {
                 Family { linear: Linear::Number, at: &at }.stretches(range, width, limits)
             }
             (_, Model::LocalSteps(own)) => own.stretches(range, limits),
+            (_, Model::Along(_)) => Err(self.no_intervals()),
             (_, Model::Sparse(own)) => {
                 own.stretches(range, width).unwrap_or_else(|| Err(self.no_intervals()))
             }
@@ -114,6 +115,7 @@ impl Model {
             }
             (_, Model::LocalSteps(own)) => Ok(own.cost()),
             (_, Model::NoGradient(own) | Model::Subcycled(own, _)) => Ok(own.cost_of_stretches(range, width)),
+            (_, Model::Along(_)) => Err(self.no_intervals()),
             (_, Model::Sparse(own)) => own.cost_of_stretches(range).ok_or_else(|| self.no_intervals()),
             _ => self.over_outer_steps(|family| family.cost(range, width, limits)),
         }
@@ -180,6 +182,7 @@ impl Model {
             Model::NoGradient(own) | Model::Subcycled(own, _) => {
                 own.slowed(&factor)?.decide(Route::Cheapest, limits)
             }
+            Model::Along(_) => Err(self.refused("the verdict at another step")),
             Model::Sparse(own) => match own.at_step(outer) {
                 Some(own) => own?.decide(limits),
                 None => Err(self.refused("the verdict at another step")),

@@ -17,6 +17,7 @@ use std::borrow::Cow;
 use crate::error::{Error, Result};
 use crate::number::{Laurent, Rational};
 use crate::propagator;
+use crate::system::along::Along;
 use crate::system::friction::{Friction, damped_system};
 use crate::system::implicit::{ImplicitExplicit, two_clocks};
 use crate::system::jacobian::Jacobians;
@@ -55,6 +56,8 @@ pub enum Model {
     Subcycled(Box<Jacobians>, Subcycles),
     /// AVI of elements in levels, each level a clock of rational stiffness.
     Elements(System, Subcycles),
+    /// Hessians measured along the integrator's own orbit, one for each kick.
+    Along(Box<Along>),
     /// Sparse stiffnesses of thousands of degrees of freedom: two levels, or one with local time steps.
     Sparse(Box<SparseSystem>),
 }
@@ -67,7 +70,7 @@ impl Model {
     /// The rational system that stands for it: itself; with π in the stiffnesses of several degrees of freedom within 2^-150 of every
     /// entry, of one within 2^-60 (where steps are irrational in the unit of time of the shortest one); of doubles these doubles; of local
     /// steps Verlet's with its effective stiffness, of the midpoint rule Verlet's with its effective masses, both exactly. Forces that are no
-    /// gradient, and sparse stiffnesses, have none: what is returned has their size and their clocks, no more.
+    /// gradient, Hessians along an orbit, and sparse stiffnesses, have none: what is returned has their size and their clocks, no more.
     pub fn system(&self) -> &System {
         match self {
             Model::Rational(own) | Model::Elements(own, _) => own,
@@ -77,6 +80,7 @@ impl Model {
             Model::LocalSteps(own) => own.system(),
             Model::Implicit(own) => own.system(),
             Model::NoGradient(own) | Model::Subcycled(own, _) => own.symmetric(),
+            Model::Along(own) => own.clocks(),
             Model::Sparse(own) => own.system(),
         }
     }
@@ -94,6 +98,7 @@ impl Model {
         match self {
             Model::Measured(own) => own.cost(),
             Model::NoGradient(own) | Model::Subcycled(own, _) => own.cost(),
+            Model::Along(own) => own.cost(),
             Model::Sparse(own) => own.cost(),
             _ => verdict_cost(self.system()),
         }
@@ -106,7 +111,7 @@ impl Model {
 
     /// Those that so many products take.
     pub fn seconds_of(&self, products: f64) -> f64 {
-        products / if self.measured().is_some() { DENSE_PACE } else { PACE }
+        products / if self.measured().is_some() || self.along().is_some() { DENSE_PACE } else { PACE }
     }
 
     /// The verdict with everything that is known beside it.
@@ -122,6 +127,7 @@ impl Model {
             Model::LocalSteps(own) => decide_by(route, own.system(), limits),
             Model::Implicit(own) => decide_by(route, own.system(), limits),
             Model::NoGradient(own) | Model::Subcycled(own, _) => own.decide(route, limits),
+            Model::Along(own) => own.decide(route, limits),
             Model::Sparse(_) if route == Route::Exact => Err(self.refused("exact arithmetic")),
             Model::Sparse(own) => own.decide(limits),
         }
@@ -155,7 +161,7 @@ impl Model {
     pub fn moving(&self) -> Result<Cow<'_, System>> {
         match self {
             Model::Measured(own) => own.moving(),
-            Model::NoGradient(_) | Model::Subcycled(..) | Model::Sparse(_) => {
+            Model::NoGradient(_) | Model::Along(_) | Model::Subcycled(..) | Model::Sparse(_) => {
                 Err(self.refused("varying another number than outer"))
             }
             _ => Ok(Cow::Borrowed(self.system())),
@@ -175,6 +181,7 @@ impl Model {
             Model::LocalSteps(own) => exact_kind(own.system(), limits),
             Model::Implicit(own) => exact_kind(own.system(), limits),
             Model::NoGradient(own) | Model::Subcycled(own, _) => own.exact(limits).map(|(kind, _)| kind),
+            Model::Along(own) => own.exact(limits).map(|(kind, _)| kind),
             Model::Sparse(_) => Err(self.refused("exact arithmetic")),
             Model::Measured(own) => exact_kind(own.moving()?.as_ref(), limits),
         }
@@ -201,7 +208,7 @@ impl Model {
                 let remedy = "leave it out: the answer has the rate that masks what grows";
                 Err(Error::input("friction", rate, remedy))
             }
-            Model::Sparse(_) => Err(self.refused("friction")),
+            Model::Along(_) | Model::Sparse(_) => Err(self.refused("friction")),
             Model::Oscillator(own) => own.friction(rate, limits),
             Model::Measured(own) => own.friction(rate, limits),
         }
@@ -216,6 +223,11 @@ impl Model {
             Model::Subcycled(_, own) => {
                 let remedy = format!("{what} needs kicks that are gradients: choose avi or lts");
                 Error::input("scheme", own.scheme().name(), remedy)
+            }
+            Model::Along(_) => {
+                let remedy =
+                    format!("{what} needs Hessians at one place: the orbit is that of these steps alone");
+                Error::input("along_orbit", "true", remedy)
             }
             _ => Error::input("symmetric", "false", format!("{what} needs forces that are gradients")),
         }
@@ -236,6 +248,7 @@ impl Model {
             | Model::LocalSteps(_)
             | Model::Subcycled(..)
             | Model::Elements(..)
+            | Model::Along(_)
                 if method == Method::Respa =>
             {
                 Ok(self)
@@ -257,6 +270,7 @@ impl Model {
             }
             Model::NoGradient(_) => refused("is for forces that are gradients: leave it out"),
             Model::Sparse(_) => refused("is for dense stiffnesses: give these, or leave it out"),
+            Model::Along(_) => refused("is for Hessians at one place: leave it out"),
         }
     }
 
@@ -268,6 +282,11 @@ impl Model {
     /// Jacobians that are not symmetric, where it is made of such.
     pub fn jacobians(&self) -> Option<&Jacobians> {
         if let Model::NoGradient(own) = self { Some(own) } else { None }
+    }
+
+    /// Hessians along an orbit, where it is made of such.
+    pub fn along(&self) -> Option<&Along> {
+        if let Model::Along(own) = self { Some(own) } else { None }
     }
 
     /// What verdicts tell of local time steps, where some degrees of freedom take substeps: computed when it is asked for, of sparse ones by some
@@ -329,7 +348,7 @@ impl Model {
     }
 
     fn of_two(&self) -> Result<&MeasuredSystem> {
-        if matches!(self, Model::NoGradient(_) | Model::Subcycled(..) | Model::Sparse(_)) {
+        if matches!(self, Model::NoGradient(_) | Model::Along(_) | Model::Subcycled(..) | Model::Sparse(_)) {
             return Err(self.refused("advice"));
         }
         let remedy = "give stiffnesses by reference, as {\"npz\": \"water.npz\", \"array\": \"fast\"}";
@@ -345,11 +364,16 @@ impl Model {
         self.of_two()?.hessians()
     }
 
-    /// The largest ln |λ|/T of two levels of measured stiffnesses by the dense full period, rounded; `None` of any other system.
+    /// The largest ln |λ|/T of two levels of measured stiffnesses, or of Hessians along an orbit, by the dense full period, rounded; `None` of any
+    /// other system.
     ///
     /// # Errors
     /// As [`Model::decide`]; a budget error before the work.
     pub fn growth_of_period(&self, limits: &Limits) -> Result<Option<f64>> {
+        if let Some(own) = self.along() {
+            limits.allow(own.cost(), || "the full period, kick by kick,".into())?;
+            return Ok(Some(own.growth_of_period()));
+        }
         self.measured().map_or(Ok(None), |own| own.growth_of_period(limits))
     }
 

@@ -84,6 +84,14 @@ impl Spectrum {
         Some(Spectrum { radius: Some(own.norm), rows: own.rows, s_error: Some(s_error), ..self.clone() })
     }
 
+    /// The same where the half period is known as well as these blocks are, which differ from its own in their error alone.
+    /// Where nothing is known of these there are no discs.
+    pub fn known_to(&self, blocks: &FloatBlocks) -> Spectrum {
+        let b = Mat::from_fn(blocks.m, blocks.m, |i, j| blocks.y[i][blocks.m + j]);
+        let found = times_c(blocks, &b).1.and_then(|error| self.with_error(error));
+        found.unwrap_or_else(|| Spectrum { radius: None, rows: Vec::new(), s_error: None, ..self.clone() })
+    }
+
     /// Every multiplier with an enclosure of its growth: that of all discs which meet its own, and of the largest one no more than the rows of F allow.
     pub fn multipliers(&self) -> Vec<Multiplier> {
         let Some(radius) = self.radius.map(|own| 1.01 * own) else {

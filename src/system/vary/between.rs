@@ -365,7 +365,7 @@ impl Cell<'_> {
                 }
             }
             let off = 1.01 * (norm::spectral(&moved) + 2.0 * U * squares.sqrt());
-            Stiff { stiffness: Stiffness::Rows(rows), off }
+            Stiff { stiffness: Stiffness::Rows(rows), off, known: 0.0 }
         };
         let kicks: Vec<Stiff> = reduced.clocks().iter().enumerate().map(stiff).collect();
         // ‖P diag(e) Pᵀ‖ ≤ Σ e_i |P_i|², P = (I, −N); where N is empty the largest e_i.

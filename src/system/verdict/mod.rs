@@ -4,11 +4,9 @@
 //! |---|---|
 //! | `decide`, `piece` | the parts, each by the cheapest means that proves it |
 //! | `large` | thousands of degrees of freedom: signs of the sparse action, and the mode that grows fastest |
-//! | `along` | about a periodic orbit: a Hessian for each kick |
 //! | `analysis`, `measured` | the answer; how far it holds where stiffnesses were measured |
 //! | `limits` | which means are tried, and what they may cost |
 
-pub(super) mod along;
 pub(super) mod analysis;
 pub(super) mod decide;
 pub(super) mod large;
