@@ -24,11 +24,11 @@ const ENOUGH: f64 = 1.5;
 /// Levels that are followed in the middle of a box alone once it is too large for its bounds, and about how many bisections it is from
 /// being proven where one of them has a cone, and where none has.
 const FURTHER: u32 = 6;
-const NEAREST: u32 = 3;
-const UNSEEN: u32 = 4;
+const NEAREST: u32 = 4;
+const UNSEEN: u32 = 8;
 
 /// So many bisections before it may be proven a box is tried to the first order first.
-const FAR: u32 = 3;
+const FAR: u32 = 5;
 
 /// Beyond this |α| the coordinates that no angle enters are tried, too: where kicks are strong, turning frames are not near 1.
 const STRONG: f64 = 0.3;
@@ -283,7 +283,7 @@ impl Frame {
             level = next;
             if level.margins().is_some_and(|margins| margins.iter().all(|margin| margin.of_middle > 0.0)) {
                 (trial.to_go, trial.is_settled, trial.is_seen) =
-                    (trial.to_go.min(NEAREST + steps / 2), true, true);
+                    (trial.to_go.min(NEAREST + steps), true, true);
                 return;
             }
         }

@@ -229,7 +229,7 @@ impl Question for System {
                 let local = local.as_ref();
                 let (friction, orbit, nearest) = (friction.as_ref(), orbit.as_ref(), nearest.as_ref());
                 let (unit, labels, is_orbit_missing) = (scene.time_unit(), scene.labels(), *is_orbit_missing);
-                let is_implicit = scene.model().implicit().is_some();
+                let remark = scene.model().remark();
                 let no_gradient = no_gradient.as_ref();
                 let beside = Beside {
                     unit,
@@ -239,7 +239,7 @@ impl Question for System {
                     labels,
                     nearest,
                     local,
-                    is_implicit,
+                    remark,
                     no_gradient,
                 };
                 report::document(analysis, &beside)

@@ -15,7 +15,7 @@ use crate::system::levels::Growing;
 
 use super::View;
 use super::molecule::called;
-use super::words::{nearest, percent, told};
+use super::words::{named, nearest, percent};
 
 /// A row's share of the height, in mm, and half the height of its bars in rows.
 const ROW: f64 = 8.5;
@@ -62,7 +62,7 @@ struct Line {
 struct Block {
     ratio: String,
     lines: Vec<Line>,
-    /// The outer step, and what it is told of it.
+    /// The outer step, and what is known of it.
     chosen: Vec<(f64, String)>,
     safe: Option<f64>,
 }
@@ -107,7 +107,7 @@ fn of_periods(advice: &Advice, title: &str) -> Figure {
     let ends = advice.schemes.iter().flat_map(|answer| &answer.rows).filter_map(|row| row.first.as_ref());
     let right = ends.map(|of| of.upper.unwrap_or(of.lower).1).fold(0.0, f64::max);
     let near = "two modes may resonate (first order)";
-    let foot = advice.modes.iter().fold(Foot::default(), |foot, mode| foot.words(&told(mode)));
+    let foot = advice.modes.iter().fold(Foot::default(), |foot, mode| foot.words(&named(mode)));
     let foot = within(foot, &advice.band, advice.friction.as_ref());
     draw(&blocks(&advice.schemes, |answer| &answer.scheme, of), right, (title, near)).footed(&foot)
 }

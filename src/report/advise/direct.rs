@@ -57,7 +57,7 @@ fn per_ps((lo, hi): (f64, f64)) -> (f64, f64) {
 }
 
 /// "0.0200/ps", "none".
-fn told(rate: Option<(f64, f64)>) -> String {
+fn rate(rate: Option<(f64, f64)>) -> String {
     match rate {
         None => "a rate that is not bounded".into(),
         Some((_, 0.0)) => "no growth".into(),
@@ -77,7 +77,7 @@ fn summary(findings: &DirectFindings, reading: Option<&Reading>, notes: &[String
     lines.push(format!(
         "  forces     are no gradient, |J - J'|/|J + J'| = {}: x'' = -J x itself has {}, whatever the steps",
         asymmetries.join(", "),
-        told(findings.without_steps)
+        rate(findings.without_steps)
     ));
     lines.extend(looked_at(best));
     lines.push(lines::published(FASTEST, |n| nearest((findings.fastest / n, findings.fastest / n), 4)));
@@ -137,14 +137,14 @@ fn line(findings: &DirectFindings, own: &DirectFinding) -> String {
         Adds::Little if own.rate == Some((0.0, 0.0)) => "stable (proven)".into(),
         Adds::Little => format!(
             "grows as the forces do by themselves or up to twice as fast (proven), {}",
-            told(own.rate)
+            rate(own.rate)
         ),
         Adds::Much => format!(
             "grows more than twice as fast as the forces do by themselves (proven), {}",
-            told(own.rate)
+            rate(own.rate)
         ),
         Adds::NotTold => {
-            format!("not told: {} with the steps, {} without", told(own.rate), told(findings.without_steps))
+            format!("not told: {} with the steps, {} without", rate(own.rate), rate(findings.without_steps))
         }
     };
     let of_steps = own.added.filter(|_| own.rate != Some((0.0, 0.0))).map_or_else(String::new, |(lo, hi)| {

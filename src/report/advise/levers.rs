@@ -98,15 +98,15 @@ pub(super) fn longer(levers: Option<&Levers>) -> String {
     let mut best: Vec<(&Lever, &Rational, &Rational)> = levers.rows.iter().filter_map(gained).collect();
     best.retain(|(own, _, gain)| **gain > one && !matches!(own.way, Way::Respa | Way::Friction));
     best.sort_by(|a, b| b.2.cmp(a.2));
-    let told = |(own, step, gain): &(&Lever, &Rational, &Rational)| {
+    let shown = |(own, step, gain): &(&Lever, &Rational, &Rational)| {
         let gain = to_f64(gain);
         format!("{} fs by {} ({} times)", decimal(step), own.name, nearest((gain, gain), 3))
     };
-    let told: Vec<String> = best.iter().take(3).map(told).collect();
-    if told.is_empty() {
+    let shown: Vec<String> = best.iter().take(3).map(shown).collect();
+    if shown.is_empty() {
         "longer: nothing known would let the step grow".into()
     } else {
-        format!("longer: {}", told.join(", "))
+        format!("longer: {}", shown.join(", "))
     }
 }
 
@@ -155,10 +155,10 @@ pub(super) fn lines(levers: &Levers) -> Vec<String> {
     if !unknown.is_empty() {
         lines.push(format!("             {}: no engine is known to have them", unknown.join("; ")));
     }
-    let mut told: Vec<Way> = Vec::new();
+    let mut shown: Vec<Way> = Vec::new();
     for own in levers.rows.iter().filter(|own| !own.way.engines().is_empty()) {
-        if !told.contains(&own.way) {
-            told.push(own.way);
+        if !shown.contains(&own.way) {
+            shown.push(own.way);
             let all: Vec<String> =
                 own.way.engines().iter().map(|own| format!("{} {}", own.name, own.keyword)).collect();
             let name = if own.way == Way::Respa { "as given, other ratios" } else { &own.name };

@@ -1,6 +1,6 @@
 //! What a person can act on: a line for each scheme, then what to do, then why.
 
-use super::words::{choice, down, fs, nearest, percent, told, within};
+use super::words::{choice, down, fs, named, nearest, percent, within};
 use crate::advise::engine::{Reading, nested_beside, not_nested};
 use crate::advise::unit::decimal;
 use crate::advise::{Advice, Answer, Pair, Row, SLOW, Scheme, Status, Unstable};
@@ -193,7 +193,7 @@ fn action(advice: &Advice, answer: &Answer) -> String {
         return format!(
             "advice: keep the step below {edge} fs (proven for all periods within {band}); T/10 = {} fs resolves {}",
             nearest(fastest.part(10), 3),
-            told(fastest)
+            named(fastest)
         );
     }
     if let Some(slow) = answer.needs {
@@ -211,13 +211,13 @@ fn action(advice: &Advice, answer: &Answer) -> String {
             "advice: {why}, so the clocks meet late and thin resonances begin early: choose steps that are multiples of each other"
         );
     }
-    choice(scheme, [&answer.safe, &answer.largest], &band, (&told(fastest), fastest.period()))
+    choice(scheme, [&answer.safe, &answer.largest], &band, (&named(fastest), fastest.period()))
 }
 
 /// The published limits of a mode, T/n by `part`.
-pub(super) fn published(told: &str, part: impl Fn(f64) -> String) -> String {
+pub(super) fn published(name: &str, part: impl Fn(f64) -> String) -> String {
     format!(
-        "  published  {told}: outer steps near T/3 = {} fs and T/4 = {} fs meet nonlinear resonances (Ma, Izaguirre, Skeel 2003); grompp warns \
+        "  published  {name}: outer steps near T/3 = {} fs and T/4 = {} fs meet nonlinear resonances (Ma, Izaguirre, Skeel 2003); grompp warns \
          above an inner step of T/5 = {} fs, notes above T/10 = {} fs",
         part(3.0),
         part(4.0),
@@ -252,7 +252,7 @@ fn reasons(advice: &Advice) -> Vec<String> {
                 ", and for any number of coupled modes that are no stiffer: sums of two modes included"
             }
         ),
-        published(&told(fastest), |n| nearest(fastest.part(n as u64), 4)),
+        published(&named(fastest), |n| nearest(fastest.part(n as u64), 4)),
         format!("  unknown    {}", unknown(advice)[0]),
     ];
     if !answer.pairs.is_empty() {
@@ -268,7 +268,7 @@ fn reasons(advice: &Advice) -> Vec<String> {
         ));
     }
     if !advice.held.is_empty() {
-        let held: Vec<String> = advice.held.iter().map(told).collect();
+        let held: Vec<String> = advice.held.iter().map(named).collect();
         lines.push(format!(
             "  assumed    {}: constrained, so on no clock; solved to the end at every inner step; the periods given are those of the constrained \
              molecule, in which coupled angles are faster than alone",

@@ -62,11 +62,11 @@ fn advised_step(finding: &Finding) -> Option<&Rational> {
 fn summary(findings: &Findings, reading: Option<&Reading>, notes: &[String]) -> Vec<String> {
     let (best, fastest) = (&findings.schemes[0], &findings.groups[0]);
     let period = fastest.period.0;
-    let told = told(fastest);
+    let name = named(fastest);
     let band = percent(&findings.band);
     // What is safe, what limits it, what would let it grow; then the steps that were asked for.
-    let safe = choice(&best.scheme, [&best.safe, &best.largest], &band, (&told, (period, period)));
-    let mut lines = vec![safe, limit(&told, period, best), super::levers::longer(findings.levers.as_ref())];
+    let safe = choice(&best.scheme, [&best.safe, &best.largest], &band, (&name, (period, period)));
+    let mut lines = vec![safe, limit(&name, period, best), super::levers::longer(findings.levers.as_ref())];
     lines.extend(findings.schemes.iter().map(|own| line(findings, own)));
     if let Some(reading) = reading {
         lines.extend(read_from(advised_step(best), reading));
@@ -80,7 +80,7 @@ fn summary(findings: &Findings, reading: Option<&Reading>, notes: &[String]) -> 
             findings.accuracy
         ));
     }
-    lines.push(lines::published(&told, |n| rounded(period / n, 4)));
+    lines.push(lines::published(&name, |n| rounded(period / n, 4)));
     lines.extend((2..).zip(&findings.between).map(|(level, own)| between(level, *own)));
     lines.extend((best.scheme.steps().len() > 1).then(|| slow(findings.slow)));
     lines.push(format!("  unknown    {}", UNKNOWN[0]));
@@ -101,7 +101,7 @@ pub(super) fn called(group: &Group) -> &str {
 }
 
 /// "O-H stretch of HOH (32 modes, 8.914-9.069 fs)".
-fn told(group: &Group) -> String {
+fn named(group: &Group) -> String {
     let [lo, hi] = [group.period.0, group.period.1].map(|period| rounded(period, 4));
     match group.count {
         1 => format!("{} (T = {lo} fs)", called(group)),
@@ -115,11 +115,11 @@ fn rounded(x: f64, digits: usize) -> String {
 }
 
 /// What bounds the outer step.
-fn limit(told: &str, period: f64, own: &Finding) -> String {
+fn limit(name: &str, period: f64, own: &Finding) -> String {
     let first = own.first.map_or_else(String::new, |(lo, hi)| {
         format!("; outer steps are unstable from {} fs on (proven)", nearest((lo, hi), 4))
     });
-    format!("limit: {told}: outer steps near T/3 = {} fs drift (published){first}", rounded(period / 3.0, 3))
+    format!("limit: {name}: outer steps near T/3 = {} fs drift (published){first}", rounded(period / 3.0, 3))
 }
 
 /// " at the ratio 8", " at the ratios 1:2:8", and which periods beside the fast ones may be off.
@@ -133,8 +133,9 @@ fn ratios(scheme: &Scheme) -> (String, &'static str) {
 }
 
 fn between(level: usize, period: f64) -> String {
-    let told = if period.is_infinite() { "no period".into() } else { format!("{} fs", rounded(period, 3)) };
-    format!("  level {level}    {told}: its shortest period, as if nothing else acted")
+    let shortest =
+        if period.is_infinite() { "no period".into() } else { format!("{} fs", rounded(period, 3)) };
+    format!("  level {level}    {shortest}: its shortest period, as if nothing else acted")
 }
 
 /// Where the period of the slow force comes from.

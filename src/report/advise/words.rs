@@ -21,7 +21,7 @@ pub fn nearest((lo, hi): (f64, f64), digits: usize) -> String {
 }
 
 /// The name of a mode and where it comes from, for people.
-pub(super) fn told(mode: &Mode) -> String {
+pub(super) fn named(mode: &Mode) -> String {
     let period = nearest(mode.period(), 4);
     match mode.origin {
         Origin::Period => format!("{} (T = {period} fs)", mode.name),

@@ -26,8 +26,8 @@ pub struct Beside<'a> {
     pub nearest: Option<&'a Nearest>,
     /// The scheme of local time steps, where it is one.
     pub local: Option<&'a SchemeSummary>,
-    /// Whether the fast force of two rational levels is solved for.
-    pub is_implicit: bool,
+    /// What sets its model apart ([`crate::system::Model::remark`]).
+    pub remark: Option<&'a str>,
     /// What is known of forces that are no gradient.
     pub no_gradient: Option<&'a NoGradient>,
 }

@@ -157,9 +157,7 @@ fn lines(analysis: &Analysis, beside: &Beside) -> Vec<String> {
     lines
         .extend(beside.no_gradient.into_iter().flat_map(|own| beside::no_gradient_lines(own, analysis, per)));
     lines.extend(beside.local.into_iter().flat_map(|own| beside::local_lines(own, &suffix)));
-    if beside.is_implicit {
-        lines.push("  by implicit-explicit: Verlet's with masses M + h^2 F/4 and the stiffness F + S, F the fast one".into());
-    }
+    lines.extend(beside.remark.map(|remark| format!("  {remark}")));
     lines.extend(beside::lines(beside, analysis));
     lines
         .extend(analysis.measured.iter().flat_map(|own| measured::lines(own, analysis.is_stable(), &suffix)));

@@ -274,6 +274,19 @@ impl Model {
         }
     }
 
+    /// What sets it apart from a system about its equilibrium under kicks of all its forces, in a sentence.
+    pub fn remark(&self) -> Option<&'static str> {
+        match self {
+            Model::Implicit(_) => Some(
+                "by implicit-explicit: Verlet's with masses M + h^2 F/4 and the stiffness F + S, F the fast one",
+            ),
+            Model::Along(_) => {
+                Some("about the integrator's own orbit: each kick has the Hessians where it falls")
+            }
+            _ => None,
+        }
+    }
+
     /// The step of two rational levels whose fast force is solved for.
     pub fn implicit(&self) -> Option<&ImplicitExplicit> {
         if let Model::Implicit(own) = self { Some(own) } else { None }
