@@ -257,7 +257,7 @@ class System(Frozen):
         >>> import numpy as np
         >>> import kickdrift as kd
         >>> stiff = np.array([[[400.0]], [[402.0]], [[404.0]]])
-        >>> system = kd.System.along_orbit([1.0], {"stiff": ("1/40", stiff), "soft": ("1/10", [[[1.0]]] * 2)})
+        >>> system = kd.System.along_orbit([1.0], {"stiff": ("1/40", stiff), "soft": ("1/10", [[[1.0]]])})
         >>> verdict = system.decide()
         >>> verdict.stable, verdict.measured["holds"]
         (True, 'stable')
