@@ -51,6 +51,15 @@ class Work:
     evaluation: float
     sought: int = 0
 
+    @staticmethod
+    def of_period(columns: int, steps: Sequence[Fraction], evaluation: float, about: str, sought: int = 0) -> Work:
+        """That of half a period: about the minimum one Hessian a group, about an orbit one a kick, at each of Newton's
+        steps to it; ``sought`` Hessians before these."""
+        if about == "minimum":
+            return Work(columns, len(steps), evaluation, sought)
+        kicks = sum(len(kick.groups) for kick in schedule(steps))
+        return Work(columns, kicks, evaluation, sought + STEPS * kicks)
+
     @property
     def seconds(self) -> float:
         """Four forces a column."""

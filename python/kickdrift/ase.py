@@ -17,7 +17,6 @@ from kickdrift._held import Held
 from kickdrift._hessians import (
     LONGEST,
     SOUGHT,
-    STEPS,
     Followed,
     Force,
     Monodromy,
@@ -25,7 +24,6 @@ from kickdrift._hessians import (
     hessian,
     minimum,
     monodromy,
-    schedule,
     seconds_of,
     seen,
     unbalanced,
@@ -102,7 +100,8 @@ def system(
     True
     """
     forces, steps, masses = _forces(atoms, groups)
-    _begun(forces, atoms, len(forces), 0, minimize, progress, longest)
+    dear, sought = _evaluation(forces, atoms), SOUGHT * len(forces) if minimize else 0
+    Work(3 * len(atoms), len(forces), dear, sought).begin(longest, progress is True, "fewer atoms")
     where = _start(atoms, forces, masses, minimize, difference, progress)
     seen_by = shown(progress)
     measured = {
@@ -141,9 +140,7 @@ def system(
         at.positions = where
         return _oscillations(at, groups, "orbit", False, difference, unit=None)
 
-    kicks = sum(len(kick.groups) for kick in schedule(steps))
-    dear = sum(seconds_of(force, where) for force in forces.values()) / len(forces)
-    work = Work(3 * len(atoms), kicks, dear, STEPS * kicks)
+    work = Work.of_period(3 * len(atoms), steps, dear, "orbit")
     return replace(made, _orbit=Followed.beside(work, notes, find, f"{float(max(steps)):g} fs", "Å"))
 
 
@@ -196,8 +193,8 @@ def _oscillations(
 ) -> Monodromy:
     """:func:`oscillations`; without a ``unit`` an orbit not found at once is not followed from shorter steps."""
     forces, steps, masses = _forces(atoms, groups)
-    kicks = len(steps) if about == "minimum" else sum(len(kick.groups) for kick in schedule(steps))
-    _begun(forces, atoms, kicks, 0 if about == "minimum" else STEPS * kicks, minimize, progress, longest)
+    dear, sought = _evaluation(forces, atoms), SOUGHT * len(forces) if minimize else 0
+    Work.of_period(3 * len(atoms), steps, dear, about, sought).begin(longest, progress is True, "fewer atoms")
     where = _start(atoms, forces, masses, minimize, difference, progress)
     told = shown(progress, "Hessians of half a period")
     is_boxed = bool(atoms.pbc.any())
@@ -206,19 +203,9 @@ def _oscillations(
     )
 
 
-def _begun(
-    forces: Mapping[str, Force],
-    atoms: Any,
-    hessians: int,
-    sought: int,
-    minimize: bool,
-    progress: Progress | bool,
-    longest: float,
-) -> None:
-    """Say what Hessians of single groups will take, those of the way to the minimum included, or refuse it."""
-    dear = sum(seconds_of(force, atoms.positions) for force in forces.values()) / len(forces)
-    sought += SOUGHT * len(forces) if minimize else 0
-    Work(3 * len(atoms), hessians, dear, sought).begin(longest, progress is True, "fewer atoms")
+def _evaluation(forces: Mapping[str, Force], atoms: Any) -> float:
+    """Seconds that a group's force takes, their mean."""
+    return sum(seconds_of(force, atoms.positions) for force in forces.values()) / len(forces)
 
 
 def _forces(atoms: Any, groups: Mapping[str, tuple[Any, Exact]]) -> tuple[dict[str, Force], list[Fraction], Doubles]:

@@ -143,8 +143,8 @@ def waves(
         Leapfrog with local time steps, where small elements make all their nodes fine; subcycling of these with held
         velocities, of one level; or asynchronous variational integrators, where they kick with a step of their own.
     substeps : int or sequence of int
-        In a step of the level above, the coarsest level first: 2 or 3, or (2, 2); of AVI
-        one number above 1, of subcycling one number.
+        In a step of the level above, the coarsest level first: 2 or 3, or (2, 2); of AVI one number above 1, of
+        subcycling one number.
     step : Exact, optional
         Of the coarse elements, rational.
     courant : float

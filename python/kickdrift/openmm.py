@@ -29,7 +29,6 @@ from kickdrift._hessians import (
     LARGEST,
     LONGEST,
     SOUGHT,
-    STEPS,
     Followed,
     Force,
     Monodromy,
@@ -38,7 +37,6 @@ from kickdrift._hessians import (
     hessian,
     minimum,
     monodromy,
-    schedule,
     seconds_of,
     seen,
     unbalanced,
@@ -305,8 +303,7 @@ def system(
         return _oscillations(system, where, integrator, steps, "orbit", False, difference, unit=None)
 
     own = list(_levels(clocks))
-    kicks = sum(len(kick.groups) for kick in schedule(own))
-    work = Work(columns, kicks, dear, STEPS * kicks)
+    work = Work.of_period(columns, own, dear, "orbit")
     return replace(made, _orbit=Followed.beside(work, notes, find, f"{float(max(own)) * 1000:g} fs", "nm"))
 
 
@@ -610,11 +607,10 @@ def _oscillations(
     engine = _engine(system)
     held = Held(engine.masses, _constraints(system))
     where, levels = _positions(positions, engine.count), _levels(clocks)
-    kicks = len(levels) if about == "minimum" else sum(len(kick.groups) for kick in schedule(list(levels)))
-    sought = (SOUGHT if minimize else 0) + (0 if about == "minimum" else STEPS * kicks)
     # The mean of the groups, each of which is asked alone.
     dear = sum(seconds_of(engine.force(_mask(own)), where) for own in levels.values()) / len(levels)
-    Work(3 * engine.count, kicks, dear, sought).begin(longest, progress is True, _BANDS)
+    work = Work.of_period(3 * engine.count, list(levels), dear, about, SOUGHT if minimize else 0)
+    work.begin(longest, progress is True, _BANDS)
     if minimize:
         where = _minimized(engine, where, held.distances, difference, progress=_of_minimum(progress))
     # Onto the held distances, to rounding: engines keep them to their tolerance.

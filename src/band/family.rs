@@ -33,7 +33,7 @@ const ORDER: [usize; MONOMIALS] = [0, 1, 1, 2, 2, 2];
 /// Which terms are kept: what is of a higher order in the box is bounded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Order {
-    /// V and F: a third of the work.
+    /// V and F: less than half of the work.
     First,
     /// G, too.
     Second,

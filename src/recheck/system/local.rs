@@ -1,7 +1,7 @@
 //! A scheme of local time steps run as codes run it, substep by substep, against the stiffness that stands for it.
 
 use faer::{Mat, Side};
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DMatrixView};
 use num_traits::{Num, One, Zero};
 
 use crate::number::Rational;
@@ -49,18 +49,29 @@ pub fn steps(own: &LocalSteps) -> Checked {
     })
 }
 
-/// One period of subcycling with held velocities in doubles, from positions and velocities, kicks of half weight at both ends: each degree of freedom kicks
-/// when its own step is over.
+/// One period of subcycling with held velocities in doubles.
 pub fn period(own: &Subcycles) -> DMatrix<f64> {
     let (n, clock) = (own.plain().size(), &own.plain().clocks()[0]);
     let pull =
         DMatrix::from_fn(n, n, |i, j| to_f64(&(clock.stiffness.get(i, j) / own.plain().mass().get(i, i))));
-    let substeps: Vec<u32> = (0..n).map(|i| Level::substeps_of(own.levels(), i)).collect();
-    let (most, dt) = (own.levels().iter().map(|level| level.substeps).product::<u32>(), to_f64(&clock.step));
-    let mut q = DMatrix::<f64>::identity(2 * n, 2 * n);
+    let all = DMatrix::identity(2 * n, 2 * n);
+    subcycled(own.levels(), to_f64(&clock.step), |x| &pull * x, all)
+}
+
+/// A step dt of the scheme, run on columns of n positions and n velocities, kicks of half weight at both ends: each degree of freedom kicks when its own
+/// step is over.
+fn subcycled(
+    levels: &[Level],
+    dt: f64,
+    pull: impl Fn(DMatrixView<f64>) -> DMatrix<f64>,
+    mut q: DMatrix<f64>,
+) -> DMatrix<f64> {
+    let n = q.nrows() / 2;
+    let substeps: Vec<u32> = (0..n).map(|i| Level::substeps_of(levels, i)).collect();
+    let most = levels.iter().map(|level| level.substeps).product::<u32>();
     for tick in 0..=most {
         let weight = if tick % most == 0 { 0.5 } else { 1.0 };
-        let kicks = &pull * q.rows(0, n);
+        let kicks = pull(q.rows(0, n).as_view());
         for i in (0..n).filter(|&i| tick % (most / substeps[i]) == 0) {
             let kick = kicks.row(i) * (weight * dt / f64::from(substeps[i]));
             let mut row = q.row_mut(n + i);
@@ -98,9 +109,13 @@ pub fn stretch_of_subcycles(own: &SparseSubcycles, told: &Stretch) -> Checked {
 
 fn held(own: &SparseSubcycles, dt: f64, told: Holds) -> Checked {
     let n = own.size();
-    let unit = |k: usize| (0..n).map(|i| f64::from(u8::from(i == k))).collect::<Vec<_>>();
-    let columns: Vec<f64> = (0..n).flat_map(|k| half_period(own, dt, unit(k))).collect();
-    let all = DMatrix::from_vec(n, n, columns).complex_eigenvalues();
+    let pull = |x: DMatrixView<f64>| {
+        let columns = x.column_iter().flat_map(|y| own.plain().pull(&y.iter().copied().collect::<Vec<_>>()));
+        DMatrix::from_iterator(n, x.ncols(), columns)
+    };
+    let at_rest = DMatrix::identity(2 * n, n);
+    let after = subcycled(std::slice::from_ref(own.level()), dt, pull, at_rest);
+    let all = after.rows(0, n).into_owned().complex_eigenvalues();
     let excess = all.iter().map(|mu| mu.im.abs().max(mu.re.abs() - 1.0)).fold(f64::NEG_INFINITY, f64::max);
     let right = match told {
         Holds::Stable => excess <= MEETING,
@@ -110,26 +125,6 @@ fn held(own: &SparseSubcycles, dt: f64, told: Holds) -> Checked {
     holds(right, || {
         format!("at a step of {dt} the scheme, run, has Q11 off (-1, 1) by {excess}: not {}", told.name())
     })
-}
-
-/// Positions after a step from rest, mass-weighted, kicks of half weight at both ends.
-fn half_period(own: &SparseSubcycles, dt: f64, mut y: Vec<f64>) -> Vec<f64> {
-    let (p, fine) = (own.level().substeps, &own.level().fine);
-    let short = dt / f64::from(p);
-    let mut velocity = vec![0.0; y.len()];
-    for tick in 0..=p {
-        let is_end = tick % p == 0;
-        for (i, pull) in
-            own.plain().pull(&y).into_iter().enumerate().filter(|own| is_end || fine.contains(&own.0))
-        {
-            let step = if fine.contains(&i) { short } else { dt };
-            velocity[i] -= if is_end { 0.5 * step } else { step } * pull;
-        }
-        if tick < p {
-            y.iter_mut().zip(&velocity).for_each(|(y, v)| *y += short * v);
-        }
-    }
-    y
 }
 
 /// The verdict on a large scheme, its growth and its limits.

@@ -56,7 +56,7 @@ fn per_ps((lo, hi): (f64, f64)) -> (f64, f64) {
     ((1000.0 * lo).next_down().max(0.0), if hi == 0.0 { 0.0 } else { (1000.0 * hi).next_up() })
 }
 
-/// "0.0200/ps", "none".
+/// "0.0200/ps", "no growth".
 fn rate(rate: Option<(f64, f64)>) -> String {
     match rate {
         None => "a rate that is not bounded".into(),

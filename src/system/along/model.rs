@@ -206,7 +206,8 @@ fn check(masses: &[f64], schedule: &Schedule, hessians: &[Vec<DMatrix<f64>>]) ->
             // Hessians by differences are symmetric to some digits; what is meant is their symmetric part.
             let off = (matrix - matrix.transpose()).amax();
             if off > 1e-3 * matrix.amax() {
-                return Err(Error::input(&field, format!("off by {off:.1e}"), "a Hessian is symmetric"));
+                let remedy = "a Hessian is symmetric: give one, or measure it by smaller differences";
+                return Err(Error::input(&field, format!("off its transpose by {off:.1e}"), remedy));
             }
         }
     }

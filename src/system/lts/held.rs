@@ -4,10 +4,10 @@
 //! With C and F the coarse and the fine part of K, B what couples them, and θ of the substep, 4 sin²(θ/2) = (dt/p)² F, the step from rest in the positions has
 //!
 //! ```text
-//!     1 − Q11 = (dt²/2) N,     N H = A symmetric,     H = diag((C − B F⁻¹ Bᵀ)⁻¹, F⁻¹ V),     V = sin(p θ)/(p sin θ).
+//!     1 − Q11 = (dt²/2) N,     N H = G symmetric,     H = diag((C − B F⁻¹ Bᵀ)⁻¹, F⁻¹ V),     V = sin(p θ)/(p sin θ).
 //! ```
 //!
-//! While all p θ < π, V > 0: both A and H are positive where K is, **the step is similar to a symmetric one, and stable iff (4/dt²) H > A**. By partial
+//! While all p θ < π, V > 0: both G and H are positive where K is, **the step is similar to a symmetric one, and stable iff (4/dt²) H > G**. By partial
 //! fractions of tan(p θ/2) that is the condition of leapfrog in which no part has substeps, of a body whose fine part lies in ⌈p/2⌉ layers:
 //!
 //! ```text

@@ -52,8 +52,8 @@ const NO_MODE: &str =
 const FASTEST: &str = "of sparse stiffnesses only the motion that grows fastest is computed";
 
 /// And of subcycles.
-const NO_RATE: &str = "of sparse stiffnesses that subcycle the verdict alone is computed, up to where the fastest fine motion takes half a turn in a step: \
-                       no rate, and nothing beyond";
+const NO_RATE: &str = "of sparse subcycling the verdict is computed, the growth rate is not; steps in which the fastest fine motion takes half a turn \
+                       or more are not decided";
 
 const TOGETHER: &str = "all may move together: that motion is set apart";
 
