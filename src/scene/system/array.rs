@@ -17,8 +17,8 @@ use super::market;
 use crate::error::{Error, Result};
 use crate::scene::file;
 
-/// The most elements read: 4096 x 4096.
-const MOST_ELEMENTS: usize = 1 << 24;
+/// The most elements read: 16,384 x 16,384, or the entries of 30,000 waters within 0.9 nm of each other.
+const MOST_ELEMENTS: usize = 1 << 28;
 
 /// The most bytes of a `.npy` file: its elements and its header.
 const MOST_BYTES: u64 = 8 * MOST_ELEMENTS as u64 + 65_536;

@@ -124,32 +124,80 @@ pub(super) fn chord(outer: &Outer, low: f64, high: f64) -> Option<[f64; 2]> {
 /// The lowest and the highest eigenvalue of a symmetric matrix of n rows, given by what it takes a vector to, from within: so many steps of
 /// Lanczos's recursion, rounded.
 pub(super) fn ends(n: usize, steps: usize, times: impl Fn(&Mat<f64>) -> Mat<f64>) -> [f64; 2] {
+    let values = recursion(n, steps.min(n), times, |_| false).eigenvalues();
+    [values.first().copied().unwrap_or(0.0), values.last().copied().unwrap_or(0.0)]
+}
+
+/// The lowest one, rounded, where the recursion finds it to `within` of itself in so many steps.
+pub(super) fn lowest(
+    n: usize,
+    steps: usize,
+    within: f64,
+    times: impl Fn(&Mat<f64>) -> Mat<f64>,
+) -> Option<f64> {
+    let (mut next, mut last, mut is_found) = (32, f64::INFINITY, false);
+    let all = recursion(n, steps, times, |so_far| {
+        if so_far.diagonal.len() < next {
+            return false;
+        }
+        next += next / 4;
+        let value = so_far.eigenvalues().first().copied().unwrap_or(f64::INFINITY);
+        is_found = last - value < within * value.abs();
+        last = value;
+        is_found
+    });
+    (is_found || all.is_used_up).then(|| all.eigenvalues().first().copied()).flatten()
+}
+
+/// The tridiagonal matrix of Lanczos's recursion.
+#[derive(Default)]
+struct Tridiagonal {
+    diagonal: Vec<f64>,
+    /// The entry before each of the diagonal's, 0 for the first.
+    beside: Vec<f64>,
+    /// What is found is exact but for rounding.
+    is_used_up: bool,
+}
+
+impl Tridiagonal {
+    /// In rising order; none where they are not found.
+    fn eigenvalues(&self) -> Vec<f64> {
+        let k = self.diagonal.len();
+        let small = Mat::from_fn(k, k, |i, j| match i.abs_diff(j) {
+            0 => self.diagonal[i],
+            1 => self.beside[i.max(j)],
+            _ => 0.0,
+        });
+        small.self_adjoint_eigenvalues(Side::Lower).unwrap_or_default()
+    }
+}
+
+/// So many steps of the recursion, fewer where it `is_enough`, from a vector without a pattern.
+fn recursion(
+    n: usize,
+    steps: usize,
+    times: impl Fn(&Mat<f64>) -> Mat<f64>,
+    mut is_enough: impl FnMut(&Tridiagonal) -> bool,
+) -> Tridiagonal {
     let start = start(n);
     let start = Mat::from_fn(n, 1, |i, _| start[i]);
     let mut now = &start / faer::Scale(start.norm_l2());
     let mut before = Mat::<f64>::zeros(n, 1);
-    let (mut diagonal, mut beside) = (Vec::new(), vec![0.0]);
-    for _ in 0..steps.min(n) {
-        let last = beside[beside.len() - 1];
+    let (mut own, mut last) = (Tridiagonal::default(), 0.0);
+    for _ in 0..steps {
         let mut next = times(&now) - &before * faer::Scale(last);
         let along = (next.transpose() * &now)[(0, 0)];
         next -= &now * faer::Scale(along);
-        diagonal.push(along);
+        own.diagonal.push(along);
+        own.beside.push(last);
         let length = next.norm_l2();
-        beside.push(length);
-        // The space is used up: what is found is exact but for rounding.
-        if length <= 1e-12 * (along.abs() + last) {
+        own.is_used_up = length <= 1e-12 * (along.abs() + last);
+        if own.is_used_up || is_enough(&own) {
             break;
         }
         before = now;
         now = next / faer::Scale(length);
+        last = length;
     }
-    let k = diagonal.len();
-    let small = Mat::from_fn(k, k, |i, j| match i.abs_diff(j) {
-        0 => diagonal[i],
-        1 => beside[i.max(j)],
-        _ => 0.0,
-    });
-    let values = small.self_adjoint_eigenvalues(Side::Lower).unwrap_or_default();
-    [values.first().copied().unwrap_or(0.0), values.last().copied().unwrap_or(0.0)]
+    own
 }

@@ -61,7 +61,7 @@ pub(super) struct Block {
 impl Block {
     /// Whether it is proven positive definite.
     pub fn is_definite(&self) -> bool {
-        self.pattern.factored(0.0, &[(1.0, &self.values)], self.error).is_some()
+        self.pattern.is_definite(0.0, &[(1.0, &self.values)], self.error)
     }
 
     /// Its largest eigenvalue, enclosed to `within` of itself or as near as doubles tell; `None` where it is not positive.
@@ -189,7 +189,7 @@ impl SparseSteps {
     /// Whether 4 − f > 0 is proven: one factorization.
     pub(super) fn is_proven_below_four(&self, dt: f64) -> bool {
         let (values, off) = self.at(dt * dt);
-        self.pattern.factored(4.0, &[(-1.0, &values)], off).is_some()
+        self.pattern.is_definite(4.0, &[(-1.0, &values)], off)
     }
 
     /// Whether 4 − f > 0, or what grows proves that it is not.
@@ -200,7 +200,7 @@ impl SparseSteps {
 
     /// Whether c − f > 0: stable, or an eigenvalue of f is above c.
     fn below(&self, values: &[f64], off: f64, c: f64) -> Holds {
-        if self.pattern.factored(c, &[(-1.0, values)], off).is_some() {
+        if self.pattern.is_definite(c, &[(-1.0, values)], off) {
             return Holds::Stable;
         }
         self.unstable_along(values, -1.0, off, c)
@@ -210,7 +210,7 @@ impl SparseSteps {
     fn above(&self, values: &[f64], off: f64) -> Holds {
         let terms = [(1.0, values)];
         if self.rigid.ncols() == 0 {
-            if self.pattern.factored(0.0, &terms, off).is_some() {
+            if self.pattern.is_definite(0.0, &terms, off) {
                 return Holds::Stable;
             }
             return self.unstable_along(values, 1.0, off, 0.0);
@@ -250,8 +250,7 @@ impl SparseSteps {
             if is_above { (above?, below, (1.0, 0.0)) } else { (below?, above, (-1.0, 4.0)) };
         let (lo, hi) = other.as_ref().map_or((own.lo, own.hi), |other| (own.lo.max(other.lo), own.hi));
         // Beyond the other end nothing is farther out.
-        let is_known =
-            other.is_some() || self.pattern.factored(end.1 + hi, &[(end.0, &values)], off).is_some();
+        let is_known = other.is_some() || self.pattern.is_definite(end.1 + hi, &[(end.0, &values)], off);
         // Ten roundings at most.
         let rate = |excess: f64, round: f64| 2.0 * (excess.sqrt() / 2.0).asinh() * (1.0 + round * 10.0 * U);
         let shape: Vec<f64> = (0..self.size()).map(|i| own.along[(i, 0)] / self.roots[i]).collect();

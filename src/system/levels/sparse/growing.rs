@@ -139,7 +139,7 @@ impl SparseLevels {
             + 4.0 * U * (slope.abs() + b.abs()) * ends[0].abs().max(ends[1].abs());
         let line = [offset + a - rounding, slope - b];
         let ([fast, slow], slack) = self.form(outer, line, 0.0);
-        self.both.factored(line[0], &[(fast, &self.fast), (slow, &self.slow)], slack).is_some()
+        self.both.is_definite(line[0], &[(fast, &self.fast), (slow, &self.slow)], slack)
     }
 }
 

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::perm::PermRef;
+use faer::sparse::linalg::cholesky::simplicial::SymbolicSimplicialCholesky;
 use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
 use faer::sparse::linalg::cholesky::{
     LltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering, factorize_symbolic_cholesky,
@@ -13,9 +14,11 @@ use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, Mat, Side};
 
 use super::dissect::dissected;
+use super::fronts::{Elimination, Fronts, Pivots, zeros};
 use super::krylov::top;
 use crate::error::{Error, Result};
 use crate::number::U;
+use crate::parallel::map;
 
 /// The lower triangles of some matrices of one pattern, column by column, every diagonal entry there.
 #[derive(Clone, Debug)]
@@ -79,6 +82,11 @@ impl Pattern {
         self.columns.len() - 1
     }
 
+    /// The entries of one triangle.
+    pub fn entries(&self) -> usize {
+        self.rows.len()
+    }
+
     /// The products of one factorization: half the squares of its columns' lengths.
     pub fn products(&self) -> f64 {
         products(&self.symbolic)
@@ -90,10 +98,22 @@ impl Pattern {
 
     /// A x for each column x.
     pub fn times(&self, values: &[f64], x: &Mat<f64>) -> Mat<f64> {
+        // As many parts whatever the threads, so that sums have one order.
+        let parts = if self.rows.len() < MANY { 1 } else { PARTS };
+        let end = |part: usize| self.columns.partition_point(|&at| at < part * self.rows.len() / parts);
+        let ranges: Vec<Range<usize>> = (0..parts)
+            .map(|part| end(part)..if part + 1 < parts { end(part + 1) } else { self.size() })
+            .collect();
+        let sums = map(&ranges, |columns| self.part_times(columns.clone(), values, x));
+        sums.into_iter().reduce(|sum, part| sum + part).expect("one part or more")
+    }
+
+    /// What the columns of a range add, and the rows of the same.
+    fn part_times(&self, columns: Range<usize>, values: &[f64], x: &Mat<f64>) -> Mat<f64> {
         let mut y = Mat::zeros(x.nrows(), x.ncols());
         for c in 0..x.ncols() {
             let (from, to) = (x.col_as_slice(c), y.col_as_slice_mut(c));
-            for j in 0..self.size() {
+            for j in columns.clone() {
                 let mut sum = 0.0;
                 for (at, i) in self.column(j) {
                     sum += values[at] * from[i];
@@ -150,18 +170,36 @@ impl Pattern {
         )
     }
 
+    /// Whether every matrix within `slack` (2-norm) of c + Σ a_k A_k is proven positive definite, as [`Pattern::factored`] proves it, without the
+    /// factors: memory holds some fronts. False where that proves nothing, or memory runs out.
+    pub fn is_definite(&self, c: f64, terms: &[(f64, &[f64])], slack: f64) -> bool {
+        match self.symbolic.raw() {
+            SymbolicCholeskyRaw::Simplicial(_) => self.factored(c, terms, slack).is_some(),
+            SymbolicCholeskyRaw::Supernodal(own) => self
+                .lowered(c, terms, slack)
+                .and_then(|values| self.fronts(own, values, Elimination::Cholesky))
+                .is_some(),
+        }
+    }
+
+    /// The pivots of a matrix of this pattern.
+    fn fronts(
+        &self,
+        own: &SymbolicSupernodalCholesky<usize>,
+        values: Vec<f64>,
+        kind: Elimination,
+    ) -> Option<Pivots> {
+        let places = self.symbolic.perm().map(|perm| perm.arrays().1);
+        let place = |i: usize| places.map_or(i, |places| places[i]);
+        let fronts = Fronts::new(own, place, [&self.columns, &self.rows], &values, kind)?;
+        drop(values);
+        fronts.pivots()
+    }
+
     /// The factors of c + Σ a_k A_k minus what makes them prove that every matrix within `slack` of it (2-norm) is positive definite, by
     /// Rump's criterion (BIT 46, 2006); `None` where that proves nothing, or memory runs out.
     pub fn factored(&self, c: f64, terms: &[(f64, &[f64])], slack: f64) -> Option<Factors> {
-        let n = self.size();
-        let (mut values, trace) = self.sum(c, terms);
-        // γ of the longest sum, with room for the reciprocals of pivots, the rounding of the shifted diagonal and of the sums here.
-        let shift = 1.01 * (slack + (self.terms as f64 + 24.0) * U * trace)
-            + f64::MIN_POSITIVE * (n as f64 + 1.0).powi(2);
-        if !shift.is_finite() || (0..n).any(|j| values[self.diagonal(j)] <= shift) {
-            return None;
-        }
-        (0..n).for_each(|j| values[self.diagonal(j)] -= shift);
+        let values = self.lowered(c, terms, slack)?;
         let (own, threads) = (&self.symbolic, faer::get_global_parallelism());
         let scratch = own.factorize_numeric_llt_scratch::<f64>(threads, Default::default());
         let (matrix, none) = (self.matrix(&values), Default::default());
@@ -172,6 +210,21 @@ impl Pattern {
         Some(Factors { symbolic: Arc::clone(&self.symbolic), values: factor })
     }
 
+    /// c + Σ a_k A_k minus as much of the identity as Cholesky's factors may be off by: where they exist, whatever the order of their sums, every
+    /// matrix within `slack` of the sum is positive definite. `None` where a diagonal entry shows that they do not.
+    fn lowered(&self, c: f64, terms: &[(f64, &[f64])], slack: f64) -> Option<Vec<f64>> {
+        let n = self.size();
+        let (mut values, trace) = self.sum(c, terms);
+        // γ of the longest sum, with room for the reciprocals of pivots, the rounding of the shifted diagonal and of the sums here.
+        let shift = 1.01 * (slack + (self.terms as f64 + 24.0) * U * trace)
+            + f64::MIN_POSITIVE * (n as f64 + 1.0).powi(2);
+        if !shift.is_finite() || (0..n).any(|j| values[self.diagonal(j)] <= shift) {
+            return None;
+        }
+        (0..n).for_each(|j| values[self.diagonal(j)] -= shift);
+        Some(values)
+    }
+
     /// \[lo, hi\], which holds the largest eigenvalue of every matrix within `slack` of A (2-norm), to `within` of itself or as near as doubles
     /// tell: above it c − A is proven positive definite, below it c − A has a negative pivot. `None` where it is not positive.
     pub fn largest(&self, values: &[f64], slack: f64, within: f64) -> Option<(f64, f64)> {
@@ -180,7 +233,7 @@ impl Pattern {
         while hi - lo > within * hi {
             // Beside the middle, where c − A of a regular chain has a pivot 0, which nothing is divided by.
             let middle = lo + 0.486_2 * (hi - lo);
-            if self.factored(middle, &minus, slack).is_some() {
+            if self.is_definite(middle, &minus, slack) {
                 hi = middle;
                 continue;
             }
@@ -192,56 +245,55 @@ impl Pattern {
         (lo > 0.0).then_some((lo, hi))
     }
 
-    /// The values of factors that `factor` writes with so much room beside; `None` where it fails, or memory runs out.
+    /// How many negative eigenvalues a matrix has that is no farther from Σ a_k A_k − c (2-norm) than the number beside: that of the negative
+    /// pivots of L D Lᵀ without exchanges, whose error is γ |L||D||Lᵀ| (Higham, chapter 11) and the roundings of the sum.
+    pub fn negative(&self, c: f64, terms: &[(f64, &[f64])]) -> Option<(usize, f64)> {
+        let (values, trace) = self.sum(-c, terms);
+        let Pivots { negative, size } = match self.symbolic.raw() {
+            SymbolicCholeskyRaw::Simplicial(own) => self.simplicial(own, &values)?,
+            SymbolicCholeskyRaw::Supernodal(own) => self.fronts(own, values, Elimination::Signed)?,
+        };
+        let off = 2.0 * (self.terms as f64 + 24.0) * U * (size + trace + c.abs());
+        off.is_finite().then_some((negative, off))
+    }
+
+    /// The pivots of L D Lᵀ column by column.
+    fn simplicial(&self, own: &SymbolicSimplicialCholesky<usize>, values: &[f64]) -> Option<Pivots> {
+        let (symbolic, threads) = (&self.symbolic, faer::get_global_parallelism());
+        let scratch = symbolic.factorize_numeric_ldlt_scratch::<f64>(threads, Default::default());
+        let (matrix, none, lower) = (self.matrix(values), Default::default(), Side::Lower);
+        let factor = self.with_room(scratch, |to, stack| {
+            symbolic
+                .factorize_numeric_ldlt(to, matrix, lower, none, threads, stack, Default::default())
+                .is_ok()
+        })?;
+        // Of each column: its pivot, and the square of its length, 1 on the diagonal.
+        Some(own.col_ptr().windows(2).fold(Pivots::default(), |sum, ends| {
+            let (pivot, below) = (factor[ends[0]], &factor[ends[0] + 1..ends[1]]);
+            let square = 1.0 + below.iter().map(|x| x * x).sum::<f64>();
+            sum.and(Pivots { negative: usize::from(pivot < 0.0), size: pivot.abs() * square })
+        }))
+    }
+
+    /// The values of factors that `factor` writes with so much room beside; `None` where it fails, memory runs out, or they are too many to keep.
     fn with_room(
         &self,
         scratch: StackReq,
         factor: impl FnOnce(&mut [f64], &mut MemStack) -> bool,
     ) -> Option<Vec<f64>> {
+        let own = self.symbolic.len_val();
         let mut room = MemBuffer::try_new(scratch).ok()?;
-        let mut values = Vec::new();
-        values.try_reserve_exact(self.symbolic.len_val()).ok()?;
-        values.resize(self.symbolic.len_val(), 0.0);
+        let mut values = if own < MOST_KEPT { zeros(own, 0.0)? } else { return None };
         factor(&mut values, MemStack::new(&mut room)).then_some(values)
     }
-
-    /// How many negative eigenvalues a matrix has that is no farther from Σ a_k A_k − c (2-norm) than the number beside: that of the negative
-    /// pivots of L D Lᵀ without exchanges, whose error is γ |L||D||Lᵀ| (Higham, chapter 11) and the roundings of the sum.
-    pub fn negative(&self, c: f64, terms: &[(f64, &[f64])]) -> Option<(usize, f64)> {
-        let (values, trace) = self.sum(-c, terms);
-        let (own, threads) = (&self.symbolic, faer::get_global_parallelism());
-        let scratch = own.factorize_numeric_ldlt_scratch::<f64>(threads, Default::default());
-        let (matrix, none) = (self.matrix(&values), Default::default());
-        let factor = self.with_room(scratch, |factor, stack| {
-            own.factorize_numeric_ldlt(factor, matrix, Side::Lower, none, threads, stack, Default::default())
-                .is_ok()
-        })?;
-        // Of each column: its pivot, and the square of its length, 1 on the diagonal.
-        let (mut negative, mut size) = (0, 0.0);
-        let mut see = |pivot: f64, below: &mut dyn Iterator<Item = f64>| {
-            negative += usize::from(pivot < 0.0);
-            size += pivot.abs() * (1.0 + below.map(|x| x * x).sum::<f64>());
-        };
-        match self.symbolic.raw() {
-            SymbolicCholeskyRaw::Simplicial(own) => {
-                for ends in own.col_ptr().windows(2) {
-                    see(factor[ends[0]], &mut factor[ends[0] + 1..ends[1]].iter().copied());
-                }
-            }
-            SymbolicCholeskyRaw::Supernodal(own) => {
-                for (columns, below, from) in supernodes(own) {
-                    let (width, height) = (columns.len(), columns.len() + below.len());
-                    for k in 0..width {
-                        let column = &factor[from + k * height..from + (k + 1) * height];
-                        see(column[k], &mut column[k + 1..].iter().copied());
-                    }
-                }
-            }
-        }
-        let off = 2.0 * (self.terms as f64 + 24.0) * U * (size + trace + c.abs());
-        off.is_finite().then_some((negative, off))
-    }
 }
+
+/// So many values of factors are not kept: 8 GB.
+const MOST_KEPT: usize = 1_000_000_000;
+
+/// Entries from which on a product is made in parts, and how many.
+const MANY: usize = 1 << 18;
+const PARTS: usize = 4;
 
 /// The residual, relative to the inverse's eigenvalue, at which a vector is taken: the eigenvalue's error is its square, over the distance of the next one.
 const ENOUGH: f64 = 1e-3;
@@ -392,6 +444,7 @@ mod tests {
             let solved = pattern.factored(0.0, &[(1.0, &values)], 0.0).unwrap().solve(x.clone()).unwrap();
             // The shift that makes the factors a proof is some 10^-9 of the matrix here.
             assert!((pattern.times(&values, &solved) - &x).norm_l2() < 1e-6 * x.norm_l2());
+            assert!(pattern.is_definite(0.0, &[(1.0, &values)], 0.0));
         }
     }
 
@@ -406,6 +459,29 @@ mod tests {
             let mut order = dissected(&pattern.columns, &pattern.rows);
             order.sort_unstable();
             assert!(order.into_iter().eq(0..n));
+        }
+    }
+
+    #[test]
+    fn fronts_count_what_is_negative_in_bodies_apart() {
+        // Three lattices that do not meet, each large enough to be eliminated by supernodes; one is twice as stiff.
+        let (body, n) = (lattice(9, 2), 729);
+        let moved = |k: usize| {
+            let by = if k == 2 { 2.0 } else { 1.0 };
+            body.iter().map(move |&(i, j, x)| (i + k * n, j + k * n, by * x))
+        };
+        let all: Vec<_> = (0..3).flat_map(moved).collect();
+        let (pattern, [values]) = Pattern::of(3 * n, [&all]).unwrap();
+        assert!(matches!(pattern.symbolic.raw(), SymbolicCholeskyRaw::Supernodal(_)));
+        let mut own = Mat::zeros(n, n);
+        body.iter().for_each(|&(i, j, x)| (own[(i, j)], own[(j, i)]) = (x, x));
+        let eigenvalues = own.self_adjoint_eigenvalues(Side::Lower).unwrap();
+        for c in [1.4, 1.9, 2.0001, 2.3, 4.1, 5.0] {
+            let (negative, off) = pattern.negative(c, &[(1.0, &values)]).expect("no pivot vanishes");
+            let below = |c: f64| eigenvalues.iter().filter(|&&x| x < c).count();
+            let count = |by: f64| 2 * below(c + by) + below((c + by) / 2.0);
+            assert!(off < 1e-3 && count(-off) <= negative && negative <= count(off), "{c} {off}");
+            assert_eq!(pattern.is_definite(-c, &[(1.0, &values)], 0.0), negative == 0, "{c}");
         }
     }
 
@@ -428,6 +504,9 @@ mod tests {
                 assert!(below(-off) <= negative && negative <= below(off), "{n} {width} {shift} {off}");
                 assert!(shift < beyond || negative == n && off < 1e-7, "{n} {width} {off}");
             }
+            let positive = |c: f64| pattern.is_definite(c, &[(1.0, &values)], 0.0);
+            // Below the least eigenvalue, and above it, by far more than what elimination may be off by.
+            assert!(positive(1e-6 - eigenvalues[0]) && !positive(-1e-6 - eigenvalues[0]), "{n} {width}");
             let factors = pattern.factored(beyond, &[(1.0, &values)], 1e-3).expect("above all eigenvalues");
             let solved = factors.solve(x.clone()).unwrap();
             let back = pattern.times(&values, &solved) + &solved * faer::Scale(beyond);

@@ -15,12 +15,14 @@
 //! |---|---|
 //! | `matrix` | sparse symmetric matrices, sums proven positive definite |
 //! | `dissect` | in which order their rows are eliminated |
+//! | `fronts` | the pivots of an elimination that keeps no factors |
 //! | `krylov` | one eigenvector of an operator |
 //! | `region` | the verdict, the margin, the first unstable step |
 //! | `period` | the period of positions, with a bound on its roundings |
 //! | `growing` | the modes that grow beyond that step, enclosed |
 
 mod dissect;
+mod fronts;
 mod growing;
 mod krylov;
 mod matrix;

@@ -11,7 +11,7 @@ use crate::error::{Error, Result};
 use crate::number::{U, bisected};
 use crate::parallel::both;
 use crate::system::half::norm;
-use crate::system::levels::chord::{chord, ends};
+use crate::system::levels::chord::{chord, ends, lowest};
 use crate::system::levels::half::Half;
 use crate::system::levels::kernel::{Outer, STEP_ERROR};
 use crate::system::verdict::large::start;
@@ -65,7 +65,6 @@ pub struct SparseLevels {
 #[derive(Clone, Debug)]
 struct First {
     step: (f64, f64),
-    along: Mat<f64>,
     quotients: [f64; 2],
 }
 
@@ -76,6 +75,8 @@ struct Held {
     not_proven: Option<usize>,
     /// Where there are none, the least xᵀ(F + S)x that a Krylov space finds, rounded; `None` where it finds none.
     least: Option<f64>,
+    /// By how much F + S is proven above 0 (2-norm of what may be added to it); 0 where that was not sought.
+    above: f64,
 }
 
 /// Steps of Lanczos's recursion for the largest eigenvalue of F.
@@ -98,7 +99,7 @@ const ALONG: f64 = 1e-4;
 /// How often the vector that is stretched least is sought at the step that the last one told.
 const TURNS: usize = 4;
 
-/// Products of a factorization from which on two are made side by side.
+/// Products of a factorization from which on two are made side by side, as long as they are not large.
 const SIDE_BY_SIDE: f64 = 1e8;
 
 /// Parts of the step that a vector tells, from which the first region's end is sought; then parts of the one at which the fastest mode alone takes half a turn.
@@ -107,6 +108,16 @@ const FROM: [f64; 8] = [0.9, 0.5, 0.2, 0.1, 0.03, 0.01, 1e-3, 1e-4];
 
 /// Shifts, relative to the norms, by which F + S is positive definite in doubles.
 const SHIFTED: [f64; 3] = [1e-9, 1e-7, 1e-5];
+
+/// Steps of Lanczos's recursion for the least eigenvalue of F + S.
+const LOWEST: usize = 1200;
+
+/// Products of a factorization, an entry of the matrix, from which on these steps cost less than to factor twice, and to keep the factors once: some
+/// hundred products with each entry, at the speed of the memory.
+const WORTH_A_RECURSION: f64 = 2e4;
+
+/// How far below what it is at most a margin may be, relative to it.
+const NEAR: f64 = 0.06;
 
 /// Shifts τ that are tried: from the second one on a tenth above what the factorization with the last one may be off by.
 const SHIFTS: u32 = 3;
@@ -132,7 +143,7 @@ impl SparseLevels {
             let weight = |i: usize, j: usize| {
                 masses.get(i).zip(masses.get(j)).map_or(1.0, |(a, b)| a.sqrt() * b.sqrt())
             };
-            own.iter().map(|&(i, j, x)| (i, j, x / weight(i, j))).collect()
+            own.iter().filter(|(i, j, _)| i >= j).map(|&(i, j, x)| (i, j, x / weight(i, j))).collect()
         };
         let [fast_terms, slow_terms] = [fast, slow].map(weighted);
         let (both, [fast, slow]) = Pattern::of(n, [&fast_terms, &slow_terms])?;
@@ -185,7 +196,7 @@ impl SparseLevels {
     /// The verdict at an outer step, for all stiffnesses within `epsilon` times their norms: [`Holds::Unstable`] is known of the matrices given
     /// alone, [`Holds::NotTold`] beyond the first region.
     pub fn verdict(&self, outer: &Outer, epsilon: f64) -> Holds {
-        if self.factors(outer, epsilon).is_some() {
+        if self.is_proven(outer, epsilon) {
             return Holds::Stable;
         }
         if epsilon == 0.0 && self.is_unstable(outer) { Holds::Unstable } else { Holds::NotTold }
@@ -199,36 +210,47 @@ impl SparseLevels {
     /// The largest ε, rounded down within six percent, for which the verdict is stable for all stiffnesses within ε times their norms; `None`
     /// where it is not for 0.
     ///
-    /// Two conditions each hold up to some ε. The vector that fails them first tells what that is at most; most often one factorization a little below
-    /// proves it.
+    /// Two conditions each hold up to some ε, and the smaller one is asked for. A vector shows what the first is at most; most often what is known of the
+    /// first region's end proves nearly as much, and elsewhere one factorization a little below does.
     pub fn margin(&self, outer: &Outer) -> Option<f64> {
         let quotients = self.quotients(&self.stretched_least(outer, self.anywhere())?);
         let is_open = |epsilon: f64| self.form_along(quotients, outer, epsilon) > 0.0;
-        if self.unheld() != Some(0) || !is_open(0.0) {
+        if !is_open(0.0) || self.unheld() != Some(0) {
             return None;
         }
         let most = bisected((0.0, 1.0), 1e-6, |epsilon| Some(is_open(epsilon))).1;
-        let (line, total) = both(
-            self.products() > SIDE_BY_SIDE,
-            || largest_below(most, 0.01, |epsilon| self.above(outer, epsilon).is_some()),
-            || self.total_margin(most),
-        );
+        let total = self.total_margin(most);
+        let known = bisected((0.0, most), 1e-3, |epsilon| Some(self.is_below_first(outer, epsilon))).0;
+        let line = if known >= total.min(most / (1.0 + NEAR)) {
+            known
+        } else if total < most && self.is_above(outer, total) {
+            total
+        } else {
+            largest_below(most.min(total), 0.01, |epsilon| self.is_above(outer, epsilon))
+        };
         let margin = line.min(total);
-        (margin > 0.0 || self.above(outer, 0.0).is_some()).then_some(margin)
+        (margin > 0.0 || self.is_above(outer, 0.0)).then_some(margin)
     }
 
     /// The largest ε up to `most`, rounded down, for which F + S is definite by as much.
     fn total_margin(&self, most: f64) -> f64 {
         let off = |epsilon: f64| (0..2).map(|k| self.errors[k] + epsilon * self.sizes[k]).sum::<f64>();
+        let Held { least, above, .. } = *self.held();
+        if above >= off(most) {
+            return most;
+        }
+        if above > off(0.0) {
+            return (1.0 - 8.0 * U) * (above - off(0.0)) / (self.sizes[0] + self.sizes[1]);
+        }
         let is_definite = |epsilon: f64| self.is_total_definite(off(epsilon));
         // Its least eigenvalue is at most this quotient; what counts eigenvalues proves it by a shift that is larger.
         let room = if self.rigid.ncols() == 0 { 1.0 } else { 1.1 };
-        let least = self.held().least.map_or(f64::INFINITY, |least| least / room - off(0.0));
+        let least = least.map_or(f64::INFINITY, |least| least / room - off(0.0));
         let own = least.max(0.0) / (self.sizes[0] + self.sizes[1]);
         if own > most && is_definite(most) {
             return most;
         }
-        largest_below(most.min(own), 0.06, is_definite)
+        largest_below(most.min(own), NEAR, is_definite)
     }
 
     /// \[lo, hi\]: every outer step of so many inner ones in (0, lo] is proven stable, hi is proven unstable; `None` where nothing is proven.
@@ -243,11 +265,6 @@ impl SparseLevels {
     /// they are real, and have the signs of (1).
     pub fn first_resonance(&self, inner_steps: u64) -> Option<(f64, f64)> {
         self.first(inner_steps).map(|first| first.step)
-    }
-
-    /// The positions, mass-weighted, of the mode that is unstable first, rounded: of length 1.
-    pub fn first_mode(&self, inner_steps: u64) -> Option<Vec<f64>> {
-        self.first(inner_steps).map(|first| first.along.col_as_slice(0).to_vec())
     }
 
     /// M^½ x of positions x.
@@ -275,7 +292,7 @@ impl SparseLevels {
     fn find_first(&self, inner_steps: u64) -> Option<First> {
         let [_, high] = self.ends(0.0)?;
         let at = |step: f64| Outer::new(step, inner_steps).ok();
-        let factors = |step: f64| self.above(&at(step)?, 0.0);
+        let is_proven = |step: f64| at(step).is_some_and(|outer| self.is_above(&outer, 0.0));
         // At the latest where the fastest mode alone has p θ = π.
         let angle = std::f64::consts::PI / (2.0 * inner_steps as f64);
         let top = inner_steps as f64 * 2.0 * angle.sin() / high.sqrt();
@@ -296,13 +313,17 @@ impl SparseLevels {
             }
         }
         let begin = BELOW_LIMIT.iter().map(|part| part * hi).chain(FROM.iter().map(|part| part * top));
-        let (mut lo, mut own) =
-            begin.filter(|&step| step < hi).find_map(|step| Some((step, factors(step)?)))?;
+        let mut lo = begin.into_iter().find(|&step| step < hi && is_proven(step))?;
         while hi > lo * (1.0 + WIDTH) {
-            along = own.least(along, &self.rigid, STEPS_BELOW)?;
+            let Some(next) =
+                self.above(&at(lo)?).and_then(|own| own.least(along.clone(), &self.rigid, STEPS_BELOW))
+            else {
+                break;
+            };
+            along = next;
             hi = hi.min(limit(&along, (lo, hi)));
-            let Some(found) = self.nearer(lo, &mut hi, factors) else { break };
-            (lo, own) = found;
+            let Some(found) = nearer(lo, &mut hi, is_proven) else { break };
+            lo = found;
         }
         let quotients = self.quotients(&along);
         let unstable = |step: f64| at(step).is_some_and(|outer| self.resonates_along(quotients, &outer));
@@ -310,7 +331,7 @@ impl SparseLevels {
             (0..40).map(|k| lo * (1.0 + WIDTH / 16.0 * 1.5f64.powi(k))).take_while(|&step| step < top);
         let hi = first.into_iter().find(|&step| unstable(step))?;
         let (_, hi) = bisected((lo, hi), WIDTH / 64.0, |step| Some(!unstable(step)));
-        Some(First { step: (lo, hi), along, quotients })
+        Some(First { step: (lo, hi), quotients })
     }
 
     /// About the vector of length 1 that α − β h² F − M stretches least at an outer step.
@@ -321,41 +342,50 @@ impl SparseLevels {
         top(from, &self.rigid, STEPS_ALONG, ALONG, |x| Some(self.both.times(&taken, x)))
     }
 
-    /// A step that is proven between lo and hi, near hi, with its factors; `None` where these are as near to each other as they are to be. `hi` falls to what is
-    /// not proven.
-    fn nearer(
-        &self,
-        lo: f64,
-        hi: &mut f64,
-        factors: impl Fn(f64) -> Option<Factors>,
-    ) -> Option<(f64, Factors)> {
-        let mut is_first = true;
-        while *hi > lo * (1.0 + WIDTH) {
-            let left = *hi / lo - 1.0;
-            // The error of what the vector tells falls as the square of its own.
-            let below = (left / 10.0).min(left * left).max(WIDTH / 2.0);
-            let step = if is_first { *hi * (1.0 - below) } else { lo + (*hi - lo) / 2.0 };
-            if let Some(found) = factors(step).filter(|_| step > lo) {
-                return Some((step, found));
-            }
-            (*hi, is_first) = (step, false);
-        }
-        None
-    }
-
-    /// The factors that prove the first region, rigid motions apart; `None` where they prove nothing.
-    fn factors(&self, outer: &Outer, epsilon: f64) -> Option<Factors> {
+    /// Whether the first region is proven, rigid motions apart.
+    fn is_proven(&self, outer: &Outer, epsilon: f64) -> bool {
         // (3) of proofs/REGION.md follows where F + S > 0.
         let off: f64 = (0..2).map(|k| self.errors[k] + epsilon * self.sizes[k]).sum();
-        if self.is_total_definite(off) { self.above(outer, epsilon) } else { None }
+        self.is_total_definite(off) && self.is_above(outer, epsilon)
     }
 
-    /// Those that prove (1) and (2) of proofs/REGION.md.
-    fn above(&self, outer: &Outer, epsilon: f64) -> Option<Factors> {
-        let [low, high] = self.ends(epsilon)?;
+    /// Whether (1) and (2) of proofs/REGION.md are proven.
+    fn is_above(&self, outer: &Outer, epsilon: f64) -> bool {
+        let line = self.ends(epsilon).and_then(|[low, high]| chord(outer, low, high));
+        line.is_some_and(|line| {
+            let ([fast, slow], slack) = self.form(outer, line, epsilon);
+            self.both.is_definite(line[0], &[(fast, &self.fast), (slow, &self.slow)], slack)
+        })
+    }
+
+    /// The factors that prove it.
+    fn above(&self, outer: &Outer) -> Option<Factors> {
+        let [low, high] = self.ends(0.0)?;
         let line = chord(outer, low, high)?;
-        let ([fast, slow], slack) = self.form(outer, line, epsilon);
+        let ([fast, slow], slack) = self.form(outer, line, 0.0);
         self.both.factored(line[0], &[(fast, &self.fast), (slow, &self.slow)], slack)
+    }
+
+    /// Whether (1) and (2) follow at an outer step from what is proven at the end of the first region, without another factorization.
+    ///
+    /// There α₁ + a₁F + b₁S > 0 with b₁ < 0, so S < (α₁ + a₁F)/−b₁, and with r = b/b₁ > 0
+    /// α + aF + bS > (α − r α₁) + (a − r a₁)F: a line over the spectrum of F, no lower than at its ends.
+    fn is_below_first(&self, outer: &Outer, epsilon: f64) -> bool {
+        let found = || {
+            let first = Outer::new(self.first(outer.inner_steps)?.step.0, outer.inner_steps).ok()?;
+            let ends = self.ends(0.0)?;
+            let [low, high] = self.ends(epsilon)?;
+            let (line, known) = (chord(outer, low, high)?, chord(&first, ends[0], ends[1])?);
+            let (([a, b], slack), ([a_1, b_1], _)) =
+                (self.form(outer, line, epsilon), self.form(&first, known, 0.0));
+            let r = b / b_1;
+            Some(ends.into_iter().all(|s| {
+                let terms = [line[0], a * s, -r * known[0], -r * a_1 * s];
+                let rounding = 8.0 * U * terms.iter().map(|x| x.abs()).sum::<f64>();
+                terms.iter().sum::<f64>() > slack + rounding
+            }))
+        };
+        found().unwrap_or(false)
     }
 
     /// α − β h² F − M of a line α − β s: its factors of F and S, and how far the sum may be from it for stiffnesses within ε times their norms.
@@ -372,9 +402,8 @@ impl SparseLevels {
         let found = self.ends.get_or_init(|| {
             let [_, top] = ends(self.size(), STEPS, |x| self.alone.times(&self.fast_alone, x));
             let slack = self.errors[0] + 4.0 * U * self.sizes[0];
-            let is_above =
-                |high: f64| self.alone.factored(high, &[(-1.0, &self.fast_alone)], slack).is_some();
-            let is_below = |low: f64| self.alone.factored(low, &[(1.0, &self.fast_alone)], slack).is_some();
+            let is_above = |high: f64| self.alone.is_definite(high, &[(-1.0, &self.fast_alone)], slack);
+            let is_below = |low: f64| self.alone.is_definite(low, &[(1.0, &self.fast_alone)], slack);
             let high = ROOMS.iter().map(|room| top * (1.0 + room)).find(|&high| is_above(high))?;
             let below = BELOW.iter().map(|room| room * high).find(|&below| is_below(below))?;
             Some([-below, high])
@@ -391,10 +420,35 @@ impl SparseLevels {
 
     fn held(&self) -> &Held {
         self.held.get_or_init(|| {
+            if let Some(held) = self.held_by_as_much() {
+                return held;
+            }
             let (not_proven, own) = self.not_above_zero(self.errors[0] + self.errors[1]);
             let least = if not_proven == Some(0) { self.least_total(own) } else { None };
-            Held { not_proven, least }
+            Held { not_proven, least, above: 0.0 }
         })
+    }
+
+    fn is_large(&self) -> bool {
+        self.products() > WORTH_A_RECURSION * self.both.entries() as f64
+    }
+
+    /// What one factorization proves of F + S where Lanczos's recursion finds its least eigenvalue: that it is above nearly as much.
+    fn held_by_as_much(&self) -> Option<Held> {
+        if self.rigid.ncols() > 0 || !self.is_large() {
+            return None;
+        }
+        let total: Vec<f64> = self.fast.iter().zip(&self.slow).map(|(f, s)| f + s).collect();
+        let least = lowest(self.size(), LOWEST, NEAR / 3.0, |x| self.both.times(&total, x))?;
+        let off = self.errors[0] + self.errors[1];
+        let above = off + (least - off) / (1.0 + 0.9 * NEAR);
+        let is_held = least > off && self.both.is_definite(0.0, &self.total(), self.total_slack(above));
+        is_held.then_some(Held { not_proven: Some(0), least: Some(least), above })
+    }
+
+    /// How far F + S with up to `off` added to it is from the sum of doubles.
+    fn total_slack(&self, off: f64) -> f64 {
+        1.01 * (off + self.leak + 4.0 * U * (self.sizes[0] + self.sizes[1]))
     }
 
     /// The least xᵀ(F + S)x by the factors of F + S, or of a sum a little above it.
@@ -409,22 +463,23 @@ impl SparseLevels {
         [(1.0, &self.fast), (1.0, &self.slow)]
     }
 
-    /// What most answers ask for first, side by side: where the first region ends, and whether F + S is positive.
+    /// What most answers ask for first: where the first region ends, and whether F + S is positive. Side by side, or one after the other where
+    /// each takes much memory.
     pub(in crate::system) fn look(&self, inner_steps: u64) {
-        both(self.products() > SIDE_BY_SIDE, || self.first(inner_steps), || self.held());
+        both(self.products() > SIDE_BY_SIDE && !self.is_large(), || self.first(inner_steps), || self.held());
     }
 
     /// Whether F + S + E > 0 off the rigid motions for all E no larger than `off`.
     fn is_total_definite(&self, off: f64) -> bool {
-        let found =
-            if off > self.errors[0] + self.errors[1] { self.not_above_zero(off).0 } else { self.unheld() };
+        let is_known = off <= self.held().above.max(self.errors[0] + self.errors[1]);
+        let found = if is_known { self.unheld() } else { self.not_above_zero(off).0 };
         found == Some(0)
     }
 
     /// The eigenvalues of F + S that are not proven above `off` and the roundings: F + S − τ has as many negative ones, and of these there are as
     /// many as rigid motions in any case, along which F + S vanishes. The factors that prove it, where there are any.
     fn not_above_zero(&self, off: f64) -> (Option<usize>, Option<Factors>) {
-        let slack = 1.01 * (off + self.leak + 4.0 * U * (self.sizes[0] + self.sizes[1]));
+        let slack = self.total_slack(off);
         let own = (self.rigid.ncols() == 0).then(|| self.both.factored(0.0, &self.total(), slack)).flatten();
         if own.is_some() {
             return (Some(0), own);
@@ -490,6 +545,22 @@ impl SparseLevels {
             stretch.hi < (1.0 - 4.0 * STEP_ERROR) * outer.half_kick() * slow
         }
     }
+}
+
+/// A step that is proven between lo and hi, near hi; `None` where these are as near to each other as they are to be. `hi` falls to what is not proven.
+fn nearer(lo: f64, hi: &mut f64, is_proven: impl Fn(f64) -> bool) -> Option<f64> {
+    let mut is_first = true;
+    while *hi > lo * (1.0 + WIDTH) {
+        let left = *hi / lo - 1.0;
+        // The error of what the vector tells falls as the square of its own.
+        let below = (left / 10.0).min(left * left).max(WIDTH / 2.0);
+        let step = if is_first { *hi * (1.0 - below) } else { lo + (*hi - lo) / 2.0 };
+        if step > lo && is_proven(step) {
+            return Some(step);
+        }
+        (*hi, is_first) = (step, false);
+    }
+    None
 }
 
 /// The largest number that holds, rounded down within `width`, where none above `most` does: 0 where it is below 10^-15.
