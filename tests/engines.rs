@@ -101,6 +101,54 @@ const MTS: &str = concat!(
     "<Computation computationExpression=\"\" computationType=\"4\" computationVariable=\"\"/></Computations><Functions/></Integrator>",
 );
 
+/// Two steps of a learned potential as LAMMPS with metatomic takes them: direct forces often, what corrects them every eighth time.
+const METATOMIC: &str = "units metal
+pair_style hybrid/overlay &
+  metatomic_1 model.pt device cpu non_conservative on scale 1.0 &
+  metatomic_2 model.pt device cpu non_conservative on scale -1.0 &
+  metatomic_3 model.pt device cpu non_conservative off scale 1.0
+pair_coeff * * metatomic_1 6 1
+pair_coeff * * metatomic_2 6 1
+pair_coeff * * metatomic_3 6 1
+timestep 0.004
+run_style respa 2 8 hybrid 1 2 2 kspace 2
+";
+
+/// The same of i-PI.
+const DIRECT: &str = "<simulation>
+<ffdirect name='nc'><pes>metatomic</pes><parameters>{model: model.pt, non_conservative: True}</parameters></ffdirect>
+<ffdirect name='c'><pes>metatomic</pes><parameters>{model: model.pt, non_conservative:False}</parameters></ffdirect>
+<system><forces>
+<force forcefield='c'><mts_weights>[1.0, 0]</mts_weights></force>
+<force forcefield='nc'><mts_weights> [-1,1] </mts_weights></force>
+</forces><motion mode='dynamics'><dynamics mode='nve'><timestep units='femtosecond'> 4.0 </timestep><nmts>[1,8]</nmts></dynamics></motion>
+</system></simulation>";
+
+#[test]
+fn forces_that_are_predicted_directly_are_named() {
+    for (text, forces, remark) in [
+        (
+            METATOMIC,
+            ["metatomic_1", "metatomic_2, metatomic_3, kspace"],
+            "metatomic_1, metatomic_2 are predicted directly",
+        ),
+        (DIRECT, ["nc", "c, -1 nc"], "nc is predicted directly"),
+    ] {
+        let reading = of(text).unwrap();
+        assert_eq!((steps(&reading).as_str(), &reading.forces[..]), ("0.5,4", &forces.map(String::from)[..]));
+        assert!(
+            reading.remarks.len() == 1 && reading.remarks[0].starts_with(remark),
+            "{:?}",
+            reading.remarks
+        );
+        let potential = text.replace("non_conservative on", "non_conservative off").replace("True", "False");
+        assert!(of(&potential).unwrap().remarks.is_empty());
+    }
+    // Distances behind a level belong to it; names that no coefficient has are numbered.
+    let text = "units metal\ntimestep 0.004\nrun_style respa 3 2 2 inner 1 4.0 6.0 outer 3 hybrid 2 3\n";
+    assert_eq!(of(text).unwrap().forces, ["inner", "pair 1", "outer, pair 2"]);
+}
+
 /// `MTSLangevinIntegrator(300*kelvin, 1/picosecond, 4*femtoseconds, [(0,1),(1,2)])`; a and b belong to the innermost step.
 const LANGEVIN: &str = concat!(
     "<Integrator stepSize=\".004\" type=\"CustomIntegrator\" version=\"3\"><GlobalVariables><Variable name=\"a\" value=\".9980019986673331\"/>",

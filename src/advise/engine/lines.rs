@@ -3,7 +3,8 @@
 use std::ops::Range;
 
 use super::reading::{
-    Engine, FS, Interval, MOST_COUNT, MOST_LEVELS, PS, Place, Reading, Unit, count, number, scheme, times,
+    Engine, FS, Interval, MOST_COUNT, MOST_LEVELS, PS, Place, Reading, Unit, count, no_gradient, number,
+    scheme, times,
 };
 use crate::advise::constraint::Constraints;
 use crate::error::{Error, Result};
@@ -191,14 +192,17 @@ pub(super) fn lammps(text: &str) -> Result<Reading> {
     }
     used.push(shown);
     let mut reading = Reading::new(Engine::Lammps, text, whole);
+    let styles = pair_styles(&lines);
+    let on_levels = on_levels(&style.words[2 + levels..], &styles);
     let on = |level: usize| {
-        let rest = &style.words[2 + levels..];
-        let pairs = rest.chunks(2).filter(|pair| pair.get(1).is_some_and(|word| word.0.parse() == Ok(level)));
-        pairs.map(|pair| pair[0].0).collect::<Vec<_>>().join(", ")
+        let own = on_levels.iter().filter(|(_, at)| *at == level);
+        own.map(|(force, _)| force.as_str()).collect::<Vec<_>>().join(", ")
     };
     reading.forces = (1..=levels)
         .map(|level| if on(level).is_empty() { format!("level {level}") } else { on(level) })
         .collect();
+    let direct: Vec<&str> = styles.iter().filter(|style| style.is_direct).map(|style| style.name).collect();
+    reading.remarks.extend(no_gradient(&direct));
     if reading.scheme.steps().len() < levels {
         reading.remarks.push("levels of equal steps are told as one".into());
         reading.forces = vec!["forces of all its levels".into(); reading.scheme.steps().len()];
@@ -210,6 +214,55 @@ pub(super) fn lammps(text: &str) -> Result<Reading> {
     }
     (reading.used, reading.places) = (used, places);
     Ok(reading)
+}
+
+/// A part of `pair_style hybrid` or `hybrid/overlay`.
+struct PairStyle<'a> {
+    name: &'a str,
+    /// `non_conservative on`, as metatomic has it: forces that are predicted, not derived.
+    is_direct: bool,
+}
+
+/// The parts of the pair style, each begun by a word that `pair_coeff` names as a style.
+fn pair_styles<'a>(lines: &[Line<'a>]) -> Vec<PairStyle<'a>> {
+    let Some(style) = last(lines, "pair_style") else { return vec![] };
+    if !style.words.get(1).is_some_and(|word| word.0.starts_with("hybrid")) {
+        return vec![];
+    }
+    let coefficients = lines.iter().filter(|line| line.key() == "pair_coeff");
+    let names: Vec<&str> = coefficients.filter_map(|line| Some(line.words.get(3)?.0)).collect();
+    let words: Vec<&str> = style.words[2..].iter().map(|word| word.0).collect();
+    let begins: Vec<usize> = (0..words.len()).filter(|&k| names.contains(&words[k])).collect();
+    let part = |(k, &from): (usize, &usize)| {
+        let own = &words[from..begins.get(k + 1).copied().unwrap_or(words.len())];
+        let is_direct = own.windows(2).any(|pair| pair[0] == "non_conservative" && is_on(pair[1]));
+        PairStyle { name: words[from], is_direct }
+    };
+    begins.iter().enumerate().map(part).collect()
+}
+
+fn is_on(word: &str) -> bool {
+    ["on", "yes", "true"].iter().any(|on| word.eq_ignore_ascii_case(on))
+}
+
+/// Each force behind `run_style respa N n1 ...` with its level: a keyword has one, `hybrid` one for each part of the pair style.
+fn on_levels(rest: &[(&str, Range<usize>)], styles: &[PairStyle]) -> Vec<(String, usize)> {
+    let mut found = Vec::new();
+    let mut words = rest.iter().map(|word| word.0).peekable();
+    while let Some(key) = words.next() {
+        let mut next = || words.next_if(|word| word.parse::<f64>().is_ok());
+        if key == "hybrid" {
+            let levels = std::iter::from_fn(&mut next).map(str::parse::<usize>);
+            let name =
+                |k: usize| styles.get(k).map_or_else(|| format!("pair {}", k + 1), |own| own.name.into());
+            found.extend(levels.enumerate().filter_map(|(k, level)| Some((name(k), level.ok()?))));
+        } else {
+            found.extend(next().and_then(|level| level.parse().ok()).map(|level| (key.to_string(), level)));
+            // The distances of `inner`, `middle` and `outer`.
+            std::iter::from_fn(next).for_each(drop);
+        }
+    }
+    found
 }
 
 /// What grompp wants to be multiples of `mts-level2-factor` where it is not 0, with its default; and of the first one (0: of none).

@@ -292,6 +292,20 @@ pub(super) fn count(field: &str, text: &str) -> Result<u64> {
     count.ok_or_else(|| Error::input(field, text, "write a whole number from 1 to a million"))
 }
 
+/// What is to be known of forces that are predicted directly, where there are any.
+pub(super) fn no_gradient(names: &[&str]) -> Option<String> {
+    let (is, them) = match names {
+        [] => return None,
+        [_] => ("is", "it"),
+        _ => ("are", "they"),
+    };
+    let names = names.join(", ");
+    Some(format!(
+        "{names} {is} predicted directly (non_conservative): {them} {is} no gradient and may grow without any step; periods describe a \
+         potential, so give the Jacobians too: kickdrift.ase.system(..., symmetric=False)"
+    ))
+}
+
 /// Steps from the innermost to the outermost one, equal ones once.
 pub(super) fn scheme(mut steps: Vec<Rational>) -> Result<Scheme> {
     steps.dedup();

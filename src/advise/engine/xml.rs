@@ -5,7 +5,9 @@ use std::ops::Range;
 
 use roxmltree::{Document, Node};
 
-use super::reading::{Engine, FS, Loop, MOST_LEVELS, PS, Place, Reading, Unit, count, number, scheme, times};
+use super::reading::{
+    Engine, FS, Loop, MOST_LEVELS, PS, Place, Reading, Unit, count, no_gradient, number, scheme, times,
+};
 use crate::error::{Error, Result};
 use crate::number::Rational;
 use crate::number::rational::{from_f64_meant, to_f64};
@@ -106,7 +108,20 @@ pub(super) fn ipi(text: &str) -> Result<Reading> {
     steps.reverse();
     let levels = steps.len();
     reading.scheme = scheme(steps)?;
-    reading.forces = (0..levels).rev().map(|level| format!("mts_weights of level {level}")).collect();
+    let weights = weights(root, text);
+    let on = |level: usize| {
+        let own = weights.iter().filter_map(|(name, weights)| {
+            Some((name, *weights.get(level)?)).filter(|(_, weight)| *weight != "0")
+        });
+        let named = own
+            .map(|(name, weight)| if weight == "1" { name.to_string() } else { format!("{weight} {name}") });
+        named.collect::<Vec<_>>().join(", ")
+    };
+    reading.forces = (0..levels)
+        .rev()
+        .map(|level| if on(level).is_empty() { format!("mts_weights of level {level}") } else { on(level) })
+        .collect();
+    reading.remarks.extend(no_gradient(&direct(root, text)));
     if reading.scheme.steps().len() < levels {
         reading.remarks.push("levels of equal steps are told as one".into());
         reading.forces = vec!["forces of all its levels".into(); reading.scheme.steps().len()];
@@ -119,6 +134,32 @@ pub(super) fn ipi(text: &str) -> Result<Reading> {
         }
     }
     Ok(reading)
+}
+
+/// Each `<force>` with its weights, level by level, the outermost first, as written.
+fn weights<'a>(root: Node<'a, 'a>, text: &'a str) -> Vec<(&'a str, Vec<&'a str>)> {
+    let forces = root.descendants().filter(|node| node.has_tag_name("force"));
+    let own = |node: Node<'a, 'a>| {
+        let inside = words(named(node, "mts_weights")?, text).0.strip_prefix('[')?.strip_suffix(']')?;
+        let short = |part: &'a str| {
+            let part = part.trim();
+            if part.contains('.') { part.trim_end_matches('0').trim_end_matches('.') } else { part }
+        };
+        Some((node.attribute("forcefield")?.trim(), inside.split(',').map(short).collect()))
+    };
+    forces.filter_map(own).collect()
+}
+
+/// The force fields whose model is asked for forces that it predicts directly: `non_conservative:True` among the parameters.
+fn direct<'a>(root: Node<'a, 'a>, text: &'a str) -> Vec<&'a str> {
+    let is_direct = |node: &Node<'a, 'a>| {
+        let parameters = named(*node, "parameters").map_or("", |node| words(node, text).0);
+        let squeezed: String =
+            parameters.chars().filter(|c| !c.is_whitespace() && !"'\"".contains(*c)).collect();
+        squeezed.to_ascii_lowercase().contains("non_conservative:true")
+    };
+    let fields = root.descendants().filter(|node| node.tag_name().name().starts_with("ff"));
+    fields.filter(is_direct).filter_map(|node| Some(node.attribute("name")?.trim())).collect()
 }
 
 const EXPRESSION: &str = "computationExpression";
