@@ -255,6 +255,7 @@ def minimum(
     root, own = held.root[kept], held.back(positions, columns)
     bend = np.empty((0, 0))
     descent, best, hessians, is_far = _descent(bend), (np.inf, own, force, np.inf), 0, True
+    vain = 0
     for _ in range(_ROUNDS):
         begun, here, smallest, size, idle = own, smooth(force, own, reach), np.inf, np.inf, 0
         while hessians < _HESSIANS:
@@ -280,9 +281,10 @@ def minimum(
         if is_far:
             continue
         left = float(np.linalg.norm(frame.T @ (force(own).ravel()[kept] / root)))
+        vain = 0 if left < 0.9 * best[0] else vain + 1
         if left < best[0]:
             best = (left, own, here, min(smallest, left))
-        if here is force or left < _rounding(bend, held.masses) or hessians >= _HESSIANS:
+        if here is force or left < _rounding(bend, held.masses) or hessians >= _HESSIANS or vain == _VAIN:
             break
     if best[0] < np.inf:
         _, own, here, size = best
@@ -292,8 +294,9 @@ def minimum(
     return own, here
 
 
-#: Hessians that a minimum may take, and how often what jumps is looked at anew.
-_HESSIANS, _ROUNDS = 30, 30
+#: Hessians that a minimum may take, how often what jumps is looked at anew, and how often in vain: pairs that jump to and
+#: fro come to rest on neither side.
+_HESSIANS, _ROUNDS, _VAIN = 30, 30, 4
 
 
 def free(held: Held, where: Doubles, columns: Sequence[int] | None, is_boxed: bool) -> Doubles:

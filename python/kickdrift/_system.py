@@ -440,8 +440,8 @@ class System(Frozen):
     ) -> Intervals:
         """All stable and unstable intervals of the outer step, at the ratios of steps that there are.
 
-        Of Hessians on two clocks a stretch is proven for all Hessians within their accuracy; on other clocks for those
-        given. ``the data do not tell`` where these share no verdict, or nothing is proven.
+        Of measured Hessians a stretch is proven for all within their accuracy. ``the data do not tell`` where these share
+        no verdict, or nothing is proven.
 
         Parameters
         ----------
