@@ -294,8 +294,8 @@ def minimum(
     return own, here
 
 
-#: Hessians that a minimum may take, how often what jumps is looked at anew, and how often in vain: pairs that jump to and
-#: fro come to rest on neither side.
+#: Hessians that a minimum may take, how often what jumps is looked at anew, and how often in vain: pairs that jump to
+#: and fro come to rest on neither side.
 _HESSIANS, _ROUNDS, _VAIN = 30, 30, 4
 
 

@@ -440,8 +440,8 @@ class System(Frozen):
     ) -> Intervals:
         """All stable and unstable intervals of the outer step, at the ratios of steps that there are.
 
-        Of measured Hessians a stretch is proven for all within their accuracy. ``the data do not tell`` where these share
-        no verdict, or nothing is proven.
+        Of measured Hessians a stretch is proven for all within their accuracy. ``the data do not tell`` where these
+        share no verdict, or nothing is proven.
 
         Parameters
         ----------
@@ -535,8 +535,10 @@ class System(Frozen):
         warnings = self.decide().warnings
         # What a run does at these steps, where that is known to be about another state; then three sentences: what is
         # safe, what limits it, what would let it grow.
+        # With other masses or held bonds the orbit is another one, which nobody has followed.
         lines = found.render("text").splitlines(keepends=True)
-        text = self._told() + "".join(lines[:3]) + _warned(self._unsaid(warnings)) + "".join(lines[3:])
+        own = self if constraints is None and hmr is None else replace(self, _orbit=None)
+        text = own._told() + "".join(lines[:3]) + _warned(own._unsaid(warnings)) + "".join(lines[3:])
         return SystemAdvice(found.render("json"), text, warnings)
 
     def _told(self) -> str:
@@ -615,6 +617,8 @@ class Intervals(Answer):
     >>> import kickdrift as kd
     >>> system = kd.System.from_hessians([1.0], {"stiff": ("1/40", [[400.0]]), "soft": ("1/10", [[1.0]])})
     >>> found = system.intervals(("1/20", "1/5"))
+    >>> found
+    Intervals(5 stretches: outer = 1/20..1/5)
     >>> [row["verdict"] for row in found], found.plot().get_xlabel()
     (['stable', 'the data do not tell', 'unstable', 'the data do not tell', 'stable'], 'outer step')
     """
@@ -639,7 +643,7 @@ class Intervals(Answer):
     def _given(self) -> list[str]:
         given = self.data["input"]
         title = [given["title"]] if given.get("title") else []
-        return [*title, f"{given['intervals'].replace('=', ' = ')}"]
+        return [*title, given["intervals"].replace("=", " = ")]
 
     def to_svg(self) -> str:
         """The program's figure: the stretches, and growth where it is unstable.

@@ -1046,11 +1046,11 @@ def _relaxed(engine: _Engine, where: Doubles, chosen: Sequence[int] | None) -> D
 
 
 def _cooled(force: Force, where: Doubles, held: Held) -> Doubles:
-    """Positions nearer to a minimum, by dynamics that lose what leads uphill (FIRE, Bitzek and others 2006): it asks for
-    forces alone, where energies that jump at a cutoff stop a minimizer that compares them. Far from a minimum a step of
-    Newton's method costs as much as a thousand of these, and is kept as short.
+    """Positions nearer to a minimum, by dynamics that lose what leads uphill (FIRE, Bitzek and others 2006).
 
-    It ends where its steps get short, at a jump of the forces, or after ``_COOLED`` of them.
+    It asks for forces alone, where energies that jump at a cutoff stop a minimizer that compares them. Far from a
+    minimum a step of Newton's method costs as much as a thousand of these, and is kept as short. It ends where its
+    steps get short, at a jump of the forces, or after ``_COOLED`` of them.
     """
     from kickdrift import _bands
 
@@ -1072,7 +1072,12 @@ def _cooled(force: Force, where: Doubles, held: Held) -> Doubles:
                 step, share = min(1.1 * step, longest), 0.99 * share
         else:
             step, share, uphill, speed = step / 2, 0.1, 0, np.zeros(where.size)
-        where, speed, _ = held.drift(where, speed + step * pull, step)
+        speed = speed + step * pull
+        speed *= min(1.0, _REACH / 8 / max(step * float(np.abs(speed / held.root).max()), 1e-300))
+        try:
+            where, speed, _ = held.drift(where, speed, step)
+        except KickdriftError:
+            break
     return best[1]
 
 
