@@ -710,6 +710,8 @@ fn slow_periods_that_are_told_are_those_of_the_hessians_they_are_named_after() {
         let mode = Mode::from_period(&format!("slow={}", own.name)).unwrap();
         assert_eq!(mode.stiffness, Mode::from_period(&format!("{}fs", own.period)).unwrap().stiffness);
         assert!(mode.name == "slow" && mode.origin.name() == own.origin);
+        let error = Mode::from_period(&format!("slow={}s", own.name)).unwrap_err();
+        assert!(error.to_string().contains(own.name), "{error}");
         // That of a protein is held against OpenMM's by the tests of the Python package.
         let Some(file) = own.source.split(':').next().unwrap().strip_prefix("Hessians of ") else {
             assert_eq!(own.name, "protein");

@@ -13,7 +13,7 @@
 //! # Ok::<(), kickdrift::error::Error>(())
 //! ```
 
-use super::caution::Slow;
+use super::caution::{SLOW, Slow};
 use super::unit::{self, Dimension};
 use crate::error::{Error, Result};
 use crate::number::{Ball, Laurent, Rational, Real};
@@ -107,6 +107,11 @@ impl Mode {
             (Origin::Wavenumber, unit::period_of_wavenumber(&wavenumber).ok_or_else(power)?)
         } else if let Some(slow) = Slow::of(value) {
             (Origin::Slow(slow), unit::measured("period", &format!("{}fs", slow.period), Dimension::Time)?)
+        } else if value.trim().chars().all(|c| c.is_ascii_alphabetic()) && !value.trim().starts_with("pi") {
+            let known = SLOW.each_ref().map(|own| own.name).join(", ");
+            let remedy =
+                format!("write a period and its unit, as 10fs, a wavenumber, as 3700/cm, or {known}");
+            return Err(Error::input("period", value.trim(), remedy));
         } else {
             (Origin::Period, unit::measured("period", value, Dimension::Time)?)
         };
