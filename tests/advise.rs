@@ -706,15 +706,24 @@ fn a_friction_masks_up_to_a_step() {
 fn slow_periods_that_are_told_are_those_of_the_hessians_they_are_named_after() {
     use kickdrift::advise::SLOW;
     use kickdrift::scene::SystemScene;
-    for (period, _, source) in SLOW {
-        let file = source.split(':').next().unwrap();
+    for own in SLOW {
+        let mode = Mode::from_period(&format!("slow={}", own.name)).unwrap();
+        assert_eq!(mode.stiffness, Mode::from_period(&format!("{}fs", own.period)).unwrap().stiffness);
+        assert!(mode.name == "slow" && mode.origin.name() == own.origin);
+        let error = Mode::from_period(&format!("slow={}s", own.name)).unwrap_err();
+        assert!(error.to_string().contains(own.name), "{error}");
+        // That of a protein is held against OpenMM's by the tests of the Python package.
+        let Some(file) = own.source.split(':').next().unwrap().strip_prefix("Hessians of ") else {
+            assert_eq!(own.name, "protein");
+            continue;
+        };
         let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(file);
         let text = std::fs::read_to_string(&path).unwrap();
         let scene = SystemScene::read_in(path.parent().unwrap(), &text).unwrap();
         let (molecule, scheme) = scene.molecule().unwrap();
         let found = molecule.advise(&[scheme], &ratio(1, 20), None, None).unwrap();
         // Told to three digits.
-        assert_eq!(format!("{:.1}", found.slow), period);
+        assert_eq!(format!("{:.1}", found.slow), own.period);
         assert!(found.groups[0].name.as_ref().unwrap().ends_with(if file.contains("water") {
             "of HOH"
         } else {

@@ -731,7 +731,7 @@ mod chord {
 }
 
 /// The slow force of four waters on two clocks, half of it twice as often: what is proven of stretches of the outer step holds at each place in
-/// them, up to the first unstable step nothing grows, and the rates are those of what moves, not of rigid motions that rounding lets drift.
+/// them, and the rates are those of what moves, not of rigid motions that rounding lets drift.
 #[test]
 fn intervals_on_three_clocks_end_and_agree_with_each_verdict() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/data/scenes");
@@ -752,7 +752,9 @@ fn intervals_on_three_clocks_end_and_agree_with_each_verdict() {
     let length = |verdict: Holds| -> f64 {
         found.stretches.iter().filter(|own| own.verdict == verdict).map(|own| own.hi - own.lo).sum()
     };
-    assert!(length(Holds::Stable) > 0.0024 && length(Holds::Unstable) > 0.00015, "{found:?}");
+    assert!(length(Holds::Stable) > 0.0026 && length(Holds::Unstable) > 0.00015, "{found:?}");
+    // They hold within the accuracy, which leaves some open.
+    assert!(found.open.is_some_and(|open| open > 0), "{found:?}");
     for own in found.stretches.iter().filter(|own| own.verdict != Holds::NotTold) {
         for k in 0..=4 {
             let step = own.lo + (own.hi - own.lo) * f64::from(k) / 4.0;

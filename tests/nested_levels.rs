@@ -177,6 +177,50 @@ fn growth_and_friction_are_those_of_the_rational_system() {
     assert!(still.is_in_first_region && still.rate == Some(0.0) && still.growing.is_none());
 }
 
+/// Stretches hold at every step in them and for all stiffnesses within the accuracy, far beyond the first unstable step, too; and little is left open.
+#[test]
+fn stretches_hold_for_all_stiffnesses_within_the_accuracy() {
+    let (mut numbers, accuracy) = (Numbers(31), 1e-5);
+    let mut length = [0.0; 3];
+    for (n, steps) in [
+        (2, [ratio(1, 4), ratio(1, 2), ratio(1, 1)]),
+        (4, [ratio(1, 3), ratio(1, 2), ratio(1, 1)]),
+        (6, [ratio(1, 6), ratio(1, 3), ratio(1, 1)]),
+    ] {
+        let levels = numbers.levels(n);
+        let own = nested(&levels);
+        let at = own.at(&steps).unwrap();
+        let (first, _) = at.first_unstable().unwrap();
+        let range = (0.5 * first, 3.0 * first);
+        let found = at.stretches(range, 1e-3, accuracy).unwrap();
+        assert!(found[0].lo == range.0 && found[found.len() - 1].hi == range.1);
+        assert!(found.windows(2).all(|pair| pair[0].hi == pair[1].lo && pair[0].verdict != pair[1].verdict));
+        // The first region ends where its own bound does, but for what the accuracy takes.
+        assert!(
+            found[0].verdict == Holds::Stable && found[0].hi < first && found[0].hi > first * (1.0 - 1e-2)
+        );
+        let beyond = found.iter().filter(|own| own.verdict == Holds::Stable && own.lo > first).count();
+        assert!(beyond > 0, "{n} {found:?}");
+        for own in &found {
+            length[own.verdict as usize] += (own.hi - own.lo) / (range.1 - range.0) / 3.0;
+            if own.verdict == Holds::NotTold {
+                continue;
+            }
+            for k in 0..3 {
+                let step = own.lo + (own.hi - own.lo) * f64::from(k) / 2.0;
+                let near = |k: &DMatrix<f64>| {
+                    let e = numbers.symmetric(n);
+                    k + &e * (0.999 * accuracy * size(k) / size(&e))
+                };
+                let moved: Vec<_> = levels.iter().map(near).collect();
+                let exact = decided(&moved, &steps, step);
+                assert_eq!(exact, own.verdict, "{n} {step}");
+            }
+        }
+    }
+    assert!(length[0] > 0.5 && length[1] > 0.1 && length[2] < 0.05, "{length:?}");
+}
+
 #[test]
 fn steps_of_another_number_are_refused() {
     let own = nested(&Numbers(3).levels(2));

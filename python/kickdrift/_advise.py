@@ -309,8 +309,9 @@ def advise(
     Parameters
     ----------
     periods : what vibrates
-        A mapping of str to Time, or a sequence of Time: the periods of the forces, fs, or wavenumbers as ``"3700/cm"``;
-        the last ones are on the slower clocks. Or a molecule: a :class:`System`, the path of a system file, OpenMM's
+        A mapping of str to Time, or a sequence of Time: the periods of the forces, fs, wavenumbers as ``"3700/cm"``, or
+        ``"water"``, ``"protein"`` (in water), ``"peptide"`` (in vacuum) for what nonbonded forces have there; the last
+        ones are on the slower clocks. Or a molecule: a :class:`System`, the path of a system file, OpenMM's
         ``Simulation`` or ``System``, ASE's ``Atoms``, which is asked for :meth:`System.advise`.
     steps : sequence of Time, or a sequence of such
         A scheme, from the innermost to the outermost step, fs; or several schemes. Of OpenMM's ``System`` also a
@@ -353,6 +354,8 @@ def advise(
     >>> advice = kd.advise(["10fs", "40fs"], steps=["0.5fs", "4fs"])
     >>> print(str(advice).splitlines()[0])
     4 fs    stable; next unstable interval 4.6768-4.9679 fs, margin 0.677 fs; caution: not below T/3 = 3.33 fs
+    >>> [mode["from"] for mode in kd.advise({"OH": "10fs", "slow": "water"}, steps=["0.5fs", "4fs"]).modes]
+    ['period', 'slow period of water']
     >>> gromacs = "dt = 0.0005 ; ps\\nmts = yes\\nmts-level2-factor = 8\\n"
     >>> kd.advise(["10fs", "40fs"], engine=gromacs).engine["rewritten"]
     ['mts-level2-factor = 6', 'nstlog = 1020', 'nstenergy = 1020', 'nstcalcenergy = 102']

@@ -255,6 +255,7 @@ def minimum(
     root, own = held.root[kept], held.back(positions, columns)
     bend = np.empty((0, 0))
     descent, best, hessians, is_far = _descent(bend), (np.inf, own, force, np.inf), 0, True
+    vain = 0
     for _ in range(_ROUNDS):
         begun, here, smallest, size, idle = own, smooth(force, own, reach), np.inf, np.inf, 0
         while hessians < _HESSIANS:
@@ -280,9 +281,10 @@ def minimum(
         if is_far:
             continue
         left = float(np.linalg.norm(frame.T @ (force(own).ravel()[kept] / root)))
+        vain = 0 if left < 0.9 * best[0] else vain + 1
         if left < best[0]:
             best = (left, own, here, min(smallest, left))
-        if here is force or left < _rounding(bend, held.masses) or hessians >= _HESSIANS:
+        if here is force or left < _rounding(bend, held.masses) or hessians >= _HESSIANS or vain == _VAIN:
             break
     if best[0] < np.inf:
         _, own, here, size = best
@@ -292,8 +294,9 @@ def minimum(
     return own, here
 
 
-#: Hessians that a minimum may take, and how often what jumps is looked at anew.
-_HESSIANS, _ROUNDS = 30, 30
+#: Hessians that a minimum may take, how often what jumps is looked at anew, and how often in vain: pairs that jump to
+#: and fro come to rest on neither side.
+_HESSIANS, _ROUNDS, _VAIN = 30, 30, 4
 
 
 def free(held: Held, where: Doubles, columns: Sequence[int] | None, is_boxed: bool) -> Doubles:
@@ -407,7 +410,7 @@ def unbalanced(forces: Mapping[str, Doubles], size: float, masses: Doubles, unit
         most = max(float(np.linalg.norm(own, axis=1).max()) for own in pulled.values())
         notes.append(
             f"the forces of {' and of '.join(pulled)} do not vanish at the positions (up to {most:.3g} {unit}): a run "
-            "swings about an orbit of its own, where the Hessians are others; verdicts hold for those at the positions "
+            f"{_SWINGS} of its own, where the Hessians are others; verdicts hold for those at the positions "
             f"alone. {follow}"
         )
     return notes
@@ -582,6 +585,9 @@ class Monodromy(Frozen):
         return f"Monodromy(about the {self.about}: {words}, {known})"
 
 
+#: What a run does where the groups' forces do not vanish, in a note.
+_SWINGS = "swings about an orbit"
+
 #: A rate of which so small a part is open is known to the digits that are shown.
 _SHARP = 0.01
 
@@ -612,7 +618,7 @@ class Followed(Frozen):
         work: Work, notes: Sequence[str], find: Callable[[], Monodromy], step: str, length: str
     ) -> Followed | None:
         """That of a system with these notes, where its orbit is another state than the minimum and found soon."""
-        swings = any("swings about an orbit" in note for note in notes)
+        swings = any(_SWINGS in note for note in notes)
         soon = work.columns <= FOLLOWED and work.seconds <= _UNASKED
         return Followed(find, step, length) if swings and soon else None
 
@@ -639,7 +645,11 @@ class Followed(Frozen):
         begin = f"own orbit: at {self.step} a run swings about an orbit beside the minimum"
         if found is None:
             return f"{begin} that is not found: {why}\n" if why else ""
-        return f"{begin}, {found.away:.2g} {self.length} away at most; about it {found.words}\n"
+        return f"{begin}, {found.away:.2g} {self.length} away at most; about it {found.words}. Below: the minimum\n"
+
+    def unsaid(self, notes: Sequence[str]) -> tuple[str, ...]:
+        """These notes, but for the one that sends to the orbit, where the sentence has it."""
+        return tuple(note for note in notes if self.found is None or _SWINGS not in note)
 
 
 def _multipliers(mu: npt.NDArray[np.complex128]) -> npt.NDArray[np.complex128]:
@@ -783,9 +793,19 @@ _ARRIVED = 1e-9
 _SMALLEST_PART = 1 / 100
 
 
-def _less(force: Force, constant: Doubles) -> Force:
-    """A force less a constant one."""
-    return lambda positions: force(positions) - constant
+@dataclass(frozen=True, eq=False)
+class _Sum:
+    """The sum of some forces, less a constant one."""
+
+    forces: Sequence[Force]
+    less: Doubles | float = 0.0
+
+    def __call__(self, positions: Doubles) -> Doubles:
+        return np.asarray(np.sum([force(positions) for force in self.forces], axis=0) - self.less)
+
+    def smooth(self, positions: Doubles, reach: float) -> Force:
+        """Where one of them jumps, so does the sum: each as it is about these positions."""
+        return _Sum([smooth(force, positions, reach) for force in self.forces], self.less)
 
 
 def _newton(
@@ -881,14 +901,14 @@ def monodromy(
         raise KickdriftError("about", about, "choose orbit or minimum")
     free = held.frame(at)
     balances = [((free @ (free.T @ (force(at).ravel() / held.root))) * held.root).reshape(at.shape) for force in own]
-    every = _sum(own)
+    every = _Sum(own)
     total, error = hessian(every, at, held.masses, difference)
     stiffness = total + held.curvature(every(at), at)
     firm = free @ _firm(free.T @ stiffness @ free)
     done, part, start = 0.0, 1.0, at
     while done < 1.0:
         share = min(done + part, 1.0)
-        less = [_less(force, (1 - share) * balance) for force, balance in zip(own, balances, strict=True)]
+        less = [_Sum([force], (1 - share) * balance) for force, balance in zip(own, balances, strict=True)]
         found = _newton(less, steps, start, held, difference, firm, progress)
         if found.residual <= _ARRIVED:
             done, part, start = share, 2 * part, found.positions
@@ -1049,7 +1069,3 @@ def _folds(known: Sequence[tuple[Fraction, _Orbit]]) -> float:
     bend, slope, _ = np.polyfit([0.0, near, last], shares, 2)
     top = -slope / (2 * bend) if bend < 0 else np.inf
     return float(shares[0] + slope * top + bend * top**2) if last < top < np.inf else np.inf
-
-
-def _sum(forces: Sequence[Force]) -> Force:
-    return lambda positions: np.asarray(np.sum([force(positions) for force in forces], axis=0))

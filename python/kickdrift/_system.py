@@ -390,6 +390,45 @@ class System(Frozen):
         asked = self._about(asked)
         return SystemVerdict(asked.render("json"), self, asked)
 
+    def nearest(
+        self,
+        *,
+        resolution: float = 1e-4,
+        accuracy: float | None = None,
+        method: str | None = None,
+        budget: int | None = None,
+    ) -> SystemVerdict:
+        """The verdict, and the unstable intervals of the outer step next to the system's own, at its ratios of steps.
+
+        Parameters
+        ----------
+        resolution : float
+            The relative width above which no interval is missed.
+        accuracy, method, budget
+            As for :meth:`decide`.
+
+        Returns
+        -------
+        SystemVerdict
+            Its :attr:`SystemVerdict.nearest_unstable` has them, from half the step to twice the step at most.
+
+        Raises
+        ------
+        KickdriftError, BudgetError
+            As :meth:`decide`.
+
+        Examples
+        --------
+        >>> import kickdrift as kd
+        >>> system = kd.System.from_hessians([1.0], {"stiff": ("1/40", [[400.0]]), "soft": ("1/10", [[1.0]])})
+        >>> found = system.nearest().nearest_unstable
+        >>> found["own"], found["below"], [round(found["above"][end], 4) for end in ("lo", "hi")]
+        (None, None, [0.1527, 0.1531])
+        """
+        asked = question("system", budget, nearest=True, width=resolution, accuracy=accuracy, method=method)
+        asked = self._about(asked)
+        return SystemVerdict(asked.render("json"), self, asked)
+
     def intervals(
         self,
         outer: Range,
@@ -401,8 +440,8 @@ class System(Frozen):
     ) -> Intervals:
         """All stable and unstable intervals of the outer step, at the ratios of steps that there are.
 
-        Of Hessians on two clocks a stretch is proven for all Hessians within their accuracy; on other clocks for those
-        given. ``the data do not tell`` where these share no verdict, or nothing is proven.
+        Of measured Hessians a stretch is proven for all within their accuracy. ``the data do not tell`` where these
+        share no verdict, or nothing is proven.
 
         Parameters
         ----------
@@ -496,13 +535,19 @@ class System(Frozen):
         warnings = self.decide().warnings
         # What a run does at these steps, where that is known to be about another state; then three sentences: what is
         # safe, what limits it, what would let it grow.
+        # With other masses or held bonds the orbit is another one, which nobody has followed.
         lines = found.render("text").splitlines(keepends=True)
-        text = self._told() + "".join(lines[:3]) + _warned(warnings) + "".join(lines[3:])
+        own = self if constraints is None and hmr is None else replace(self, _orbit=None)
+        text = own._told() + "".join(lines[:3]) + _warned(own._unsaid(warnings)) + "".join(lines[3:])
         return SystemAdvice(found.render("json"), text, warnings)
 
     def _told(self) -> str:
         """What comes first: the integrator's own orbit, where a run is about it and not about the minimum."""
         return "" if self._orbit is None else self._orbit.sentence
+
+    def _unsaid(self, notes: Sequence[str]) -> Sequence[str]:
+        """The notes that this does not say."""
+        return notes if self._orbit is None else self._orbit.unsaid(notes)
 
     def __repr__(self) -> str:
         potentials = self.document.get("potentials", ())
@@ -572,6 +617,8 @@ class Intervals(Answer):
     >>> import kickdrift as kd
     >>> system = kd.System.from_hessians([1.0], {"stiff": ("1/40", [[400.0]]), "soft": ("1/10", [[1.0]])})
     >>> found = system.intervals(("1/20", "1/5"))
+    >>> found
+    Intervals(5 stretches: outer = 1/20..1/5)
     >>> [row["verdict"] for row in found], found.plot().get_xlabel()
     (['stable', 'the data do not tell', 'unstable', 'the data do not tell', 'stable'], 'outer step')
     """
@@ -592,6 +639,11 @@ class Intervals(Answer):
         'outer step'
         """
         return _plot.intervals(self.rows, ax)
+
+    def _given(self) -> list[str]:
+        given = self.data["input"]
+        title = [given["title"]] if given.get("title") else []
+        return [*title, given["intervals"].replace("=", " = ")]
 
     def to_svg(self) -> str:
         """The program's figure: the stretches, and growth where it is unstable.
@@ -696,6 +748,12 @@ class SystemVerdict(Document):
         return self._beside("no_gradient")
 
     @property
+    def nearest_unstable(self) -> Mapping[str, Any] | None:
+        """What :meth:`System.nearest` asks for: the unstable interval that holds the outer step, ``own``, the next one
+        ``below`` and ``above``, None where there is none in what was ``searched``; what is ``untold`` there."""
+        return self._beside("nearest_unstable")
+
+    @property
     def local_steps(self) -> Mapping[str, Any] | None:
         """Of a scheme of local time steps: its ``levels``, and the ``plain_limit`` of leapfrog without them.
 
@@ -755,8 +813,10 @@ class SystemVerdict(Document):
         return f"SystemVerdict({words}, {self.kind}{told})"
 
     def __str__(self) -> str:
-        told = self.system._told() if self._is_respa else ""
-        return told + _warned(self.system.notes) + self._asked.render("text").rstrip()
+        told, notes = "", self.system.notes
+        if self._is_respa:
+            told, notes = self.system._told(), self.system._unsaid(notes)
+        return told + _warned(notes) + self._asked.render("text").rstrip()
 
 
 @dataclass(frozen=True, eq=False, repr=False)

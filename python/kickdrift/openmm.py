@@ -1011,7 +1011,10 @@ def _at_rest(
         found, smooth = newton(where, _CLOSE)
     except (KickdriftError, mm.OpenMMException, np.linalg.LinAlgError):
         try:
-            found, smooth = newton(_relaxed(engine, where, chosen), np.inf)
+            near = _relaxed(engine, where, chosen)
+            if engine.cuts and chosen is None:
+                near = _cooled(force, near, held)
+            found, smooth = newton(near, np.inf)
         except KickdriftError as error:
             if not engine.cuts:
                 raise
@@ -1041,6 +1044,45 @@ def _relaxed(engine: _Engine, where: Doubles, chosen: Sequence[int] | None) -> D
     mm.LocalEnergyMinimizer.minimize(context, tolerance=1e-4)
     return np.array(context.getState(getPositions=True).getPositions(asNumpy=True)._value)
 
+
+def _cooled(force: Force, where: Doubles, held: Held) -> Doubles:
+    """Positions nearer to a minimum, by dynamics that lose what leads uphill (FIRE, Bitzek and others 2006).
+
+    It asks for forces alone, where energies that jump at a cutoff stop a minimizer that compares them. Far from a
+    minimum a step of Newton's method costs as much as a thousand of these, and is kept as short. It ends where its
+    steps get short, at a jump of the forces, or after ``_COOLED`` of them.
+    """
+    from kickdrift import _bands
+
+    product = _bands.by_differences(force, where, held.root, DIFFERENCE)
+    longest = 1.0 / float(np.sqrt(max(_bands.top(product, where.size, _ROUGH).found, 1e-300)))
+    # The numbers are those of the paper.
+    step, share, uphill, speed = longest, 0.1, 0, np.zeros(where.size)
+    best = (np.inf, where)
+    for _ in range(_COOLED):
+        pull = force(where).ravel() / held.root
+        pull -= held.gradients(where).T @ held.along(pull, where)
+        size = float(np.linalg.norm(pull))
+        best = min(best, (size, where), key=lambda own: own[0])
+        if step < longest / 1000 or size == 0.0:
+            break
+        if pull @ speed > 0:
+            speed, uphill = (1 - share) * speed + share * np.linalg.norm(speed) / size * pull, uphill + 1
+            if uphill > 5:
+                step, share = min(1.1 * step, longest), 0.99 * share
+        else:
+            step, share, uphill, speed = step / 2, 0.1, 0, np.zeros(where.size)
+        speed = speed + step * pull
+        speed *= min(1.0, _REACH / 8 / max(step * float(np.abs(speed / held.root).max()), 1e-300))
+        try:
+            where, speed, _ = held.drift(where, speed, step)
+        except KickdriftError:
+            break
+    return best[1]
+
+
+#: Products of Lanczos' method for the stiffest motion, to a tenth; and steps towards a minimum, by forces alone.
+_ROUGH, _COOLED = 12, 5000
 
 #: How far, nm, Newton's method alone may go: half a bond; and within which pairs are kept on their side of a cutoff.
 _CLOSE, _REACH = 0.05, 0.04

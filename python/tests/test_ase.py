@@ -137,6 +137,25 @@ def test_groups_that_pull_against_each_other_are_told_of() -> None:
     assert against.document["potentials"][0]["step"] == "1/4"
 
 
+def test_the_orbit_that_a_run_is_about_stands_first() -> None:
+    """Against the scheme itself, step by step: two springs that pull against each other, at steps on both sides of the
+    first unstable one, where the outer step meets half the period of the spring."""
+    atoms = ase.Atoms("H2", [[0, 0, 0], [1.0, 0, 0]])
+    kinds = []
+    for outer in ("1fs", "4fs"):
+        made = {"fast": (Pair(30, 1.0), "0.25fs"), "slow": (Pair(3, 1.3), outer)}
+        system = ka.system(atoms, made)
+        verdict, found = system.decide(), ka.oscillations(atoms, made)
+        first, second = str(verdict).splitlines()[:2]
+        assert first == str(system.advise()).splitlines()[0]
+        assert first.startswith(f"own orbit: at {outer[0]} fs a run swings about an orbit beside the minimum, ")
+        assert found.proven and found.words in first and f"{found.away:.2g} Å away" in first
+        assert not second.startswith("warning") and any("swings" in note for note in verdict.warnings)
+        assert verdict.orbit is not None and verdict.orbit.stable == found.stable
+        kinds.append(found.stable)
+    assert kinds == [True, False]
+
+
 def test_a_cell_has_three_rigid_motions_and_a_field_none() -> None:
     cell = ase.Atoms("H2", [[0, 0, 0], [1.0, 0, 0]], cell=[5, 5, 5], pbc=True)
     found = ka.system(cell, {"fast": (Pair(30, 1.0), "1/4"), "slow": (Pair(1, 1.0), 1)})

@@ -59,7 +59,7 @@ mod source;
 pub mod unit;
 
 pub use answer::{Advice, Answer, Pair, Row, Status};
-pub use caution::{Caution, PUBLISHED, SLOW};
+pub use caution::{Caution, PUBLISHED, SLOW, Slow};
 pub use constraint::Constraints;
 pub use direct::{Adds, Direct, DirectFinding, DirectFindings, Rung, TIMES};
 pub use interval::{Unstable, Worst};

@@ -13,6 +13,7 @@
 //! # Ok::<(), kickdrift::error::Error>(())
 //! ```
 
+use super::caution::{SLOW, Slow};
 use super::unit::{self, Dimension};
 use crate::error::{Error, Result};
 use crate::number::{Ball, Laurent, Rational, Real};
@@ -22,6 +23,8 @@ use crate::number::{Ball, Laurent, Rational, Real};
 pub enum Origin {
     Period,
     Wavenumber,
+    /// A period that is known by name.
+    Slow(&'static Slow),
     /// E = k x²/2, as GROMACS and OpenMM write it.
     Half,
     /// E = K x², as Amber and CHARMM write it: k = 2 K.
@@ -34,6 +37,7 @@ impl Origin {
         match self {
             Origin::Period => "period",
             Origin::Wavenumber => "wavenumber",
+            Origin::Slow(own) => own.origin,
             Origin::Half => "k of E = k x^2/2",
             Origin::Whole => "K of E = K x^2",
         }
@@ -91,7 +95,7 @@ impl Mode {
         Mode { name: name.trim().into(), origin, stiffness, clock: None, bond: None }
     }
 
-    /// `NAME=10fs`, `10fs`, `NAME=3700/cm`: a period or a wavenumber.
+    /// `NAME=10fs`, `10fs`, `NAME=3700/cm`, `NAME=water`: a period, a wavenumber, or what one of [`SLOW`](super::SLOW) is called.
     ///
     /// # Errors
     /// Names the period, with a unit that is missing or unknown.
@@ -101,6 +105,13 @@ impl Mode {
         let (origin, period) = if unit::dimension(value) == Some(Dimension::Wavenumber) {
             let wavenumber = unit::measured("period", value, Dimension::Wavenumber)?;
             (Origin::Wavenumber, unit::period_of_wavenumber(&wavenumber).ok_or_else(power)?)
+        } else if let Some(slow) = Slow::of(value) {
+            (Origin::Slow(slow), unit::measured("period", &format!("{}fs", slow.period), Dimension::Time)?)
+        } else if value.trim().chars().all(|c| c.is_ascii_alphabetic()) && !value.trim().starts_with("pi") {
+            let known = SLOW.each_ref().map(|own| own.name).join(", ");
+            let remedy =
+                format!("write a period and its unit, as 10fs, a wavenumber, as 3700/cm, or {known}");
+            return Err(Error::input("period", value.trim(), remedy));
         } else {
             (Origin::Period, unit::measured("period", value, Dimension::Time)?)
         };

@@ -10,7 +10,7 @@ use crate::advise::engine::{self, Reading};
 use crate::advise::unit::{self, Dimension, decimal};
 use crate::advise::{
     self, Advice, Bond, Constraints, DirectFindings, Findings, Levers, MOST_PRODUCTS, Mode, Molecule, Origin,
-    SOLVED, Scheme, Way,
+    SLOW, SOLVED, Scheme, Way,
 };
 use crate::error::{Error, Result};
 use crate::number::parse::parse_rational;
@@ -24,7 +24,7 @@ use num_traits::Zero;
 question! {
     /// Which steps are safe, in the words of those who ask.
     args struct Advise {
-        /// A period or wavenumber of a force, as OH=10fs or 3700/cm; the last ones are on the slower clocks
+        /// A period or wavenumber of a force, as OH=10fs, 3700/cm or slow=water; the last ones are on the slower clocks
         #[arg(long, value_name = "[NAME=]T")]
         period: Vec<String>,
         /// A bond: k of E = k x^2/2 or K of E = K x^2, two masses in amu, the heavy atom's hydrogens if not 1
@@ -145,8 +145,9 @@ notation! {
 }
 
 fn origin(field: &str, text: &str) -> Result<Origin> {
-    let all = [Origin::Period, Origin::Wavenumber, Origin::Half, Origin::Whole];
-    let names = all.map(Origin::name).join(", ");
+    let plain = [Origin::Period, Origin::Wavenumber, Origin::Half, Origin::Whole];
+    let all: Vec<Origin> = plain.into_iter().chain(SLOW.iter().map(Origin::Slow)).collect();
+    let names = all.iter().map(|own| own.name()).collect::<Vec<_>>().join(", ");
     let found = all.into_iter().find(|own| own.name() == text);
     found.ok_or_else(|| Error::input(field, text, format!("is none of {names}")))
 }

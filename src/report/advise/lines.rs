@@ -3,7 +3,7 @@
 use super::words::{choice, down, fs, named, nearest, percent, within};
 use crate::advise::engine::{Reading, nested_beside, not_nested};
 use crate::advise::unit::decimal;
-use crate::advise::{Advice, Answer, Pair, Row, SLOW, Scheme, Status, Unstable};
+use crate::advise::{Advice, Answer, Origin, Pair, Row, SLOW, Scheme, Slow, Status, Unstable};
 use crate::number::Rational;
 use crate::number::rational::to_f64;
 use crate::report::decimal::few;
@@ -233,6 +233,11 @@ pub(super) fn friction(rate: &Rational) -> String {
     )
 }
 
+/// A period that is known by name, and where it comes from.
+fn slow(own: &Slow) -> String {
+    format!("slow={} is {} fs, the shortest period {} ({})", own.name, own.period, own.what, own.source)
+}
+
 /// What is proven, published, unknown.
 fn reasons(advice: &Advice) -> Vec<String> {
     let fastest = &advice.modes[advice.fastest];
@@ -284,8 +289,11 @@ fn reasons(advice: &Advice) -> Vec<String> {
     if advice.silent {
         let line = "  unknown    a clock has no period given: its force is taken as 0; with it unstable steps begin somewhat below the one told";
         lines.push(line.into());
-        let known = SLOW.map(|(period, what, source)| format!("slow={period}fs {what} ({source})"));
-        lines.push(format!("  slow       measured by Hessians at a minimum: {}", known.join("; ")));
+        lines.push(format!("  slow       measured at a minimum: {}", SLOW.each_ref().map(slow).join("; ")));
     }
+    lines.extend(advice.modes.iter().filter_map(|own| match own.origin {
+        Origin::Slow(known) => Some(format!("  slow       {}", slow(known))),
+        _ => None,
+    }));
     lines
 }

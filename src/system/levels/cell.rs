@@ -11,7 +11,7 @@
 use faer::{Mat, Side};
 
 use super::beyond::slopes;
-use super::counts::Counts;
+use super::counts::{Counts, between_signs};
 use super::half::Half;
 use super::interval::Interval;
 use super::kernel::{Kernel, Outer, STEP_ERROR};
@@ -21,9 +21,6 @@ use crate::system::half::norm;
 use crate::system::signs::inertia::backward_error;
 use crate::system::spectrum::discs::Spectrum;
 use crate::system::verdict::measured::Holds;
-
-/// Twists of an index: modes of both of Krein's signs alternate more often in no molecule seen.
-const MOST_TWISTS: usize = 64;
 
 /// The kernel with |S|.
 pub struct Cells<'a> {
@@ -260,11 +257,6 @@ impl<'a> Cells<'a> {
             };
             (0..m).map(term).sum::<f64>() > 0.0
         };
-        let mut modes: Vec<(f64, bool)> =
-            spectrum.mu.iter().enumerate().map(|(k, mu)| (1.0 + mu.re, sign(k))).collect();
-        modes.sort_by(|x, y| y.0.total_cmp(&x.0));
-        let changes = modes.windows(2).filter(|pair| pair[0].1 != pair[1].1);
-        let twists: Vec<f64> = changes.map(|pair| pair[0].0 / 2.0 + pair[1].0 / 2.0).collect();
-        (twists.len() <= MOST_TWISTS).then_some(twists)
+        between_signs(spectrum.mu.iter().enumerate().map(|(k, mu)| (1.0 + mu.re, sign(k))).collect())
     }
 }

@@ -91,13 +91,21 @@ impl Counts {
     /// Values of s between modes p θ/2 of which turned back and others; cos²(p θ/2) alone places them.
     pub fn twists(&self) -> Option<Vec<f64>> {
         let mode = |half: &Half| Some((half.a.mid() * half.d.mid(), half.turns_back()?));
-        let mut modes: Vec<(f64, bool)> = self.less.iter().map(mode).collect::<Option<_>>()?;
-        modes.sort_by(|x, y| y.0.total_cmp(&x.0));
-        let changes = modes.windows(2).filter(|pair| pair[0].1 != pair[1].1);
-        let twists = changes.map(|pair| pair[0].0 / 2.0 + pair[1].0 / 2.0).filter(|s| (0.0..1.0).contains(s));
-        let twists: Vec<f64> = twists.collect();
+        let mut twists = between_signs(self.less.iter().map(mode).collect::<Option<_>>()?)?;
+        twists.retain(|s| (0.0..1.0).contains(s));
         (twists.len() <= MOST_TWISTS).then_some(twists)
     }
+}
+
+/// Twists between modes of both of Krein's signs, as the values s of modes place them: these alternate more often in no molecule seen.
+const MOST_BETWEEN: usize = 64;
+
+/// Values of s between modes of one of Krein's signs and of the other, decreasing; `None` where signs change too often.
+pub(super) fn between_signs(mut modes: Vec<(f64, bool)>) -> Option<Vec<f64>> {
+    modes.sort_by(|x, y| y.0.total_cmp(&x.0));
+    let changes = modes.windows(2).filter(|pair| pair[0].1 != pair[1].1);
+    let twists: Vec<f64> = changes.map(|pair| pair[0].0 / 2.0 + pair[1].0 / 2.0).collect();
+    (twists.len() <= MOST_BETWEEN).then_some(twists)
 }
 
 impl Kernel {

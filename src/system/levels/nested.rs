@@ -20,6 +20,7 @@ use faer::Mat;
 use nalgebra::DMatrix;
 use num_complex::Complex64;
 
+use super::counts::between_signs;
 use super::damped::least_masking;
 use super::growth::{Growing, Grows};
 use super::region::largest;
@@ -38,6 +39,7 @@ use crate::system::signs::envelope::{Envelope, Sign};
 use crate::system::signs::inertia::{is_definite, spectral_norm};
 use crate::system::spectrum::discs::Spectrum;
 use crate::system::spectrum::rate::exponent;
+use crate::system::vary::stretches::{Stretch, cover, merged, most_cells};
 use crate::system::verdict::measured::{Holds, Removed};
 
 /// The stiffness of one clock, in coordinates without the rigid motions.
@@ -230,23 +232,38 @@ impl Steps<'_> {
         factor * factor
     }
 
+    /// The action of half a period, its positions held at 0 at these ends.
     fn action(&self, step: f64, bounds: &Bounds, [at_start, at_end]: [bool; 2]) -> Envelope {
+        let free = usize::from(at_start)..self.events.len() - usize::from(at_end);
+        self.chain(step, bounds, &free.map(|node| (node, 1.0)).collect::<Vec<_>>())
+    }
+
+    /// That of a whole period between ends with x(T) = e^(iφ) x(0), s = cos² φ/2, as a real chain (`proofs/REGION.md`, section 10): from t = 0 to T/2, what meets
+    /// there times √s, and back to where 0 is held, what meets times √(1 − s).
+    fn twisted(&self, step: f64, bounds: &Bounds, s: f64) -> Envelope {
+        let last = self.events.len() - 1;
+        let there = (0..=last).map(|node| (node, if node == last { s.sqrt() } else { 1.0 }));
+        let back = (1..last).rev().map(|node| (node, if node + 1 == last { (1.0 - s).sqrt() } else { 1.0 }));
+        self.chain(step, bounds, &there.chain(back).collect::<Vec<_>>())
+    }
+
+    /// Nodes in a row, each with the factor of what it has to do with the one before.
+    fn chain(&self, step: f64, bounds: &Bounds, path: &[(usize, f64)]) -> Envelope {
         let (n, square) = (self.nested.size(), self.square(step));
-        let nodes = self.events.len();
-        let free = usize::from(at_start)..nodes - usize::from(at_end);
-        let row = |node: usize, i: usize| (node - free.start) * n + i;
-        // A block reaches back to the same degree of freedom at the time before.
-        let rows = free.clone().flat_map(|node| (0..n).map(move |i| (node, i)));
-        let first = rows.map(|(node, i)| if node == free.start { 0 } else { row(node - 1, i) }).collect();
+        let row = |place: usize, i: usize| place * n + i;
+        // A block reaches back to the same degree of freedom at the node before.
+        let rows = (0..path.len()).flat_map(|place| (0..n).map(move |i| (place, i)));
+        let first = rows.map(|(place, i)| if place == 0 { 0 } else { row(place - 1, i) }).collect();
         let mut matrix = Envelope::new(first);
-        for node in free.clone() {
+        for (place, &(node, factor)) in path.iter().enumerate() {
             let event = &self.events[node];
             let before = (node > 0).then(|| 1.0 / event.drift as f64);
             let after = self.events.get(node + 1).map(|next| 1.0 / next.drift as f64);
+            let link = place.checked_sub(1).map(|k| if path[k].0 < node { before } else { after });
             for i in 0..n {
-                before.iter().chain(&after).for_each(|x| matrix.add(row(node, i), row(node, i), *x));
-                if let Some(x) = before.filter(|_| node > free.start) {
-                    matrix.add(row(node, i), row(node - 1, i), -x);
+                before.iter().chain(&after).for_each(|x| matrix.add(row(place, i), row(place, i), *x));
+                if let Some(x) = link.flatten() {
+                    matrix.add(row(place, i), row(place - 1, i), -factor * x);
                 }
             }
             let weight = if event.weight == Weight::Half { 0.5 } else { 1.0 };
@@ -257,7 +274,7 @@ impl Steps<'_> {
                 for j in 0..n {
                     for i in j..n {
                         let own = stiffness[(i, j)] + if i == j { shift } else { 0.0 };
-                        matrix.add(row(node, i), row(node, j), factor * own);
+                        matrix.add(row(place, i), row(place, j), factor * own);
                     }
                 }
             }
@@ -287,7 +304,7 @@ impl Steps<'_> {
 
     /// Whether the signs prove all stiffnesses within ε unstable at all outer steps between.
     fn is_unstable_between(&self, [lo, hi]: [f64; 2], epsilon: f64) -> bool {
-        let (stiffer, softer) = (self.within(epsilon, 1.0), self.within(epsilon, -1.0));
+        let [softer, stiffer] = self.softer_and_stiffer(epsilon);
         let ends = [[true, false], [false, true]];
         let Some(k) = (0..2).find(|&k| self.is_positive_held(hi, &stiffer, ends[k])) else { return false };
         let other = self.action(lo, &softer, ends[1 - k]);
@@ -297,12 +314,10 @@ impl Steps<'_> {
     /// Whether counts of negative eigenvalues, least at the smaller step and most at the larger one, prove a real multiplier off the circle at all
     /// outer steps between: neg J_fh and neg J_hf differ, or n + neg J_hh and neg J_ff (`proofs/REGION.md`, section 3).
     fn has_real_unstable_mode(&self, [lo, hi]: [f64; 2], epsilon: f64) -> bool {
-        let count = |step: f64, sign: f64, held: [bool; 2]| {
-            let action = self.action(step, &self.within(epsilon, sign), held);
-            action.negatives(self.terms(), ROUNDINGS, sign < 0.0)
-        };
+        let [softer, stiffer] = self.softer_and_stiffer(epsilon);
         let exceeds = |low: [bool; 2], high: [bool; 2], [more, other]: [usize; 2]| {
-            let (least, most) = both(true, || count(lo, -1.0, low), || count(hi, 1.0, high));
+            let least = || self.negatives(&self.action(lo, &softer, low), true);
+            let (least, most) = both(true, least, || self.negatives(&self.action(hi, &stiffer, high), false));
             least.zip(most).is_some_and(|(least, most)| least + more > most + other)
         };
         let (start, end, n) = ([true, false], [false, true], self.nested.size());
@@ -313,16 +328,97 @@ impl Steps<'_> {
                 && (exceeds(neither, all, [0, n]) || exceeds(all, neither, [n, 0]))
     }
 
+    fn softer_and_stiffer(&self, epsilon: f64) -> [Bounds; 2] {
+        [-1.0, 1.0].map(|sign| self.within(epsilon, sign))
+    }
+
+    fn negatives(&self, action: &Envelope, is_least: bool) -> Option<usize> {
+        action.negatives(self.terms(), ROUNDINGS, is_least)
+    }
+
+    /// Whether the index proves all stiffnesses within ε stable at all outer steps between: the counts are one for all of them, held at both ends, at one, and
+    /// twisted by each of 1 = s_0 > s_1 > ... > s_K = 0, and the last ones change by n in all.
+    fn is_stable_by_index(&self, [lo, hi]: [f64; 2], epsilon: f64) -> bool {
+        let Some(twists) = self.twists(lo / 2.0 + hi / 2.0) else { return false };
+        let [softer, stiffer] = self.softer_and_stiffer(epsilon);
+        let one = |of: &(dyn Fn(f64, &Bounds) -> Envelope + Sync)| {
+            let least = || self.negatives(&of(lo, &softer), true);
+            let (least, most) = both(true, least, || self.negatives(&of(hi, &stiffer), false));
+            least.filter(|own| Some(*own) == most)
+        };
+        let held =
+            |held: [bool; 2]| one(&move |step, bounds: &Bounds| self.action(step, bounds, held)).is_some();
+        if !held([true, true]) || !held([true, false]) {
+            return false;
+        }
+        let at = [1.0].into_iter().chain(twists).chain([0.0]);
+        let counts: Option<Vec<usize>> =
+            at.map(|s| one(&move |step, bounds: &Bounds| self.twisted(step, bounds, s))).collect();
+        let change = |own: Vec<usize>| own.windows(2).map(|pair| pair[0].abs_diff(pair[1])).sum::<usize>();
+        counts.map(change) == Some(self.nested.size())
+    }
+
+    /// Values of s = 1 + μ between modes of one of Krein's signs and of the other, the sign that of vᵀ Aᵀ C v; `None` where some μ are off \[−1, 0\], or where
+    /// signs change too often. Rounded: whatever they are, counts at them prove what they prove.
+    fn twists(&self, step: f64) -> Option<Vec<f64>> {
+        let n = self.nested.size();
+        let [x, p] = self.rounded_half(step);
+        let spectrum = Spectrum::of(x.subcols(n, n).transpose() * p.subcols(0, n), None)?;
+        if spectrum.mu.iter().any(|mu| mu.im != 0.0 || !(-1.0..=0.0).contains(&mu.re)) {
+            return None;
+        }
+        let v = Mat::from_fn(n, n, |i, k| spectrum.vectors[(i, k)].re);
+        let (av, cv) = (x.subcols(0, n) * &v, p.subcols(0, n) * &v);
+        let sign = |k: usize| (0..n).map(|i| av[(i, k)] * cv[(i, k)]).sum::<f64>() > 0.0;
+        between_signs(spectrum.mu.iter().enumerate().map(|(k, mu)| (1.0 + mu.re, sign(k))).collect())
+    }
+
     /// What is proven of all stiffnesses within ε of their sizes.
     pub fn verdict_within(&self, step: f64, epsilon: f64) -> Holds {
-        if self.is_in_first_region(step, epsilon) {
-            return Holds::Stable;
-        }
-        if self.is_unstable_between([step; 2], epsilon) || self.has_real_unstable_mode([step; 2], epsilon) {
+        if self.is_in_first_region(step, epsilon) { Holds::Stable } else { self.beyond([step; 2], epsilon) }
+    }
+
+    /// The same of all outer steps between two, by the index, too: at one step it tells little that discs do not, and costs a dozen counts.
+    fn verdict_between(&self, ends: [f64; 2], epsilon: f64) -> Holds {
+        let is_stable = self.is_in_first_region(ends[1], epsilon) || self.is_stable_by_index(ends, epsilon);
+        if is_stable { Holds::Stable } else { self.beyond(ends, epsilon) }
+    }
+
+    fn beyond(&self, ends: [f64; 2], epsilon: f64) -> Holds {
+        if self.is_unstable_between(ends, epsilon) || self.has_real_unstable_mode(ends, epsilon) {
             return Holds::Unstable;
         }
-        let Some(blocks) = self.half_period(step, epsilon) else { return Holds::NotTold };
+        let Some(blocks) = self.half_period(ends, epsilon) else { return Holds::NotTold };
         signs::proven(&blocks).or_else(|| Spectrum::new(&blocks)?.certified(&blocks)).into()
+    }
+
+    /// What is proven of all stiffnesses within ε of their sizes on all outer steps from `lo` to `hi`, as stretches that cover them; no interval wider than
+    /// `width` times the larger end is missed of which the data tell.
+    ///
+    /// # Errors
+    /// As [`cover`].
+    pub fn stretches(&self, (lo, hi): (f64, f64), width: f64, epsilon: f64) -> Result<Vec<Stretch>> {
+        let holds = |step: f64| self.is_in_first_region(step, epsilon);
+        // What is stable at a step of the first region is so at every smaller one.
+        let end = match holds(lo) {
+            false => lo,
+            true if holds(hi) => hi,
+            true => bisected((lo, hi), 1e-9, |step| Some(holds(step))).0,
+        };
+        let known = (end > lo).then_some(Stretch { lo, hi: end, verdict: Holds::Stable });
+        let rest = if end < hi {
+            cover((end, hi), width, |lo, hi| Ok(self.verdict_between([lo, hi], epsilon)))?
+        } else {
+            Vec::new()
+        };
+        Ok(merged(known.into_iter().chain(rest)))
+    }
+
+    /// The products of doubles that these cost, roughly: of each cell six counts of chains of twice as many nodes at both ends, and the eigenvalues. Of
+    /// waters a quarter of the range is narrow cells, those where nothing is proven.
+    pub fn cost_of_stretches(&self, range: (f64, f64), width: f64) -> f64 {
+        let each = 24.0 * self.events.len() as f64 + 40.0;
+        most_cells(range, width) / 4.0 * each * (self.nested.size() as f64).powi(3)
     }
 
     /// The verdict, and what grows.
@@ -422,7 +518,7 @@ impl Steps<'_> {
     fn damped_period(&self, step: f64, friction: f64) -> Option<(Mat<f64>, f64)> {
         let ticks = step / self.outer * to_f64(self.schedule.tick());
         let decay = from_f64_exact(friction * ticks).filter(|own| *own >= Rational::default())?;
-        let (kicks, mass) = self.kicks_at(step, 0.0);
+        let (kicks, mass) = self.kicks_at([step; 2], 0.0);
         let drifts = Drifts { inverse_mass: &mass, decay: &decay, off: 0.0 };
         let found = follow(&drifts, self.schedule.symmetric_period(), |_, clock| &kicks[clock]);
         found.error.map(|error| (found.matrix(), error))
@@ -445,8 +541,11 @@ impl Steps<'_> {
     }
 
     /// The kicks in ticks, p ← p − F x, and the drifts, x ← x + a p for each tick: positions times √a, so that both are about as large; a is a power of 2.
-    fn kicks_at(&self, step: f64, epsilon: f64) -> (Vec<Stiff>, Vec<Vec<(usize, f64)>>) {
-        let (n, square) = (self.nested.size(), self.square(step));
+    /// Between two steps the kicks are those of the mean of their squares, off by up to r times themselves.
+    fn kicks_at(&self, ends: [f64; 2], epsilon: f64) -> (Vec<Stiff>, Vec<Vec<(usize, f64)>>) {
+        let [least, most] = ends.map(|step| self.square(step));
+        let (n, square) = (self.nested.size(), least / 2.0 + most / 2.0);
+        let r = (most - least) / (most + least);
         let total = self.nested.total();
         let middle = ((0..n).map(|i| total[(i, i)].abs()).sum::<f64>() / n as f64).sqrt();
         let turn = middle * to_f64(self.schedule.tick()) * square.sqrt();
@@ -455,23 +554,24 @@ impl Steps<'_> {
             let factor = square * self.kicks[k] / a;
             let stiffness = Stiffness::Whole(Mat::from_fn(n, n, |i, j| factor * own.stiffness[(i, j)]));
             let rounding = ROUNDINGS as f64 * U * own.frobenius;
-            let off = 1.01 * factor * (self.nested.error_within(k, epsilon) + rounding);
+            let error = (1.0 + r) * self.nested.error_within(k, epsilon) + r * own.size;
+            let off = 1.01 * factor * (error + rounding);
             Stiff { stiffness, off, known: 0.0 }
         };
         let kicks = self.nested.levels.iter().enumerate().map(kick).collect();
         (kicks, (0..n).map(|i| vec![(i, a)]).collect())
     }
 
-    /// The half period with a bound for all stiffnesses within ε.
-    fn half_period(&self, step: f64, epsilon: f64) -> Option<FloatBlocks> {
-        let (kicks, mass) = self.kicks_at(step, epsilon);
+    /// The half period with a bound for all stiffnesses within ε and all outer steps between two.
+    fn half_period(&self, ends: [f64; 2], epsilon: f64) -> Option<FloatBlocks> {
+        let (kicks, mass) = self.kicks_at(ends, epsilon);
         let drifts = Drifts { inverse_mass: &mass, decay: &Rational::default(), off: 0.0 };
         let state = follow_proven(&drifts, self.events.iter().copied(), |_, clock| &kicks[clock])?;
         Some(state.blocks(vec![1.0; self.nested.size()]))
     }
 
-    /// Bᵀ C of the half period, rounded, by products of whole matrices.
-    fn rounded_product(&self, step: f64) -> Mat<f64> {
+    /// (A B) and (C D) of the half period, rounded, by products of whole matrices.
+    fn rounded_half(&self, step: f64) -> [Mat<f64>; 2] {
         let (n, square) = (self.nested.size(), self.square(step));
         let one = |first: usize| Mat::from_fn(n, 2 * n, |i, j| f64::from(u8::from(j == first + i)));
         let (mut x, mut p) = (one(0), one(n));
@@ -483,6 +583,12 @@ impl Steps<'_> {
             });
             p -= kick * &x;
         }
+        [x, p]
+    }
+
+    /// Bᵀ C of that.
+    fn rounded_product(&self, step: f64) -> Mat<f64> {
+        let (n, [x, p]) = (self.nested.size(), self.rounded_half(step));
         x.subcols(n, n).transpose() * p.subcols(0, n)
     }
 

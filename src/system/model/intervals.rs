@@ -10,7 +10,7 @@ use crate::system::levels::Method;
 use crate::system::spectrum::rate::middle;
 use crate::system::vary::edges::{Family, Linear};
 use crate::system::vary::nearest::Nearest;
-use crate::system::vary::stretches::{Stretch, most_cells};
+use crate::system::vary::stretches::Stretch;
 use crate::system::verdict::analysis::Analysis;
 use crate::system::verdict::decide::decide_by;
 use crate::system::verdict::limits::{Limits, Route};
@@ -30,7 +30,7 @@ pub enum Number<'a> {
 }
 
 impl Model {
-    /// The verdicts on all values of a number in a range, no interval wider than `width` times its larger end missed. Of two measured levels they
+    /// The verdicts on all values of a number in a range, no interval wider than `width` times its larger end missed. Of measured stiffnesses they
     /// hold for all stiffnesses within their accuracy, but where the number is an entry or a mass.
     ///
     /// # Errors
@@ -56,10 +56,8 @@ impl Model {
                 own.stretches(range, width).unwrap_or_else(|| Err(self.no_intervals()))
             }
             (_, Model::NoGradient(own) | Model::Subcycled(own, _)) => own.stretches(range, width),
-            _ => match self.levels() {
-                Some(own) => own.stretches(range, width, own.accuracy),
-                None => self.over_outer_steps(|family| family.stretches(range, width, limits)),
-            },
+            (_, Model::Measured(own)) => own.stretches(range, width, own.accuracy),
+            _ => self.over_outer_steps(|family| family.stretches(range, width, limits)),
         }
     }
 
@@ -69,7 +67,7 @@ impl Model {
     /// # Errors
     /// As [`Model::stretches`].
     pub fn open_by_accuracy(&self, number: &Number, stretches: &[Stretch]) -> Result<Option<usize>> {
-        let Some(own) = self.levels().filter(|_| !matches!(number, Number::Linear(_))) else {
+        let Some(own) = self.measured().filter(|_| !matches!(number, Number::Linear(_))) else {
             return Ok(None);
         };
         let accuracy = own.accuracy / BETTER;
@@ -103,16 +101,12 @@ impl Model {
         width: f64,
         limits: &Limits,
     ) -> Result<f64> {
-        // A factorization or two in the eigenbasis.
-        let measured = |n: usize| self.cost() as f64 + most_cells(range, width) * (n as f64).powi(3);
         match (number, self) {
-            _ if self.inner_steps().is_some() && !matches!(number, Number::Linear(_)) => {
-                Ok(measured(self.size()))
-            }
             (Number::Linear(at), _) => {
                 let at = |x: &Rational| Ok(at(x)?.moving()?.into_owned());
                 Family { linear: Linear::Number, at: &at }.cost(range, width, limits)
             }
+            (_, Model::Measured(own)) => own.cost_of_stretches(range, width),
             (_, Model::LocalSteps(own)) => Ok(own.cost()),
             (_, Model::NoGradient(own) | Model::Subcycled(own, _)) => Ok(own.cost_of_stretches(range, width)),
             (_, Model::Along(_)) => Err(self.no_intervals()),
@@ -159,7 +153,7 @@ impl Model {
             return Ok(Nearest::of(step, &all));
         }
         let is_decided_by_jacobians = matches!(self, Model::NoGradient(_) | Model::Subcycled(..));
-        if self.levels().is_none() && !is_decided_by_jacobians {
+        if self.measured().is_none() && !is_decided_by_jacobians {
             let exactly = |family: &Family| family.exactly(Nearest::reach(step), limits);
             if let Some(all) = self.over_outer_steps(exactly)? {
                 return Ok(Nearest::of(step, &all));

@@ -14,7 +14,7 @@ use crate::system::friction::Friction;
 use crate::system::levels::{Cells, Hessians, Kernel, Method, Nested, Outer, rigid_motions, translations};
 use crate::system::linear::sparse::Symmetric;
 use crate::system::linear::system::{Potential, System};
-use crate::system::vary::stretches::{Stretch, cover};
+use crate::system::vary::stretches::{Stretch, cover, most_cells};
 use crate::system::verdict::analysis::Analysis;
 use crate::system::verdict::limits::{Limits, Route};
 use crate::system::verdict::measured::{Holds, check_accuracy};
@@ -251,11 +251,16 @@ impl MeasuredSystem {
         }
     }
 
-    /// What is proven of all stiffnesses within the accuracy; `None` where it is not of two levels.
-    pub(super) fn holds(&self, limits: &Limits) -> Result<Option<Holds>> {
-        let Some((outer, _)) = self.outer() else { return Ok(None) };
+    /// What is proven of all stiffnesses within the accuracy.
+    pub(super) fn holds(&self, limits: &Limits) -> Result<Holds> {
         self.allow(limits)?;
-        Ok(Some(self.kernel()?.verdict_within(&outer, self.accuracy)))
+        match self.outer() {
+            Some((outer, _)) => Ok(self.kernel()?.verdict_within(&outer, self.accuracy)),
+            None => self.over_steps(|levels, steps| {
+                let outer = to_f64(steps.last().expect("at least one"));
+                Ok(levels.at(steps)?.verdict_within(outer, self.accuracy))
+            }),
+        }
     }
 
     /// The verdict at an outer step, as many inner ones in it as in its own.
@@ -288,9 +293,27 @@ impl MeasuredSystem {
         (self.size() as u64).saturating_pow(3).saturating_mul(60)
     }
 
-    /// What is proven of all stiffnesses within an accuracy on a range of outer steps, as many inner ones in each.
+    /// What is proven of all stiffnesses within an accuracy on a range of outer steps, all steps in their ratios.
     pub(super) fn stretches(&self, range: (f64, f64), width: f64, accuracy: f64) -> Result<Vec<Stretch>> {
-        self.kernel()?.stretches(self.inner_steps(), range, width, accuracy)
+        if self.is_of_two_levels() {
+            return self.kernel()?.stretches(self.inner_steps(), range, width, accuracy);
+        }
+        self.over_steps(|levels, steps| levels.at(steps)?.stretches(range, width, accuracy))
+    }
+
+    /// The products that these cost, roughly, where cells are narrow throughout.
+    pub(super) fn cost_of_stretches(&self, range: (f64, f64), width: f64) -> Result<f64> {
+        if self.is_of_two_levels() {
+            // A factorization or two in the eigenbasis.
+            return Ok(self.cost() as f64 + most_cells(range, width) * (self.size() as f64).powi(3));
+        }
+        self.over_steps(|levels, steps| Ok(levels.at(steps)?.cost_of_stretches(range, width)))
+    }
+
+    /// What `ask` finds of levels that are not two of an inner and an outer step, and of their steps.
+    fn over_steps<T>(&self, ask: impl FnOnce(&Nested, &[Rational]) -> Result<T>) -> Result<T> {
+        let many = self.nested()?.expect("not of two levels");
+        ask(&many.levels, &self.steps())
     }
 
     /// The same on a range of factors of one level, 0 the fast one, of the present value `factor`, all else as it is.

@@ -145,13 +145,12 @@ impl Model {
         }
     }
 
-    /// What is proven of it, of two measured levels for all stiffnesses within their accuracy: as of its stretches.
+    /// What is proven of it, of measured stiffnesses for all within their accuracy: as of its stretches.
     ///
     /// # Errors
     /// As [`Model::decide`].
     pub fn holds(&self, limits: &Limits) -> Result<Holds> {
-        let within = self.measured().map_or(Ok(None), |own| own.holds(limits))?;
-        within.map_or_else(|| self.verdict(Route::Cheapest, limits), Ok)
+        self.measured().map_or_else(|| self.verdict(Route::Cheapest, limits), |own| own.holds(limits))
     }
 
     /// The rational system that moves: of measured stiffnesses without rigid motions and held distances.
