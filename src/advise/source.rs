@@ -1,4 +1,4 @@
-//! What decides about Hessians: two levels by their eigenbasis, any other number of them by the action. Advice is one and the same.
+//! The sources of decisions about Hessians: two levels by their eigenbasis, any other number of them by the action. Advice uses both alike.
 
 use std::fmt::Debug;
 
@@ -18,7 +18,7 @@ pub trait Source: Debug + Send + Sync {
     /// Another number of them, ratios that are not answered for.
     fn check(&self, steps: &[Rational]) -> Result<()>;
 
-    /// What was projected out.
+    /// The motions that were projected out.
     fn removed(&self) -> Option<&Removed>;
 
     /// λ of the innermost stiffness alone, increasing, rounded.
@@ -51,7 +51,7 @@ pub trait Source: Debug + Send + Sync {
     /// The outer step up to which that is so.
     fn band_edge(&self, steps: &[Rational], band: f64, accuracy: f64) -> Result<Option<f64>>;
 
-    /// Where the spectral radius of a period with friction lies; `None`: doubles do not tell.
+    /// Where the spectral radius of a period with friction lies; `None`: doubles cannot decide.
     fn damping(&self, steps: &[Rational], friction: f64) -> Result<Option<Damping>>;
 
     /// A friction that is proven to mask what grows, about the least.
@@ -66,7 +66,7 @@ pub trait Source: Debug + Send + Sync {
 /// The verdict at one scheme.
 #[derive(Clone, Debug)]
 pub struct Decided {
-    /// What is proven of all stiffnesses within the accuracy.
+    /// The verdict that is proven for all stiffnesses within the accuracy.
     pub holds: Holds,
     /// Whether that is stable, and so for all smaller steps.
     pub is_in_first_region: bool,

@@ -259,7 +259,7 @@ fn recheck<R: Recheck>(
     Ok(Outcome { rows, route: "computed again", sample: None, failures, not_rechecked: left })
 }
 
-/// What no recheck can find.
+/// The limit of every recheck.
 const QUESTION: &str = "that this was the question, where another one has the same answer";
 
 /// That the head is one that kickdrift writes: which version and which command, and an input without nulls.

@@ -7,8 +7,8 @@
 //! |---|---|
 //! | `claim` | the rows of the document, and what concerns it as a whole |
 //! | `mass` | one mass on its clocks: trace, friction, first region |
-//! | `scheme`, `row` | what is told of a scheme, of a mode at a scheme |
-//! | `lever` | what would let the step grow |
+//! | `scheme`, `row` | the row of a scheme, of a mode at a scheme |
+//! | `lever` | levers that would let the step grow |
 //! | `system` | advice on a system's file, computed again |
 //! | `direct` | advice on forces that are no gradient: computed again, its growth by the dense full period |
 //! | `molecule` | advice on Hessians: computed again, its proofs and growth by another route |

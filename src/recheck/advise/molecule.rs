@@ -24,7 +24,7 @@ trait Route {
     fn row(&self, own: &Finding) -> Checked;
     /// Whether the ends of the region are among what it proves.
     fn has_ends(&self, own: &Finding) -> bool;
-    fn told(&self) -> &'static str;
+    fn route(&self) -> &'static str;
 }
 
 /// The route that does not share a step with how this system is advised on.
@@ -98,7 +98,7 @@ impl Route for Many<'_> {
         true
     }
 
-    fn told(&self) -> &'static str {
+    fn route(&self) -> &'static str {
         "the scheme, both sides of the first unstable step and the corners of the band, each at one step, by half periods of a rational system of the doubles given"
     }
 }
@@ -177,7 +177,7 @@ impl Route for Other {
         self.has_paths(own)
     }
 
-    fn told(&self) -> &'static str {
+    fn route(&self) -> &'static str {
         ROUTE
     }
 }
@@ -227,7 +227,7 @@ impl Recheck for Claim {
         }
         Ok(Outcome {
             rows: findings.schemes.len() as u64,
-            route: other.told(),
+            route: other.route(),
             sample: None,
             failures,
             not_rechecked,
