@@ -165,8 +165,7 @@ impl Molecule {
             "advice on {size} degrees of freedom, {schemes} scheme{} of steps, costs about {products:.1e} products, the budget is {limit:.1e}",
             if schemes == 1 { "" } else { "s" }
         );
-        Err(Error::budget(work, cost)
-            .or("ask about fewer schemes, longer inner steps, or without levers"))
+        Err(Error::budget(work, cost).or("ask about fewer schemes, longer inner steps, or without levers"))
     }
 
     /// The findings at each scheme, all periods within `band` of theirs.

@@ -6,6 +6,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use crate::error::{Error, Result};
 use crate::parallel::try_map;
 use crate::question::{Watch, Work};
+#[cfg(feature = "system")]
+use crate::scene::Arrays;
 use crate::tongue::Progress;
 use crate::verdict::Limits;
 
@@ -124,12 +126,32 @@ impl Progress for Done<'_> {
 pub struct Context<'a> {
     pub options: &'a Options,
     pub see: Option<See<'a>>,
+    /// The arrays that systems refer to.
+    #[cfg(feature = "system")]
+    arrays: Arrays,
+}
+
+impl<'a> Context<'a> {
+    pub fn new(options: &'a Options, see: Option<See<'a>>) -> Self {
+        Context {
+            options,
+            see,
+            #[cfg(feature = "system")]
+            arrays: Arrays::from(&options.folder),
+        }
+    }
 }
 
 impl Context<'_> {
-    /// The highest cost of computing an answer again.
+    /// The highest cost of computing an answer again, and where its arrays are.
     pub fn work(&self) -> Work<'_> {
-        Work { budget: self.options.budget, watch: Some(self), ..Work::default() }
+        Work {
+            budget: self.options.budget,
+            watch: Some(self),
+            #[cfg(feature = "system")]
+            arrays: Some(&self.arrays),
+            ..Work::default()
+        }
     }
 
     /// The kicks that one verdict may compose.

@@ -215,7 +215,7 @@ impl Claim {
     /// An input that makes no sense, and a recheck that costs more than the options allow; what does not hold is no error
     /// but a [`Failure`].
     pub fn recheck(&self, options: &Options, see: Option<See>) -> Result<Outcome> {
-        self.rows.recheck(&self.document, How::Both, &Context { options, see })
+        self.rows.recheck(&self.document, How::Both, &Context::new(options, see))
     }
 
     /// Takes the other route alone: it holds what is written against the mathematics, whichever version wrote it.
@@ -223,7 +223,7 @@ impl Claim {
     /// # Errors
     /// As [`Claim::recheck`].
     pub fn recheck_apart(&self, options: &Options, see: Option<See>) -> Result<Outcome> {
-        self.rows.recheck(&self.document, How::OtherRouteAlone, &Context { options, see })
+        self.rows.recheck(&self.document, How::OtherRouteAlone, &Context::new(options, see))
     }
 
     /// About how many kicks the slower route composes; 0 where these are few.

@@ -2,20 +2,18 @@
 
 use std::borrow::Cow;
 
-use num_traits::Zero;
-use serde_json::Value;
-
-use super::system::{LEFT, again};
+use super::LEFT;
 use crate::advise::{Finding, MOST_PRODUCTS, Scheme};
 use crate::error::{Error, Result};
 use crate::number::Rational;
 use crate::number::rational::{from_f64_exact, to_f64};
 use crate::question::{Advised, Safe};
-use crate::recheck::again::{Left, Recheck};
+use crate::recheck::again::{Left, Recheck, asked};
 use crate::recheck::context::{Checked, Context, Outcome, REMEDY, holds, too_costly};
 use crate::scene::SystemScene;
 use crate::system::levels::{Hessians, Near};
 use crate::system::{Holds, Limits, Potential, System, decide_system};
+use num_traits::Zero;
 
 /// Another route to what a row proves.
 trait Route {
@@ -194,11 +192,7 @@ const ROUTE: &str = "the ends of the first region and of the band by the action 
 impl Recheck for Claim {
     const TABLE: &'static str = "rows";
     const LEFT: &'static [Left] = LEFT;
-    type Found = Safe;
-
-    fn again(&self, context: &Context) -> Result<(Value, Safe)> {
-        again(&self.input, context)
-    }
+    asked!(Advised);
 
     fn check(&self, safe: Safe, context: &Context) -> Result<Outcome> {
         let Safe::Hessians(own) = safe else { return Err(Error::missing("input.system", REMEDY)) };

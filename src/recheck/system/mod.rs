@@ -9,17 +9,15 @@ mod implicit;
 mod levels;
 mod local;
 
-use serde_json::Value;
-
-use super::again::{Left, Recheck};
+use super::again::{Left, Recheck, asked};
 use super::context::{Checked, Context, Fault, Outcome, same, too_costly};
 use super::sample::sample;
 use crate::avi::Ends;
 use crate::error::{Kind as Reason, Result};
 use crate::number::rational::{from_f64_exact, to_f64};
-use crate::question::{Found, Question, Simulate, System, SystemAnswer, Work};
+use crate::question::{Found, Simulate, System, SystemAnswer};
 use crate::report::system::SystemMap;
-use crate::scene::{Arrays, SystemScene};
+use crate::scene::SystemScene;
 use crate::system::stretches::Stretch;
 use crate::system::vary::Intervals;
 use crate::system::{Analysis, Holds, Limits, Model, SchemeSummary, SparseSteps, SparseSubcycles};
@@ -55,21 +53,10 @@ fn outcome(context: &Context, route: &'static str, other: Checked) -> Result<Out
 /// Where there is no other route.
 const ALONE: &str = "none: every value is computed again, by the same route";
 
-/// The document and the answer to its question, computed again.
-fn again<Q: Question>(input: &Q, context: &Context) -> Result<(Value, Q::Answer)> {
-    let arrays = Arrays::from(&context.options.folder);
-    let answer = input.answer(&Work { arrays: Some(&arrays), ..context.work() })?;
-    Ok((input.document(&answer).value(), answer))
-}
-
 impl Recheck for Claim {
     const TABLE: &'static str = "rows";
     const LEFT: &'static [Left] = LEFT;
-    type Found = SystemAnswer;
-
-    fn again(&self, context: &Context) -> Result<(Value, SystemAnswer)> {
-        again(&self.input, context)
-    }
+    asked!(System);
 
     fn check(&self, SystemAnswer { scene, found }: SystemAnswer, context: &Context) -> Result<Outcome> {
         match found {
@@ -248,11 +235,7 @@ impl Claim {
 impl Recheck for Simulated {
     const TABLE: &'static str = "series";
     const LEFT: &'static [Left] = LEFT;
-    type Found = crate::question::Simulated;
-
-    fn again(&self, context: &Context) -> Result<(Value, Self::Found)> {
-        again(&self.input, context)
-    }
+    asked!(Simulate);
 
     fn check(&self, found: Self::Found, context: &Context) -> Result<Outcome> {
         if found.run.linear && self.input.form == Ends::Symmetric {
