@@ -11,7 +11,7 @@ pub struct Stretch {
     pub lo: f64,
     /// to this one.
     pub hi: f64,
-    /// What is proven of all between, [`Holds::NotTold`] where nothing is.
+    /// The verdict that is proven for all numbers in between, [`Holds::NotTold`] where none is.
     pub verdict: Holds,
 }
 
@@ -42,7 +42,7 @@ pub fn cover(
     let parts: Vec<_> = (0..PARTS).map(|k| (place(k), place(k + 1))).collect();
     let found = try_map(&parts, |&ends| cells(ends, floor, &verdict))?;
     let coarse = merged(found.into_iter().flatten());
-    // Each that is not told gives to its neighbours what smaller cells prove.
+    // An open stretch gives its neighbours the parts that smaller cells prove.
     let shrink = |own: &Stretch| match own.verdict {
         Holds::NotTold => shrunk(own, FINER * floor, &verdict),
         _ => Ok(vec![*own]),
@@ -51,7 +51,7 @@ pub fn cover(
 }
 
 /// The most cells that [`cover`] asks about, roughly: each as narrow as they get, and a wider one tried before it. Those that sharpen the
-/// ends of what is not told come on top.
+/// ends of open stretches come on top.
 pub fn most_cells((lo, hi): (f64, f64), width: f64) -> f64 {
     2.0 * (hi - lo) / (width * lo.abs().max(hi.abs())) + f64::from(PARTS)
 }
@@ -81,7 +81,7 @@ fn cells(
     Ok(found)
 }
 
-/// What is not told without what cells down to `floor` prove at its ends: near an edge they are as wide as they are far from it.
+/// An open stretch without the parts that cells down to `floor` prove at its ends: near an edge cells are as wide as they are far from it.
 fn shrunk(own: &Stretch, floor: f64, verdict: &impl Fn(f64, f64) -> Result<Holds>) -> Result<Vec<Stretch>> {
     let (mut lo, mut hi) = (own.lo, own.hi);
     let mut ends = [Vec::new(), Vec::new()];
