@@ -83,7 +83,7 @@ impl<'a> Cells<'a> {
         Outer::new(lo, inner_steps).and(Outer::new(hi, inner_steps))?;
         let step = Interval { lo, hi } / Interval::point(inner_steps as f64);
         let fast = step * step;
-        Ok(self.told(&Cell { inner_steps, fast, slow: fast * Interval::point(inner_steps as f64).half() }))
+        Ok(self.holds_over(&Cell { inner_steps, fast, slow: fast * Interval::point(inner_steps as f64).half() }))
     }
 
     /// The verdict at an outer step that is proven for all systems in which one level (0: the fast one) is lo to hi times as stiff.
@@ -95,13 +95,13 @@ impl<'a> Cells<'a> {
         let (scale, square) =
             (Interval { lo: lo.next_down(), hi: hi.next_up() }, Interval::point(outer.inner_square) * room);
         let slow = square * Interval::point(outer.inner_steps as f64).half();
-        self.told(&match level {
+        self.holds_over(&match level {
             0 => Cell { inner_steps: outer.inner_steps, fast: square * scale, slow },
             _ => Cell { inner_steps: outer.inner_steps, fast: square, slow: slow * scale },
         })
     }
 
-    fn told(&self, cell: &Cell) -> Holds {
+    fn holds_over(&self, cell: &Cell) -> Holds {
         let counts = self.counts(cell);
         if counts.as_ref().is_some_and(Counts::tell_instability) {
             return Holds::Unstable;

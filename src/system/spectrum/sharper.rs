@@ -91,7 +91,7 @@ mod tests {
 
     #[test]
     fn what_wide_discs_leave_open_is_told_as_exact_arithmetic_does() {
-        let mut told = [0, 0];
+        let mut proven = [0, 0];
         for n in 2..7 {
             for k in 1..24 {
                 let steps = [&ratio(k, 40), &ratio(k, 20)];
@@ -106,10 +106,10 @@ mod tests {
                     }
                     let Some(kind) = wide.sharper(&system, &blocks.scales) else { continue };
                     assert_eq!(kind, decide_exact(&system, &Limits::default()).unwrap().kind, "{n} {k}");
-                    told[usize::from(kind == Kind::Elliptic)] += 1;
+                    proven[usize::from(kind == Kind::Elliptic)] += 1;
                 }
             }
         }
-        assert!(told[0] > 0 && told[1] > 20, "{told:?}");
+        assert!(proven[0] > 0 && proven[1] > 20, "{proven:?}");
     }
 }

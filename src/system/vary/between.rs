@@ -108,7 +108,7 @@ impl<'a> Cells<'a> {
         let cell = Cell { ends, systems, frame, courses, cells: self };
         Ok(match cell.by_action()? {
             Holds::NotTold => cell.by_half_period()?,
-            told => told,
+            known => known,
         })
     }
 

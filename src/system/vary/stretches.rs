@@ -71,8 +71,8 @@ fn cells(
         match verdict(at, end)? {
             // Half as much again: at + floor may be a rounding farther than floor.
             Holds::NotTold if end - at > 1.5 * floor => step = ((end - at) / 4.0).max(floor),
-            told => {
-                found.push(Stretch { lo: at, hi: end, verdict: told });
+            decided => {
+                found.push(Stretch { lo: at, hi: end, verdict: decided });
                 at = end;
                 step *= 2.0;
             }
@@ -94,8 +94,8 @@ fn shrunk(own: &Stretch, floor: f64, verdict: &impl Fn(f64, f64) -> Result<Holds
             let cell = if k == 0 { (lo, (lo + step).min(hi)) } else { ((hi - step).max(lo), hi) };
             match verdict(cell.0, cell.1)? {
                 Holds::NotTold => step /= 2.0,
-                told => {
-                    found.push(Stretch { lo: cell.0, hi: cell.1, verdict: told });
+                decided => {
+                    found.push(Stretch { lo: cell.0, hi: cell.1, verdict: decided });
                     *(if k == 0 { &mut lo } else { &mut hi }) = if k == 0 { cell.1 } else { cell.0 };
                 }
             }
