@@ -17,6 +17,8 @@ pub trait Recheck {
     const TABLE: &'static str;
     /// Values that the input does not determine.
     const LEFT: &'static [Left] = &[];
+    /// Whether `again` reads rows of the document beside its input.
+    const READS_ROWS: bool = false;
     /// The answer, or the part of it that the other route needs.
     type Found;
 

@@ -126,6 +126,18 @@ macro_rules! claims {
                     $($(#[$condition])? Rows::$variant(rows) => recheck(rows.as_ref(), document, how, context),)*
                 }
             }
+
+            fn again(&self, context: &Context) -> Result<Option<Value>> {
+                match self {
+                    $($(#[$condition])? Rows::$variant(rows) => again(rows.as_ref(), context),)*
+                }
+            }
+
+            fn apart(&self, document: &Map<String, Value>, again: Value) -> Vec<Failure> {
+                match self {
+                    $($(#[$condition])? Rows::$variant(rows) => apart(rows.as_ref(), document, again).failures,)*
+                }
+            }
         }
 
         impl Claim {
@@ -178,6 +190,14 @@ pub struct Claim {
     rows: Rows,
 }
 
+/// A document computed again from its input, against which others of the same input can be held.
+#[derive(Clone, Debug)]
+pub struct Again {
+    schema: Value,
+    input: Value,
+    document: Value,
+}
+
 /// Whether the document is computed again and compared, before another route is taken.
 #[derive(Clone, Copy, PartialEq)]
 enum How {
@@ -226,6 +246,24 @@ impl Claim {
         self.rows.recheck(&self.document, How::OtherRouteAlone, &Context::new(options, see))
     }
 
+    /// The document computed again from its input, for [`Claim::apart`]; `None` of a kind whose rows say what was asked, too.
+    ///
+    /// # Errors
+    /// As [`Claim::recheck`].
+    pub fn again(&self, options: &Options) -> Result<Option<Again>> {
+        let part = |key: &str| self.document.get(key).cloned().unwrap_or_default();
+        let again = self.rows.again(&Context::new(options, None))?;
+        Ok(again.map(|document| Again { schema: part("schema"), input: part("input"), document }))
+    }
+
+    /// The first part of [`Claim::recheck`] against a document that was computed again before: the values that differ. `None` where that
+    /// one has another schema or another input.
+    pub fn apart(&self, again: &Again) -> Option<Vec<Failure>> {
+        let is = |key: &str, other: &Value| self.document.get(key) == Some(other);
+        let alike = is("schema", &again.schema) && is("input", &again.input);
+        alike.then(|| self.rows.apart(&self.document, again.document.clone()))
+    }
+
     /// About how many kicks the slower route composes; 0 where these are few.
     ///
     /// # Errors
@@ -248,7 +286,7 @@ fn recheck<R: Recheck>(
     if how == How::OtherRouteAlone {
         return rows.check(found, context);
     }
-    let Compared { failures, left } = compared(document, again, R::TABLE, R::LEFT);
+    let Compared { failures, left } = apart(rows, document, again);
     if failures.is_empty() {
         let mut outcome = rows.check(found, context)?;
         outcome.not_rechecked.splice(0..0, left);
@@ -257,6 +295,14 @@ fn recheck<R: Recheck>(
     }
     let rows = document.get(R::TABLE).and_then(Value::as_array).map_or(1, |rows| rows.len() as u64);
     Ok(Outcome { rows, route: "computed again", sample: None, failures, not_rechecked: left })
+}
+
+fn again<R: Recheck>(rows: &R, context: &Context) -> Result<Option<Value>> {
+    (!R::READS_ROWS).then(|| rows.again(context).map(|(again, _)| again)).transpose()
+}
+
+fn apart<R: Recheck>(_: &R, document: &Map<String, Value>, again: Value) -> Compared {
+    compared(document, again, R::TABLE, R::LEFT)
 }
 
 /// The limit of every recheck.

@@ -83,7 +83,11 @@ impl<'a> Cells<'a> {
         Outer::new(lo, inner_steps).and(Outer::new(hi, inner_steps))?;
         let step = Interval { lo, hi } / Interval::point(inner_steps as f64);
         let fast = step * step;
-        Ok(self.holds_over(&Cell { inner_steps, fast, slow: fast * Interval::point(inner_steps as f64).half() }))
+        Ok(self.holds_over(&Cell {
+            inner_steps,
+            fast,
+            slow: fast * Interval::point(inner_steps as f64).half(),
+        }))
     }
 
     /// The verdict at an outer step that is proven for all systems in which one level (0: the fast one) is lo to hi times as stiff.
