@@ -532,9 +532,7 @@ impl Linted {
                 "friction",
                 match &question.friction {
                     Some(friction) => format!("{friction}: stable steps draw every start to 0, noise aside"),
-                    None => {
-                        "not given: O does nothing, and the results are those of the word without it".into()
-                    }
+                    None => "not given: O does nothing, and the results are of the word without it".into(),
                 },
             );
         }

@@ -99,7 +99,7 @@ use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
 use serde_path_to_error::{Path, Segment};
 
-use self::again::{Compared, Recheck, compare as compared};
+use self::again::{Compared, Recheck, compare};
 use self::context::{Context, REMEDY};
 use crate::error::{Error, Result};
 use crate::scene::json;
@@ -127,15 +127,9 @@ macro_rules! claims {
                 }
             }
 
-            fn again(&self, context: &Context) -> Result<Option<Value>> {
+            fn again(&self, document: &Map<String, Value>, context: &Context) -> Result<Option<Again>> {
                 match self {
-                    $($(#[$condition])? Rows::$variant(rows) => again(rows.as_ref(), context),)*
-                }
-            }
-
-            fn apart(&self, document: &Map<String, Value>, again: Value) -> Vec<Failure> {
-                match self {
-                    $($(#[$condition])? Rows::$variant(rows) => apart(rows.as_ref(), document, again).failures,)*
+                    $($(#[$condition])? Rows::$variant(rows) => again(rows.as_ref(), document, context),)*
                 }
             }
         }
@@ -193,9 +187,10 @@ pub struct Claim {
 /// A document computed again from its input, against which others of the same input can be held.
 #[derive(Clone, Debug)]
 pub struct Again {
-    schema: Value,
-    input: Value,
     document: Value,
+    /// The schema and the input of the document that it was computed from.
+    head: [Option<Value>; 2],
+    compare: fn(&Map<String, Value>, Value) -> Compared,
 }
 
 /// Whether the document is computed again and compared, before another route is taken.
@@ -251,17 +246,14 @@ impl Claim {
     /// # Errors
     /// As [`Claim::recheck`].
     pub fn again(&self, options: &Options) -> Result<Option<Again>> {
-        let part = |key: &str| self.document.get(key).cloned().unwrap_or_default();
-        let again = self.rows.again(&Context::new(options, None))?;
-        Ok(again.map(|document| Again { schema: part("schema"), input: part("input"), document }))
+        self.rows.again(&self.document, &Context::new(options, None))
     }
 
     /// The first part of [`Claim::recheck`] against a document that was computed again before: the values that differ. `None` where that
     /// one has another schema or another input.
     pub fn apart(&self, again: &Again) -> Option<Vec<Failure>> {
-        let is = |key: &str, other: &Value| self.document.get(key) == Some(other);
-        let alike = is("schema", &again.schema) && is("input", &again.input);
-        alike.then(|| self.rows.apart(&self.document, again.document.clone()))
+        let alike = again.head == asked_in(&self.document);
+        alike.then(|| (again.compare)(&self.document, again.document.clone()).failures)
     }
 
     /// About how many kicks the slower route composes; 0 where these are few.
@@ -286,7 +278,7 @@ fn recheck<R: Recheck>(
     if how == How::OtherRouteAlone {
         return rows.check(found, context);
     }
-    let Compared { failures, left } = apart(rows, document, again);
+    let Compared { failures, left } = compared::<R>(document, again);
     if failures.is_empty() {
         let mut outcome = rows.check(found, context)?;
         outcome.not_rechecked.splice(0..0, left);
@@ -297,12 +289,17 @@ fn recheck<R: Recheck>(
     Ok(Outcome { rows, route: "computed again", sample: None, failures, not_rechecked: left })
 }
 
-fn again<R: Recheck>(rows: &R, context: &Context) -> Result<Option<Value>> {
-    (!R::READS_ROWS).then(|| rows.again(context).map(|(again, _)| again)).transpose()
+fn again<R: Recheck>(rows: &R, own: &Map<String, Value>, context: &Context) -> Result<Option<Again>> {
+    let by_input = (!R::READS_ROWS).then(|| rows.again(context)).transpose()?;
+    Ok(by_input.map(|(document, _)| Again { document, head: asked_in(own), compare: compared::<R> }))
 }
 
-fn apart<R: Recheck>(_: &R, document: &Map<String, Value>, again: Value) -> Compared {
-    compared(document, again, R::TABLE, R::LEFT)
+fn asked_in(document: &Map<String, Value>) -> [Option<Value>; 2] {
+    ["schema", "input"].map(|key| document.get(key).cloned())
+}
+
+fn compared<R: Recheck>(document: &Map<String, Value>, again: Value) -> Compared {
+    compare(document, again, R::TABLE, R::LEFT)
 }
 
 /// The limit of every recheck.

@@ -84,13 +84,11 @@ impl Claim {
             holds(right, || "masked_above is not the friction that masks it".into())?;
         }
         match (row.damped, &self.input.friction) {
-            (Some(written), Some(friction)) => {
+            (Some(said), Some(friction)) => {
                 let truth = own.is_damped(friction)?;
-                holds(truth.is_none_or(|truth| truth == written), || format!("damped is not {written}"))
+                holds(truth.is_none_or(|truth| truth == said), || format!("damped is not {said}"))
             }
-            (written, given) => {
-                holds(written.is_none() || given.is_some(), || "damped without a friction".into())
-            }
+            (said, given) => holds(said.is_none() || given.is_some(), || "damped without a friction".into()),
         }
     }
 }
@@ -131,7 +129,7 @@ impl Row {
         holds(self.growth_rate.holds(&per_ps), || format!("the growth rate is {}", per_ps.mid_f64()))?;
         let ten = Ball::from_integer(&10.into()).ln(BITS).expect("10 > 0");
         let steps = ten.div(&rate.mul(&Ball::from_rational(outer, BITS), BITS), BITS);
-        let right = self.tenfold_steps.zip(steps).is_some_and(|(written, steps)| written.holds(&steps));
+        let right = self.tenfold_steps.zip(steps).is_some_and(|(said, steps)| said.holds(&steps));
         holds(right, || "tenfold_steps is not that of the growth rate".into())
     }
 }

@@ -94,20 +94,20 @@ pub fn subcycles(
     own: &SparseSubcycles,
     dt: f64,
     analysis: &Analysis,
-    written: Option<&SchemeSummary>,
+    said: Option<&SchemeSummary>,
 ) -> Checked {
     held(own, dt, analysis.holds())?;
-    let Some((lo, hi)) = written.and_then(|written| written.first_unstable) else { return Ok(()) };
+    let Some((lo, hi)) = said.and_then(|said| said.first_unstable) else { return Ok(()) };
     held(own, lo, Holds::Stable)?;
     held(own, hi, Holds::Unstable)
 }
 
 /// Checks the verdict of a stretch of steps, in the middle of it.
-pub fn stretch_of_subcycles(own: &SparseSubcycles, written: &Stretch) -> Checked {
-    held(own, written.lo + (written.hi - written.lo) / 2.0, written.verdict)
+pub fn stretch_of_subcycles(own: &SparseSubcycles, said: &Stretch) -> Checked {
+    held(own, said.lo + (said.hi - said.lo) / 2.0, said.verdict)
 }
 
-fn held(own: &SparseSubcycles, dt: f64, written: Holds) -> Checked {
+fn held(own: &SparseSubcycles, dt: f64, said: Holds) -> Checked {
     let n = own.size();
     let pull = |x: DMatrixView<f64>| {
         let columns = x.column_iter().flat_map(|y| own.plain().pull(&y.iter().copied().collect::<Vec<_>>()));
@@ -117,18 +117,18 @@ fn held(own: &SparseSubcycles, dt: f64, written: Holds) -> Checked {
     let after = subcycled(std::slice::from_ref(own.level()), dt, pull, at_rest);
     let all = after.rows(0, n).into_owned().complex_eigenvalues();
     let excess = all.iter().map(|mu| mu.im.abs().max(mu.re.abs() - 1.0)).fold(f64::NEG_INFINITY, f64::max);
-    let right = match written {
+    let right = match said {
         Holds::Stable => excess <= MEETING,
         Holds::Unstable => excess >= -MEETING,
         Holds::NotTold => true,
     };
     holds(right, || {
-        format!("at a step of {dt} the scheme, run, has Q11 off (-1, 1) by {excess}: not {}", written.name())
+        format!("at a step of {dt} the scheme, run, has Q11 off (-1, 1) by {excess}: not {}", said.name())
     })
 }
 
 /// The verdict on a large scheme, its growth and its limits.
-pub fn sparse(own: &SparseSteps, dt: f64, analysis: &Analysis, written: Option<&SchemeSummary>) -> Checked {
+pub fn sparse(own: &SparseSteps, dt: f64, analysis: &Analysis, said: Option<&SchemeSummary>) -> Checked {
     verdict(own, dt, analysis.holds())?;
     if let Some((lo, hi)) = analysis.growth_rate().filter(|_| analysis.holds() == Holds::Unstable) {
         let ritz = Extreme::of(own, dt);
@@ -144,15 +144,15 @@ pub fn sparse(own: &SparseSteps, dt: f64, analysis: &Analysis, written: Option<&
             format!("the scheme, run, has f beyond its ends by {found}, not as it is said to grow")
         })?;
     }
-    let Some(written) = written else { return Ok(()) };
+    let Some(said) = said else { return Ok(()) };
     let n = own.size();
-    if let Some((lo, hi)) = written.plain_limit {
+    if let Some((lo, hi)) = said.plain_limit {
         let [_, most] = extremes(n, |y| own.pull(y));
         let found = 2.0 / most.sqrt();
         let right = found >= lo * (1.0 - ROUNDED) && (n > SEEN || found <= hi * (1.0 + ROUNDED));
         holds(right, || format!("plain leapfrog's limit is {found}"))?;
     }
-    if let Some((lo, hi)) = written.first_unstable {
+    if let Some((lo, hi)) = said.first_unstable {
         verdict(own, lo, Holds::Stable)?;
         let excess = Extreme::of(own, hi).excess;
         holds(n > SEEN || excess > -RESONANT, || format!("nothing is unstable up to a step of {hi}"))?;
@@ -161,23 +161,20 @@ pub fn sparse(own: &SparseSteps, dt: f64, analysis: &Analysis, written: Option<&
 }
 
 /// Checks the verdict of a stretch of steps, in the middle of it.
-pub fn stretch(own: &SparseSteps, written: &Stretch) -> Checked {
-    verdict(own, written.lo + (written.hi - written.lo) / 2.0, written.verdict)
+pub fn stretch(own: &SparseSteps, said: &Stretch) -> Checked {
+    verdict(own, said.lo + (said.hi - said.lo) / 2.0, said.verdict)
 }
 
 /// No motion beyond the ends where all are said to be stable; some, where all are seen and one is said to grow.
-fn verdict(own: &SparseSteps, dt: f64, written: Holds) -> Checked {
+fn verdict(own: &SparseSteps, dt: f64, said: Holds) -> Checked {
     let Extreme { excess, room } = Extreme::of(own, dt);
-    let right = match written {
+    let right = match said {
         Holds::Stable => excess <= room,
         Holds::Unstable => own.size() > SEEN || excess >= -room,
         Holds::NotTold => true,
     };
     holds(right, || {
-        format!(
-            "at a step of {dt} the scheme, run, has f beyond its ends by {excess}: not {}",
-            written.name()
-        )
+        format!("at a step of {dt} the scheme, run, has f beyond its ends by {excess}: not {}", said.name())
     })
 }
 

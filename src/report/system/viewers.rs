@@ -11,11 +11,7 @@ fn modes<'a>(analysis: &'a Analysis, geometry: &Geometry) -> Result<Vec<(usize, 
     let (modes, _) = fastest(analysis);
     if modes.is_empty() {
         let found = format!("the modes that grow, of a system that is {}", analysis.kind_name());
-        return Err(Error::input(
-            "output",
-            found,
-            "no growing mode is known: choose an unstable step, or another form",
-        ));
+        return Err(Error::input("output", found, "none is known: choose an unstable step, or another form"));
     }
     if modes.iter().any(|(_, own)| own.shape.len() != geometry.moved.len()) {
         let remedy =
