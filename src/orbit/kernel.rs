@@ -56,7 +56,7 @@ pub struct Lanes<const L: usize> {
     pub odd: Orbits<L>,
     /// 2r − q, r the remainder of kp mod q: an integer in [−q, q).
     place: [f64; L],
-    /// The step of a kick, the largest place without a carry, and the step of a kick with a carry.
+    /// The increment of a kick, the largest place without a carry, and the increment of a kick with a carry.
     step: [f64; L],
     limit: [f64; L],
     wrap: [f64; L],
@@ -520,7 +520,7 @@ impl<const L: usize> Lanes<L> {
         Hardest { beta: largest::<L>(&beta), slope: largest(&self.slope), steps }
     }
 
-    /// The number of kicks that the first so many lanes compose; the others hold the pair of the last one.
+    /// The kicks that the first so many lanes will have composed; the others hold the pair of the last one.
     #[inline(always)]
     pub fn kicks(&self, pairs: usize) -> u64 {
         let spare = (L - pairs) as f64 * self.updates[L - 1];
@@ -573,7 +573,7 @@ impl<const L: usize> Lanes<L> {
         state.unless(over, before).store::<W, L>(self, at);
     }
 
-    /// Applies the changes of a look to the lanes, for both solutions.
+    /// The sums that a look changes, of both solutions, in the lanes from `at` on.
     #[inline(always)]
     fn sums<V: Vector>(&self, at: usize) -> [V; 6] {
         let of = |orbits: &Orbits<L>| {

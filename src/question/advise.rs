@@ -220,7 +220,7 @@ impl Mode {
 pub enum Safe {
     /// On periods and bonds.
     Periods(Box<Advice>),
-    /// Of the Hessians of a system.
+    /// On the Hessians of a system.
     Hessians(Box<(SystemScene, Findings)>),
     /// On forces that are no gradient.
     Direct(Box<(SystemScene, DirectFindings)>),

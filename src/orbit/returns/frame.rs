@@ -19,7 +19,7 @@ use crate::propagator::{LongClocks, PartialSigns};
 /// Bits of a base's angle beside those of the number of its steps.
 const ANGLE: u32 = 50;
 
-/// The turn of a number of steps with so many binary digits is known in doubles.
+/// Doubles know the turn of a number of steps that has at most so many binary digits.
 const FEW: u32 = 17;
 
 /// |σ²| below which a base beyond its own limit keeps the unit of the velocity.

@@ -38,7 +38,7 @@ impl Interval {
         from + 1..=upto
     }
 
-    /// The part inside the range of those wanted.
+    /// The wanted eigenvalues inside, by the counts.
     #[inline(always)]
     fn contents(&self, limits: &Limits) -> Contents {
         // Numbers rather than branches: which problems have one is anybody's guess.
