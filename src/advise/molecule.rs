@@ -261,7 +261,7 @@ impl Molecule {
         steps.iter().map(|step| step / &self.unit).collect()
     }
 
-    /// Those of a scheme, the outermost one a multiple of the step before it, which it may be itself.
+    /// The steps of a scheme with an outermost step of `count` times the step before it: that outermost step in fs, and all steps in their unit.
     fn with_multiple(&self, scheme: &Scheme, count: u64) -> (Rational, Vec<Rational>) {
         let outer = scheme.last_but_one() * Rational::from_integer(count.into());
         let mut steps = scheme.steps().to_vec();

@@ -12,7 +12,7 @@ use crate::system::{Analysis, Holds, Instability, Removed};
 /// Stiffnesses of levels, steps and rates in their unit of time; `steps` are those of all levels, innermost first. What is proven of an outer step is so
 /// with all others in their ratios to it.
 pub trait Source: Debug + Send + Sync {
-    /// That these steps can be asked about.
+    /// Checks that these steps can be asked about.
     ///
     /// # Errors
     /// Another number of them, ratios that are not answered for.
@@ -48,7 +48,7 @@ pub trait Source: Debug + Send + Sync {
     /// Whether a band of periods is proven stable, at all smaller steps, too.
     fn covers_band(&self, steps: &[Rational], band: f64, accuracy: f64) -> Result<bool>;
 
-    /// The outer step up to which that is so.
+    /// The outer step up to which the band is covered.
     fn band_edge(&self, steps: &[Rational], band: f64, accuracy: f64) -> Result<Option<f64>>;
 
     /// Where the spectral radius of a period with friction lies; `None`: doubles cannot decide.

@@ -140,7 +140,7 @@ impl Word {
         !word.is_algebraic() || self.friction.is_some()
     }
 
-    /// Refuses friction that no letter feels, and flows of forces that push away.
+    /// Refuses friction without a letter O, and exact flows of repulsive forces.
     fn check(&self, word: &crate::word::Word) -> Result<()> {
         if let Some(friction) = &self.friction {
             if friction.sign() != Sign::Positive {

@@ -50,8 +50,8 @@ pub struct Compared {
     pub left: Vec<String>,
 }
 
-/// Holds a document against the one computed again; `table` is the key of its rows. Of the input, the fields are compared that
-/// `again` echoes.
+/// Compares a document with the one computed again; `table` is the key of its rows. Of its input only the fields that `again` echoes
+/// are compared.
 pub fn compare(written: &Map<String, Value>, again: Value, table: &str, left: &[Left]) -> Compared {
     let (mut written, mut again) = (Value::Object(written.clone()), again);
     let version = ("kickdrift.version", "which version wrote it is no claim");

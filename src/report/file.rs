@@ -110,7 +110,7 @@ fn to_path(path: &Path, content: impl FnOnce(&mut dyn Write) -> Result<()>) -> R
     finish().map_err(Error::stream)
 }
 
-/// That a file may be replaced, if there is one: a rename would pass over what keeps it from being written to.
+/// Checks that a file may be replaced, if there is one: a rename alone would ignore its write protection.
 ///
 /// # Errors
 /// [`Kind::Io`](crate::error::Kind::Io) naming a file that is read-only, for all or for this process.
