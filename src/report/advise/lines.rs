@@ -233,7 +233,7 @@ pub(super) fn friction(rate: &Rational) -> String {
     )
 }
 
-/// The reasons: proven, published, unknown.
+/// What is proven, published, unknown.
 fn reasons(advice: &Advice) -> Vec<String> {
     let fastest = &advice.modes[advice.fastest];
     let answer = &advice.schemes[0];

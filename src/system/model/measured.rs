@@ -252,7 +252,7 @@ impl MeasuredSystem {
         }
     }
 
-    /// The verdict that is proven for all stiffnesses within the accuracy; `None` unless there are two levels.
+    /// What is proven of all stiffnesses within the accuracy; `None` where it is not of two levels.
     pub(super) fn holds(&self, limits: &Limits) -> Result<Option<Holds>> {
         let Some((outer, _)) = self.outer() else { return Ok(None) };
         self.allow(limits)?;
@@ -289,7 +289,7 @@ impl MeasuredSystem {
         (self.size() as u64).saturating_pow(3).saturating_mul(60)
     }
 
-    /// The verdicts that are proven for all stiffnesses within an accuracy on a range of outer steps, as many inner ones in each.
+    /// What is proven of all stiffnesses within an accuracy on a range of outer steps, as many inner ones in each.
     pub(super) fn stretches(&self, range: (f64, f64), width: f64, accuracy: f64) -> Result<Vec<Stretch>> {
         self.kernel()?.stretches(self.inner_steps(), range, width, accuracy)
     }

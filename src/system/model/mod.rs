@@ -145,7 +145,7 @@ impl Model {
         }
     }
 
-    /// The verdict that is proven; for two measured levels for all stiffnesses within their accuracy, as in stretches.
+    /// What is proven of it, of two measured levels for all stiffnesses within their accuracy: as of its stretches.
     ///
     /// # Errors
     /// As [`Model::decide`].
