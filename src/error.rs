@@ -14,7 +14,7 @@
 use std::sync::Arc;
 use std::{fmt, io};
 
-/// What went wrong, as far as the caller's next move is concerned.
+/// The kind of an error, as far as it decides what the caller does next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Kind {
@@ -101,21 +101,21 @@ impl Error {
         Error::io("", &cause).caused_by(cause)
     }
 
-    /// The same with another remedy, beside the higher limit of a [budget](Error::budget).
+    /// This error with another remedy, beside the higher limit of a [budget](Error::budget).
     #[must_use]
     pub fn or(mut self, remedy: impl fmt::Display) -> Self {
         self.0.remedy = remedy.to_string();
         self
     }
 
-    /// The same about something else: a stream's error about the path that the stream goes to.
+    /// This error about another field: an error of a stream becomes one about the path that the stream goes to.
     #[must_use]
     pub fn at(mut self, field: impl fmt::Display) -> Self {
         self.0.field = field.to_string();
         self
     }
 
-    /// The same with the error that caused it, for [`std::error::Error::source`].
+    /// This error with the one that caused it, for [`std::error::Error::source`].
     #[must_use]
     pub fn caused_by(mut self, cause: impl std::error::Error + Send + Sync + 'static) -> Self {
         self.0.source = Some(Arc::new(cause));
@@ -127,7 +127,7 @@ impl Error {
         self.0.kind
     }
 
-    /// What it is about: a field of the input, a path, or the work that would exceed the limit.
+    /// The subject: a field of the input, a path, or the work that would exceed the limit.
     pub fn field(&self) -> &str {
         &self.0.field
     }
@@ -137,7 +137,7 @@ impl Error {
         self.0.value.as_deref()
     }
 
-    /// What to do instead; empty where only a higher limit helps.
+    /// The remedy; empty where only a higher limit helps.
     pub fn remedy(&self) -> &str {
         &self.0.remedy
     }

@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex};
 use crate::error::{Error, Result, room};
 
 thread_local! {
-    /// What stops the work under way on this thread.
+    /// The flag that stops the work under way on this thread.
     static STOP: RefCell<Option<Arc<AtomicBool>>> = const { RefCell::new(None) };
 }
 
@@ -98,7 +98,7 @@ pub(crate) fn map<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync) 
     found.expect("none of these fails")
 }
 
-/// The same of what may fail.
+/// As [`map`], for a function that may fail.
 ///
 /// # Errors
 /// That of the first item which fails, whatever the threads; items after it may be left out.

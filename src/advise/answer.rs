@@ -1,4 +1,4 @@
-//! What is answered: scheme by scheme, and what to do.
+//! The answer of advice: scheme by scheme, and which step to take.
 
 use num_traits::{One, Zero};
 
@@ -16,7 +16,7 @@ use crate::system::Limits;
 
 const BITS: u32 = 128;
 
-/// What to think of a scheme, the best first.
+/// The judgement of a scheme, the best first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Status {
     /// Proven stable for every period in the band, and below all that is published.
@@ -27,7 +27,7 @@ pub enum Status {
     Near,
     /// Stable for the periods given, but above an unstable interval.
     Island,
-    /// Measured stiffnesses do not tell.
+    /// Within the accuracy of the measured stiffnesses no verdict is proven.
     NotTold,
     /// Unstable.
     Unstable,
@@ -60,7 +60,7 @@ pub struct Row {
     pub tenfold_steps: Option<(f64, f64)>,
     /// The first unstable interval of outer steps at the ratio of the scheme. Its upper end and growth are known for one or two clocks.
     pub first: Option<Unstable>,
-    /// Of two clocks: the unstable intervals next to a stable scheme, below and above; of an unstable one the one that holds it.
+    /// With two clocks: the unstable intervals next to a stable scheme, below and above; for an unstable scheme the interval that holds it.
     pub below: Option<Unstable>,
     pub above: Option<Unstable>,
     pub inside: Option<Unstable>,
@@ -70,7 +70,7 @@ pub struct Row {
     pub masking: Option<(f64, f64)>,
     /// Whether the friction given keeps it bounded.
     pub is_damped: Option<bool>,
-    /// Of two clocks, where it grows: with the inner step every ratio of steps from lo to hi, rational or not, is unstable; `None` where
+    /// With two clocks, where it grows: with the inner step every ratio of steps from lo to hi, rational or not, is unstable; `None` where
     /// that is not proven ([`unstable_ratios`]).
     pub ratios: Option<(Rational, Rational)>,
 }
@@ -104,7 +104,7 @@ pub struct Answer {
     /// The longest outer step, a multiple of the step before it, that is proven stable for every period in the band; `None`: not even
     /// that step itself.
     pub largest: Option<Rational>,
-    /// The same, and below T/3 of the fastest mode.
+    /// As above, and below T/3 of the fastest mode.
     pub safe: Option<Rational>,
     /// Where nothing is known to be on the outermost clock: the shortest period there, in fs, for which the scheme is proven stable for
     /// every period in the band; rounded up.
@@ -129,7 +129,7 @@ pub struct Advice {
     pub held: Vec<Mode>,
     /// Per fs.
     pub friction: Option<Rational>,
-    /// What would let the outer step of the first scheme grow; `None` where that was not asked.
+    /// Changes that would let the outer step of the first scheme grow; `None` where that was not asked.
     pub levers: Option<Levers>,
     /// Whether the periods are the shortest of all motions on their clocks.
     pub all_modes: bool,

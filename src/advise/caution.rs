@@ -1,4 +1,4 @@
-//! What is published and not proven: each statement with its source.
+//! Statements that are published and not proven here: each with its source.
 
 /// A statement from the literature about an outer or an inner step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -41,7 +41,7 @@ pub struct Direct {
     names: Names,
 }
 
-/// What the steps do beside the forces.
+/// The growth that the steps add to that of the forces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Adds {
     /// Growth is proven to be at most [`TIMES`] that without steps, none where that is none; or tenfold after 1 µs at the earliest.
@@ -102,7 +102,7 @@ pub struct DirectFinding {
     pub within_run: Option<bool>,
     /// The longest multiple up to which all are proven to add little, within the band too.
     pub largest: Option<Rational>,
-    /// The same, and below T/3 of the fastest motion.
+    /// As above, and below T/3 of the fastest motion.
     pub safe: Option<Rational>,
     /// The longest multiple up to which the friction given is proven to mask all growth.
     pub masked: Option<Rational>,
@@ -127,7 +127,7 @@ pub struct DirectFindings {
     pub schemes: Vec<DirectFinding>,
 }
 
-/// What is asked at every scheme, and what is known of the forces before.
+/// The question asked at every scheme, and the growth of the forces alone.
 struct Asked<'a> {
     band: &'a Rational,
     length: Option<&'a Rational>,
@@ -220,7 +220,7 @@ impl Direct {
         (outward(lo, -1e-15), outward(hi, 1e-15))
     }
 
-    /// What steps in fs do, with the periods given and within the band.
+    /// The growth that steps in fs add, with the periods given and within the band.
     fn adds(&self, at: &Jacobians, asked: &Asked) -> Result<[Adds; 2]> {
         let longer = at.slowed(&(Rational::one() - asked.band).recip())?;
         let slow = SLOW * to_f64(&self.unit);

@@ -52,7 +52,7 @@ impl<'a> Edges<'a> {
         Some(Edges { levels, schedule, strengths })
     }
 
-    /// `None` where balls do not tell a sign.
+    /// `None` where balls cannot decide a sign.
     fn half(&self, t: f64) -> Option<Half> {
         let square = Ball::from_rational(&from_f64_exact(t)?, BITS).square(BITS);
         let kicks = Kicks::of_clocks(self.strengths.iter().map(|k| k.mul(&square, BITS)), |k| {
@@ -76,7 +76,7 @@ impl<'a> Edges<'a> {
         })
     }
 
-    /// Neighbouring scales between which the k-th edge of a problem lies, or as close as balls tell; `None` above `most`.
+    /// Neighbouring scales between which the k-th edge of a problem lies, or as close as balls can decide; `None` above `most`.
     fn edge(&self, problem: usize, k: u64, most: f64) -> Option<(f64, f64)> {
         let below = |t: f64| self.half(t).map(|half| half.counts[problem] < k);
         let (lo, hi) = (most * 1e-6, most);
@@ -108,7 +108,7 @@ impl<'a> Edges<'a> {
 
     /// All that begin below `reach` times the scheme, by their label: at most `count` of them.
     pub fn all(&self, reach: f64, count: usize) -> Vec<Unstable> {
-        // A step beyond the reach that is told: no edge hides between.
+        // A step beyond the reach that is given: no edge hides between.
         let Some((most, half)) = (0..60).find_map(|k| {
             let most = 2.0 * reach * (1.0 + 1e-3 * f64::from(k));
             self.half(most).map(|half| (most, half))
@@ -151,7 +151,7 @@ impl<'a> Edges<'a> {
 struct Counting {
     states: [[Ball; 2]; 2],
     tick: Ball,
-    /// `None` once a sign was not told.
+    /// `None` once a sign could not be decided.
     last: [Option<Sign>; 2],
     changes: [u64; 2],
 }

@@ -1,4 +1,4 @@
-//! The unstable intervals of an outer step at a fixed ratio: tongues, told in fs.
+//! The unstable intervals of an outer step at a fixed ratio: tongues, in fs.
 
 use num_traits::Zero;
 
@@ -46,7 +46,7 @@ pub(crate) struct Intervals<'a> {
 }
 
 impl<'a> Intervals<'a> {
-    /// Of stiffnesses that are on the clocks h1 and h2 = h1 p/q.
+    /// The stiffnesses on the clocks h1 and h2 = h1 p/q.
     pub fn new(ratio: Ratio, fast: &'a Laurent, slow: &Laurent) -> Result<Self> {
         let of = |rho: &Rational| Tongues::new(ratio, rho);
         let (low, high) = match Laurent::ratio(slow, fast) {

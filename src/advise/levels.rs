@@ -81,7 +81,7 @@ impl Scheme {
         &self.steps[self.steps.len().saturating_sub(2)]
     }
 
-    /// The same with another outermost step.
+    /// This scheme with another outermost step.
     pub(crate) fn with_outer(&self, outer: Rational) -> Result<Scheme> {
         let mut steps = self.steps.clone();
         *steps.last_mut().expect("at least one step") = outer;
@@ -110,7 +110,7 @@ pub struct Levels<'a> {
     pub stiffness: Vec<Laurent>,
 }
 
-/// What is proven of one mass at one scheme.
+/// The verdict of one mass at one scheme, proven.
 #[derive(Clone, Debug)]
 pub struct Found {
     pub kind: Kind,
@@ -126,7 +126,7 @@ impl Levels<'_> {
     /// The verdict, by the certified ladder.
     ///
     /// # Errors
-    /// A budget error where what would tell exceeds the limits.
+    /// A budget error where the decision would exceed the limits.
     pub fn decide(&self, limits: &Limits) -> Result<Found> {
         let heard = self.heard();
         let Some(&first) = heard.first() else {
@@ -157,14 +157,14 @@ impl Levels<'_> {
         (0..self.stiffness.len()).collect()
     }
 
-    /// The friction per fs above which a resonance is masked, enclosed; `None` where nothing grows or the period is too long to tell.
+    /// The friction per fs above which a resonance is masked, enclosed; `None` where nothing grows or the period is too long to decide.
     pub fn masking(&self) -> Option<(f64, f64)> {
         let found = masking(&self.clocks(&self.all()).ok()?).ok()??;
         let first = Ball::from_rational(self.scheme.inner(), BITS);
         Some(found.rate.div(&first, BITS)?.to_f64_enclosure())
     }
 
-    /// Whether this friction per fs keeps all bounded; `None` where that is not told.
+    /// Whether this friction per fs keeps all bounded; `None` where that is not proven either way.
     pub fn is_damped_by(&self, rate: &Rational) -> Option<bool> {
         let rate = rate * self.scheme.inner();
         Some(damped(&self.clocks(&self.all()).ok()?, &rate).ok()?.damping == Damping::Damped)
@@ -180,7 +180,7 @@ impl Levels<'_> {
         ManyClocks::new(&steps, &vec![Rational::zero(); steps.len()], heard.iter().map(strength).collect())
     }
 
-    /// Whether conditions (1) and (2) hold for the stiffnesses times `factor`: `None` where the balls do not tell.
+    /// Whether conditions (1) and (2) hold for the stiffnesses times `factor`: `None` where the balls cannot decide.
     pub fn in_first_region(&self, factor: &Ball) -> Option<bool> {
         let steps = &self.scheme.steps;
         let schedule = Schedule::new(steps, &vec![Rational::zero(); steps.len()]).ok()?;
@@ -210,7 +210,7 @@ impl Levels<'_> {
     }
 
     /// The factors of all steps, at fixed ratios, up to which the first region provably reaches and beyond which it provably has ended:
-    /// neighbours, or as close as balls can tell. The conditions hold at every smaller step (proofs/REGION.md), so a bisection finds them.
+    /// neighbours, or as close as balls can decide. The conditions hold at every smaller step (proofs/REGION.md), so a bisection finds them.
     ///
     /// # Errors
     /// Where no factor in the range of doubles ends it: there is no stiffness.
@@ -223,7 +223,7 @@ impl Levels<'_> {
         let none = || Error::missing("period", "give the period of at least one force");
         let hi = (-60..60).map(|k| 2f64.powi(k)).find(|&t| at(t) == Some(false)).ok_or_else(none)?;
         let mut lo = hi / 2.0;
-        // The factor before this one was not told to have left: it is inside, or on the edge itself.
+        // The factor before this one was not proven to lie outside: it is inside, or on the edge itself.
         while at(lo) != Some(true) {
             lo *= 0.999;
             if lo < hi / 4.0 {

@@ -1,10 +1,10 @@
-//! What would let the outer step grow: other masses, constraints, methods and ratios, each with its own proof.
+//! Levers, changes that would let the outer step grow: other masses, constraints, methods and ratios, each with its own proof.
 //!
-//! A lever is the question with one thing changed. Those of r-RESPA (kicks and drifts) have the first region as proof, that of the levels; mollified
-//! kicks the edge of all coupled modes ([`Trigonometric::coupled_edge`](crate::word::Trigonometric::coupled_edge)), of Hessians the band of their
-//! modes ([`Kernel::band_edge`](crate::system::levels::Kernel::band_edge)). Two methods have none of the
-//! fast modes' resonances at all: with the fast forces by the midpoint rule a step is stable iff h² S < 4 (and F + S > 0), whatever F
-//! (proofs/ImplicitExplicit.v); MOLLY by the equilibrium kicks the fast modes not at all. What cannot be computed is left out, and why is said.
+//! A lever is the question with one thing changed. A lever of r-RESPA (kicks and drifts) is proven by the first region of the levels; one of
+//! mollified kicks by the edge of all coupled modes ([`Trigonometric::coupled_edge`](crate::word::Trigonometric::coupled_edge)), for Hessians by
+//! the band of their modes ([`Kernel::band_edge`](crate::system::levels::Kernel::band_edge)). Two methods have no resonance with the fast modes
+//! at all: with the fast forces by the midpoint rule a step is stable iff h² S < 4 (and F + S > 0), whatever F (proofs/ImplicitExplicit.v);
+//! MOLLY by the equilibrium does not kick the fast modes. A lever that cannot be computed is left out, with the reason.
 
 use num_bigint::BigInt;
 use num_traits::{One, Zero};
@@ -22,7 +22,7 @@ use crate::word::Trigonometric;
 
 const BITS: u32 = 96;
 
-/// What bounds a step that is told.
+/// The kind of bound on a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Bound {
     /// All periods of the band are proven stable below it.
@@ -53,9 +53,9 @@ pub struct Lever {
     pub name: String,
     pub way: Way,
     /// The first unstable outer step of the periods given, one fast mode at a time; `None` where there is none ([`is_free`](Self::is_free)), or
-    /// where nothing is told.
+    /// where none is computed.
     pub first: Option<(f64, f64)>,
-    /// The same exactly, where it is c π^k.
+    /// This step exactly, where it is c π^k.
     pub exact: Option<Laurent>,
     /// Whether no outer step of the band is unstable by a resonance of one fast mode.
     pub is_free: bool,
@@ -70,13 +70,13 @@ pub struct Lever {
 }
 
 impl Lever {
-    /// One of which nothing is told yet.
+    /// A lever whose steps are not computed yet.
     pub(super) fn new(name: String, way: Way) -> Lever {
         let (first, exact, band_edge, step, inner, gain) = Default::default();
         Lever { name, way, first, exact, is_free: false, band_edge, step, inner, gain }
     }
 
-    /// What a friction per fs masks up to this outer step.
+    /// A lever by friction: this rate per fs masks all growth up to this outer step.
     pub(super) fn masked(step: Rational, inner: &Rational, rate: &Rational) -> Lever {
         let name = format!("friction {}/ps", decimal(&(rate * Rational::from_integer(1000.into()))));
         Lever {
@@ -127,7 +127,7 @@ pub enum Way {
     Friction,
 }
 
-/// What has a way, how it is asked for, and where that is written.
+/// A kind of lever, how it is asked for, and where that is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Engine {
     pub name: &'static str,
@@ -211,7 +211,7 @@ pub(super) fn least() -> Rational {
 pub(super) const MOST_MASKED: u64 = 200;
 
 impl Question {
-    /// What would let the outer step of the first scheme grow.
+    /// The levers that would let the outer step of the first scheme grow.
     ///
     /// # Errors
     /// A budget error, as of the answer.
@@ -220,7 +220,7 @@ impl Question {
         let scheme = &self.schemes[0];
         if self.stiffest().iter().any(Option::is_none) {
             all.left_out
-                .push("a clock has no period, so nothing is told of what would let the step grow".into());
+                .push("a clock has no period, so no levers are computed that would let the step grow".into());
             return Ok(all);
         }
         let way = if scheme.steps().len() == 1 { Way::Verlet } else { Way::Respa };
@@ -289,7 +289,7 @@ impl Question {
         (of(lo).0, of(hi).1)
     }
 
-    /// The same about other modes.
+    /// This question about other modes.
     fn about(&self, modes: Vec<Mode>) -> Question {
         Question { modes, ..self.clone() }
     }
@@ -507,7 +507,7 @@ pub(super) fn part(step: &Option<(Rational, Bound)>, inner: &Rational) -> Option
 }
 
 impl Levers {
-    /// Tells each gain: against the longest step of kicks and drifts as they are today, at any ratio.
+    /// Sets each gain: against the longest step of kicks and drifts as they are today, at any ratio.
     pub fn compare(&mut self) {
         let today = self.rows.iter().filter(|own| matches!(own.way, Way::Verlet | Way::Respa));
         let longest = today.filter_map(|own| own.step.as_ref()).map(|(step, _)| step.clone()).max();

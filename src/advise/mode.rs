@@ -1,4 +1,4 @@
-//! What vibrates: a stiffness over a mass, on one of the clocks.
+//! Modes, the vibrations of advice: a stiffness over a mass, on one of the clocks.
 //!
 //! A period T is the stiffness (2 π/T)² of unit mass, exactly, in ℚ\[π\]; a bond is its force constant over its reduced mass.
 //!
@@ -87,7 +87,7 @@ impl Bond {
     }
 }
 
-/// Periods are told in doubles from so many bits.
+/// Periods are enclosed in so many bits before they become doubles.
 const BITS: u32 = 96;
 
 impl Mode {
@@ -159,7 +159,7 @@ impl Mode {
         hydrogen.map_or(Ok(mode.clone()), |hydrogen| mode.with_hydrogens(hydrogen))
     }
 
-    /// The same bond with hydrogens of this mass in amu; as it is where it is no bond, or has no hydrogen.
+    /// This bond with hydrogens of this mass in amu; unchanged where it is no bond, or has no hydrogen.
     ///
     /// # Errors
     /// A heavy atom that would be left without mass.
@@ -173,7 +173,7 @@ impl Mode {
         Ok(Mode { stiffness: &self.stiffness * &Laurent::from_rational(after), bond, ..self.clone() })
     }
 
-    /// Of a bond: whether one of its atoms is a hydrogen.
+    /// Whether one of the two atoms of a bond is a hydrogen; `None` where this is no bond.
     pub fn is_bond_with_hydrogen(&self) -> Option<bool> {
         self.bond.as_ref().map(Bond::has_hydrogen)
     }
@@ -275,7 +275,7 @@ mod tests {
     #[test]
     fn heavy_hydrogens_slow_their_bond_down() {
         let heavy = ratio(3024, 1000);
-        // Of a methyl group and of an amide.
+        // A methyl group and an amide.
         assert_eq!(period("CH:K=340kcal/mol/A^2,12.011,1.008,3", Some(&heavy)), "16.69");
         assert_eq!(period("NH:K=434kcal/mol/A^2,14.007,1.008", Some(&heavy)), "16.20");
         // No hydrogen, no change.

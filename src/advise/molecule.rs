@@ -1,6 +1,6 @@
 //! Hessians of a molecule on its clocks: its own modes, the first unstable interval, a band of periods.
 //!
-//! Where periods are given one by one the stiffest stands for all; Hessians tell what their coupling makes of them. The first stable
+//! Where periods are given one by one the stiffest stands for all; Hessians have the coupling of the modes, too. The first stable
 //! region, its margin and its band are proven (proofs/REGION.md); growth rates are rounded.
 
 use std::sync::Arc;
@@ -39,18 +39,18 @@ pub struct Group {
     pub count: usize,
     /// The shortest and the longest period in fs, rounded.
     pub period: (f64, f64),
-    /// What they are called; `None` where it is not known who is bonded to whom, or no bond, angle or molecule has most of a mode.
+    /// Their name; `None` where the bonds are not known, or where no bond, angle or molecule has most of a mode.
     pub name: Option<String>,
     /// Who moves in the fastest of them.
     pub atoms: String,
 }
 
-/// What is told of a molecule at one scheme of steps; lengths in fs.
+/// The answer for a molecule at one scheme of steps; lengths in fs.
 #[derive(Clone, Debug)]
 pub struct Finding {
     pub scheme: Scheme,
     pub status: Status,
-    /// What is proven of all matrices within their accuracy.
+    /// The verdict that is proven for all matrices within their accuracy.
     pub holds: Holds,
     /// The largest relative change of the stiffnesses under which the verdict is proven to stand.
     pub margin: Option<f64>,
@@ -62,11 +62,11 @@ pub struct Finding {
     pub growing: Vec<Growing>,
     /// Growth per fs, rounded; 0 where nothing grows, `None` where that is not decided.
     pub rate: Option<f64>,
-    /// What grows fastest is called, where that is known.
+    /// The name of the motion that grows fastest, where it is known.
     pub name: Option<String>,
     /// Who moves in it.
     pub atoms: Option<String>,
-    /// Where a friction was given: whether it is proven to keep all bounded, or that something grows all the same; `None`: doubles do not tell.
+    /// Where a friction was given: whether it is proven to keep all bounded, or that something grows all the same; `None`: doubles cannot decide.
     pub is_damped: Option<bool>,
     /// And where something grows without one, a friction per fs that is proven to mask it, about the least.
     pub masking: Option<f64>,
@@ -74,12 +74,12 @@ pub struct Finding {
     pub band_edge: Option<f64>,
     /// The longest multiple of the inner step that is proven so, all shorter ones too.
     pub largest: Option<Rational>,
-    /// The same, and below T/3 of the fastest mode.
+    /// As above, and below T/3 of the fastest mode.
     pub safe: Option<Rational>,
     pub within_run: Option<bool>,
 }
 
-/// What is told of a molecule at a ratio of steps, in fs.
+/// The answer for a molecule at a ratio of steps, in fs.
 #[derive(Clone)]
 struct AtRatio {
     first: Option<(f64, f64)>,
@@ -88,7 +88,7 @@ struct AtRatio {
     band_edge: Option<f64>,
 }
 
-/// All that is told of a molecule.
+/// The whole answer for a molecule.
 #[derive(Clone, Debug)]
 pub struct Findings {
     pub groups: Vec<Group>,
@@ -103,14 +103,14 @@ pub struct Findings {
     /// Per fs.
     pub friction: Option<Rational>,
     pub schemes: Vec<Finding>,
-    /// What would let the outer step of the first scheme grow; `None` where that was not asked.
+    /// Levers that would let the outer step of the first scheme grow; `None` where that was not asked.
     pub levers: Option<Levers>,
 }
 
-/// Fast modes are told as one where each period is within this of the next.
+/// Fast modes are listed as one group where each period is within this factor of the next.
 const NEIGHBOUR: f64 = 1.03;
 
-/// Groups are told up to this many.
+/// At most this many groups are listed.
 const MOST_GROUPS: usize = 12;
 
 /// Frequencies below this part of the highest one are no modes of the fast stiffness: rigid to it, or slow.
@@ -125,7 +125,7 @@ const OF_AN_INNER_STEP: u64 = 30_000;
 /// Factorizations of the action by which many levels are advised on, each in n³ for a kick time, measured.
 const FACTORIZATIONS: u64 = 400;
 
-/// An interval is followed in relative steps no shorter than this: its beginning is told to 1e-8.
+/// An interval is followed in relative steps no shorter than this: its beginning is found to 1e-8.
 const LEAST: f64 = 1e-9;
 
 /// Nor are the first samples of its growth closer.
@@ -160,13 +160,12 @@ impl Molecule {
         if cost <= most {
             return Ok(cost);
         }
-        let (told, limit) = (cost as f64, most as f64);
+        let (products, limit) = (cost as f64, most as f64);
         let work = format!(
-            "advice on {size} degrees of freedom, {schemes} scheme{} of steps, costs about {told:.1e} products, the budget is {limit:.1e}",
+            "advice on {size} degrees of freedom, {schemes} scheme{} of steps, costs about {products:.1e} products, the budget is {limit:.1e}",
             if schemes == 1 { "" } else { "s" }
         );
-        Err(Error::budget(work, cost)
-            .or("ask about fewer schemes, longer inner steps, or without what would let the step grow"))
+        Err(Error::budget(work, cost).or("ask about fewer schemes, longer inner steps, or without levers"))
     }
 
     /// The findings at each scheme, all periods within `band` of theirs.
@@ -262,7 +261,7 @@ impl Molecule {
         steps.iter().map(|step| step / &self.unit).collect()
     }
 
-    /// Those of a scheme, the outermost one a multiple of the step before it, which it may be itself.
+    /// The steps of a scheme with an outermost step of `count` times the step before it: that outermost step in fs, and all steps in their unit.
     fn with_multiple(&self, scheme: &Scheme, count: u64) -> (Rational, Vec<Rational>) {
         let outer = scheme.last_but_one() * Rational::from_integer(count.into());
         let mut steps = scheme.steps().to_vec();
@@ -418,7 +417,7 @@ impl Molecule {
         third.unwrap_or_else(Rational::zero)
     }
 
-    /// What belongs to the ratios of a scheme's steps.
+    /// The results that belong to the ratios of a scheme's steps.
     fn at_ratio(&self, scheme: &Scheme, band: f64) -> Result<AtRatio> {
         let (steps, unit) = (self.steps(scheme), to_f64(&self.unit));
         let band_edge = self.source.band_edge(&steps, band, self.accuracy)?.map(|edge| edge * unit);

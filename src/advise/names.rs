@@ -1,8 +1,8 @@
-//! What the motions of a molecule are called: "O-H stretch of HOH", "HIS 12 N-H stretch".
+//! Names of the motions of a molecule: "O-H stretch of HOH", "HIS 12 N-H stretch".
 //!
 //! A mode e, mass-weighted and normalized, moves atom i by e_i/√m_i. An internal coordinate q with gradient s has the kinetic energy
 //! (s·x)²/g of it, g = Σ |s_i|²/m_i (Wilson's G): of bonds that is the stretch, of neighbouring bonds the bend, of a whole molecule its
-//! rotation and translation. The first of these that has half of the energy names the mode. What is named nothing moves its atoms.
+//! rotation and translation. The first of these that has half of the energy names the mode; a mode without such a part has no name.
 
 use std::collections::BTreeMap;
 
@@ -42,7 +42,7 @@ const BONDED: f64 = 1.3;
 /// Sines of angles below this belong to a straight line, about which no bend is defined.
 const STRAIGHT: f64 = 0.1;
 
-/// Kinds of motion and residues that have less than this part of the most that one has are not told.
+/// Kinds of motion and residues that have less than this part of the most that one has are not named.
 const LEAST_PART: f64 = 0.2;
 
 /// The most kinds of motions and of residues that are listed.
@@ -59,7 +59,7 @@ pub struct Names {
 #[derive(Clone, Debug)]
 struct Structure {
     positions: Vec<[f64; 3]>,
-    /// Of those that move.
+    /// The masses of the atoms that move.
     masses: Vec<f64>,
     elements: Vec<&'static str>,
     bonds: Vec<[usize; 2]>,
@@ -67,13 +67,13 @@ struct Structure {
     molecule: Vec<usize>,
 }
 
-/// What a file tells of atoms; all of it may be missing.
+/// The atoms as a file describes them; each field may be missing.
 #[derive(Clone, Debug, Default)]
 pub struct Told {
     pub labels: Vec<String>,
     pub elements: Vec<String>,
     pub bonds: Option<Vec<[usize; 2]>>,
-    /// Of each atom, as the file gives them: before hydrogens are made heavier.
+    /// The mass of each atom, as the file gives it: before hydrogens are made heavier.
     pub masses: Vec<f64>,
 }
 
@@ -81,7 +81,7 @@ pub struct Told {
 type Residue = (String, String);
 
 impl Names {
-    /// Of atoms at these positions, that move with these masses.
+    /// Names for atoms at these positions that move with these masses.
     pub fn new(told: Told, positions: &[[f64; 3]], masses: Vec<f64>) -> Names {
         let Told { labels, elements, bonds, masses: given } = told;
         if positions.is_empty() || masses.len() != positions.len() {
@@ -121,12 +121,12 @@ impl Names {
         let mut shares: Vec<(usize, f64)> = shape.chunks(each).map(share).enumerate().collect();
         let whole: f64 = shares.iter().map(|(_, own)| own).sum();
         shares.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
-        let (mut told, mut names) = (0.0, Vec::new());
+        let (mut sum, mut names) = (0.0, Vec::new());
         for (i, own) in shares.into_iter().take(3) {
-            if told > 0.9 * whole || own < 0.1 * whole {
+            if sum > 0.9 * whole || own < 0.1 * whole {
                 break;
             }
-            told += own;
+            sum += own;
             names.push(self.labels.get(i).cloned().unwrap_or_else(|| format!("atom {}", i + 1)));
         }
         names.join(", ")
@@ -160,7 +160,7 @@ impl Names {
         (!names.is_empty()).then(|| names.join("; "))
     }
 
-    /// Of an atom, by its label; else its molecule by the formula.
+    /// The residue of an atom by its label; else its molecule by the formula.
     fn residue(&self, structure: &Structure, atom: usize) -> Residue {
         let label = self.labels.get(atom).map_or("", String::as_str);
         let words: Vec<&str> = label.split_whitespace().collect();
@@ -363,7 +363,7 @@ impl Structure {
                 let part = product(&motion, own) / product(own, own);
                 motion.iter_mut().zip(own).for_each(|(x, &(_, s))| x.1 = minus(x.1, times(s, part)));
             }
-            // What turns about the line of two atoms moves nothing but rounding.
+            // A rotation about the line of two atoms moves them by roundings alone.
             if product(&motion, &motion) > 1e-12 * size && size > 0.0 {
                 basis.push(motion);
             }
@@ -458,12 +458,12 @@ mod tests {
         let turn = one([[0.0, 0.0, -0.0066], [0.0, 0.0, 0.052], [0.0, 0.0, 0.052]]);
         let shift = one([[1.0, 0.0, 0.0]; 3]);
         let names = waters(&["O HOH 7", "H1 HOH 7", "H2 HOH 7", "O HOH 8", "H1 HOH 8", "H2 HOH 8"]);
-        let told = |own: &Vec<f64>| names.motion(&[vec![own]]);
-        assert_eq!(told(&stretch).as_deref(), Some("HOH 7 O-H stretch"));
-        assert_eq!(told(&bend).as_deref(), Some("HOH 7 H-O-H bend"));
-        assert_eq!(told(&turn).as_deref(), Some("HOH 7 libration"));
-        assert_eq!(told(&shift).as_deref(), Some("HOH 7 translation"));
-        // Of both waters, and of none that is named.
+        let name = |own: &Vec<f64>| names.motion(&[vec![own]]);
+        assert_eq!(name(&stretch).as_deref(), Some("HOH 7 O-H stretch"));
+        assert_eq!(name(&bend).as_deref(), Some("HOH 7 H-O-H bend"));
+        assert_eq!(name(&turn).as_deref(), Some("HOH 7 libration"));
+        assert_eq!(name(&shift).as_deref(), Some("HOH 7 translation"));
+        // Half in both waters, and in none that has a name.
         let other = shape(&[still, [[0.0, -0.077, 0.0], u, v]].concat());
         assert_eq!(names.motion(&[vec![&stretch], vec![&other]]).as_deref(), Some("O-H stretch of HOH"));
         assert_eq!(waters(&[]).motion(&[vec![&stretch]]).as_deref(), Some("O-H stretch of H2O"));
@@ -479,7 +479,7 @@ mod tests {
         let masses = vec![15.999, 1.008, 15.999, 22.990];
         let names = Names::new(told(&masses), &positions, masses.clone());
         assert_eq!(names.structure.unwrap().bonds, [[0, 1]]);
-        // In Å, and with a heavy hydrogen that its label tells.
+        // In Å, and with a heavy hydrogen that its label names.
         let far = positions.map(|own| times(own, 10.0));
         let heavy = vec![13.983, 3.024, 15.999, 22.990];
         let labels = ["OW", "HW", "OW", "NA"].map(String::from).to_vec();

@@ -1,4 +1,4 @@
-//! What is asked: modes on clocks, schemes of steps, a band about the periods.
+//! The question of advice: modes on clocks, schemes of steps, a band about the periods.
 
 use num_traits::{One, Zero};
 
@@ -28,7 +28,7 @@ pub struct Question {
     pub(super) levers: bool,
     /// Whether the periods are the shortest of all motions on their clocks.
     pub(super) all_modes: bool,
-    /// What the advice may cost.
+    /// The highest cost of the advice.
     pub(super) limits: Limits,
 }
 
@@ -95,7 +95,7 @@ impl Question {
         })
     }
 
-    /// The same within these limits.
+    /// Answers within these limits.
     #[must_use]
     pub fn within(self, limits: Limits) -> Question {
         Question { limits, ..self }
@@ -121,7 +121,7 @@ impl Question {
         Err(Error::budget(work, cost).or("choose steps with a simpler ratio"))
     }
 
-    /// The same about a run of this length in fs.
+    /// Asks about a run of this length in fs.
     ///
     /// # Errors
     /// A length that is not positive.
@@ -131,14 +131,14 @@ impl Question {
         Ok(self)
     }
 
-    /// The same with modes that constraints hold, to be told.
+    /// Lists these modes, which constraints hold, in the answer.
     #[must_use]
     pub fn holding(mut self, held: Vec<Mode>) -> Question {
         self.held = held;
         self
     }
 
-    /// The same with a friction per fs, O in the middle of every drift (BAOAB).
+    /// Adds a friction per fs, O in the middle of every drift (BAOAB).
     ///
     /// # Errors
     /// A friction that is not positive.
@@ -148,13 +148,13 @@ impl Question {
         Ok(self)
     }
 
-    /// The same, and what would let the step grow.
+    /// Asks also which levers would let the step grow.
     #[must_use]
     pub fn with_levers(self, levers: bool) -> Question {
         Question { levers, ..self }
     }
 
-    /// The same where the periods are, or are not, the shortest of all motions on their clocks: it is known whether a faster one exists.
+    /// States whether the periods given are the shortest of all motions on their clocks.
     #[must_use]
     pub fn knowing_all_modes(self, all_modes: bool) -> Question {
         Question { all_modes, ..self }

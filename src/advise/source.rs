@@ -1,4 +1,4 @@
-//! What decides about Hessians: two levels by their eigenbasis, any other number of them by the action. Advice is one and the same.
+//! The sources of decisions about Hessians: two levels by their eigenbasis, any other number of them by the action. Advice uses both alike.
 
 use std::fmt::Debug;
 
@@ -12,13 +12,13 @@ use crate::system::{Analysis, Holds, Instability, Removed};
 /// Stiffnesses of levels, steps and rates in their unit of time; `steps` are those of all levels, innermost first. What is proven of an outer step is so
 /// with all others in their ratios to it.
 pub trait Source: Debug + Send + Sync {
-    /// That these steps can be asked about.
+    /// Checks that these steps can be asked about.
     ///
     /// # Errors
     /// Another number of them, ratios that are not answered for.
     fn check(&self, steps: &[Rational]) -> Result<()>;
 
-    /// What was projected out.
+    /// The motions that were projected out.
     fn removed(&self) -> Option<&Removed>;
 
     /// λ of the innermost stiffness alone, increasing, rounded.
@@ -48,10 +48,10 @@ pub trait Source: Debug + Send + Sync {
     /// Whether a band of periods is proven stable, at all smaller steps, too.
     fn covers_band(&self, steps: &[Rational], band: f64, accuracy: f64) -> Result<bool>;
 
-    /// The outer step up to which that is so.
+    /// The outer step up to which the band is covered.
     fn band_edge(&self, steps: &[Rational], band: f64, accuracy: f64) -> Result<Option<f64>>;
 
-    /// Where the spectral radius of a period with friction lies; `None`: doubles do not tell.
+    /// Where the spectral radius of a period with friction lies; `None`: doubles cannot decide.
     fn damping(&self, steps: &[Rational], friction: f64) -> Result<Option<Damping>>;
 
     /// A friction that is proven to mask what grows, about the least.
@@ -66,7 +66,7 @@ pub trait Source: Debug + Send + Sync {
 /// The verdict at one scheme.
 #[derive(Clone, Debug)]
 pub struct Decided {
-    /// What is proven of all stiffnesses within the accuracy.
+    /// The verdict that is proven for all stiffnesses within the accuracy.
     pub holds: Holds,
     /// Whether that is stable, and so for all smaller steps.
     pub is_in_first_region: bool,

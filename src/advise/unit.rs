@@ -21,7 +21,7 @@ use crate::error::{Error, Result};
 use crate::number::parse::{parse, parse_rational};
 use crate::number::{ExactSign, Laurent, Rational, Sign};
 
-/// What a number measures.
+/// The dimension of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dimension {
     /// In fs.
@@ -138,7 +138,7 @@ pub fn measured(field: &str, text: &str, dimension: Dimension) -> Result<Laurent
     Ok(&number * &Laurent::from_rational(size))
 }
 
-/// The same where π has no place.
+/// As [`measured`], for numbers without π.
 ///
 /// # Errors
 /// As [`measured`]; a number that is not rational.

@@ -1,4 +1,4 @@
-//! What a run shows: energy, momentum and amplitude over time, growth, reversibility.
+//! Measurements of a run: energy, momentum and amplitude over time, growth, reversibility.
 
 use super::force::{Bond, Force};
 use super::simulation::{Ends, Simulation};
@@ -19,7 +19,7 @@ pub struct Sample {
     pub amplitude: f64,
 }
 
-/// What a run showed.
+/// The measurements of a run.
 #[derive(Clone, Debug)]
 pub struct Run {
     pub series: Vec<Sample>,

@@ -32,7 +32,7 @@ impl Ticks for Laurent {
     }
 }
 
-/// What happens to the kicks at the two ends of a run.
+/// How the kicks at the two ends of a run are taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ends {
     /// Algorithm 1 as it stands: whole kicks at the start, none at the end.

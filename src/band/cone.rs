@@ -17,7 +17,7 @@ pub struct Margins {
     pub of_middle: f64,
     /// In all of it.
     pub of_box: f64,
-    /// What of their difference is of the second order in the box, and what of the third.
+    /// The parts of their difference that are of the second and of the third order in the box.
     pub bent: [f64; 2],
 }
 

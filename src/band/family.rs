@@ -85,7 +85,7 @@ pub struct Family {
 pub enum Cut {
     /// The last share r: t = 1 − r (1 − t').
     Last,
-    /// What lies before it: t = −1 + (1 − r) (1 + t').
+    /// The part before it: t = −1 + (1 − r) (1 + t').
     Before,
 }
 
@@ -138,7 +138,7 @@ impl Family {
         Family::new(order, &[[one, zero, zero, one]])
     }
 
-    /// The same function, known up to `by` less well.
+    /// This function with its remainder enlarged by `by`.
     pub fn widened(mut self, by: f64) -> Self {
         self.error = (self.error + by) * UP;
         self

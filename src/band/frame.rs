@@ -20,7 +20,7 @@ use crate::number::U;
 /// Families |a| ≤ this have a frame.
 const FAMILIES: i32 = 4;
 
-/// What the first-order law leaves to the second: a share of its widths, and of α².
+/// Room for the second order beside the first-order law: a share of its widths, and of α².
 const WIDER: f64 = 1.1;
 const BEYOND: f64 = 0.3;
 

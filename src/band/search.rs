@@ -40,7 +40,7 @@ pub struct Cell {
     pub places: [u64; 2],
 }
 
-/// What a search has found.
+/// The result of a search.
 #[derive(Clone, Debug)]
 pub struct Bands {
     /// Where it looked.
@@ -114,12 +114,13 @@ impl Window {
         prove(&self.bases, to_go, step)
     }
 
-    /// Bisects the window until so many boxes were tried, or boxes of a share of the window are certified. First come the boxes of which
-    /// the largest parts may soon be proven. `tell` hears of so many more that were tried. The same result on any number of threads.
+    /// Bisects the window until so many boxes were tried, or boxes of a share of the window are certified. Boxes whose largest parts may
+    /// soon be proven come first. `see` is called with the number of boxes tried since its last call. The result is the same on any number
+    /// of threads.
     ///
     /// # Errors
     /// Where the work was stopped.
-    pub fn search(&self, tries: u64, share: Option<&Rational>, tell: &dyn Fn(u64)) -> Result<Bands> {
+    pub fn search(&self, tries: u64, share: Option<&Rational>, see: &dyn Fn(u64)) -> Result<Bands> {
         let mut queue: BTreeMap<u32, Vec<(Cell, u32)>> = BTreeMap::from([(0, vec![(Cell::WHOLE, u32::MAX)])]);
         let mut bands = Bands { window: self.clone(), certified: Vec::new(), open: Vec::new(), tried: 0 };
         let mut certified = Rational::default();
@@ -134,7 +135,7 @@ impl Window {
                 }
                 go_on()?;
                 let found = try_map(&batch[..left], |(cell, to_go)| Ok(self.prove(cell, *to_go)))?;
-                tell(left as u64);
+                see(left as u64);
                 bands.tried += left as u64;
                 bands.open.extend(batch[left..].iter().map(|(cell, _)| *cell));
                 for ((cell, _), found) in batch.iter().zip(found) {

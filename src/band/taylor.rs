@@ -36,7 +36,7 @@ impl Taylor {
         Taylor { center, slopes: [0.0; 2], squares: [0.0; 3], error }
     }
 
-    /// The same with another slope in one of the two directions.
+    /// This model with another slope in one of the two directions.
     pub fn with_slope(mut self, direction: usize, slope: f64) -> Self {
         self.slopes[direction] = slope;
         self
@@ -182,7 +182,7 @@ impl Taylor {
         let first = (c * slope - angle) / (c * c);
         let second = (c * cube - 2.0 * first) / c;
         let third = (1.0 + 2.0 * most * most) * fifth * UP;
-        // Of arcsin x, c arcsin' c and c² arcsin'' c.
+        // The rounding of arcsin x, c arcsin' c and c² arcsin'' c.
         let rounded = 2.0 * off + 8.0 * U * (slope + c * c * cube);
         let functions = [
             ([angle, slope, c * cube], [off, 8.0 * U * slope, 16.0 * U * cube], third),
@@ -239,7 +239,7 @@ mod tests {
                 pairs.extend([(angle, a.asin()), (root, (1.0 - a * a).sqrt()), (quotient, a.asin() / a)]);
             }
             for (n, (model, exact)) in pairs.into_iter().enumerate() {
-                // What the comparison itself rounds.
+                // The rounding of the comparison itself is subtracted.
                 let off = (value(&model, at, 0.0) - exact).abs() - 1e-14 * (1.0 + exact.abs());
                 prop_assert!(off <= model.error, "{n}: {off} of {model:?}");
             }

@@ -35,7 +35,7 @@ const STRONG: f64 = 0.3;
 const ENOUGH_WHERE_STRONG: f64 = 8.0;
 const MOST_STEPS: u32 = 64;
 
-/// What is known of a box.
+/// The result for a box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Found {
     /// Every ratio is unstable.
@@ -86,7 +86,7 @@ impl Length {
         let (cube, off) = (least * least * least, 4.0 * long_off / least);
         let third = tau.reach() * moved * moved / (cube * least);
         let curved = by.abs() * tau.error + bend.abs() * tau.square_beside_affine();
-        // What the lengths round, in each term.
+        // The rounding of the lengths, in each term.
         let terms = by.abs() * tau.reach() + bend.abs() * tau.reach() * tau.reach();
         let rounding = (rest_off + center.abs() * long_off) / least
             + 8.0 * U * center.abs()
@@ -322,7 +322,7 @@ impl Level {
         })
     }
 
-    /// What one cone leaves of both maps.
+    /// The margins of both maps in one cone.
     fn margins(&self) -> Option<[Margins; 2]> {
         let maps = [&self.maps[0], &self.maps[1]];
         let cone = Cone::candidate(maps)?;

@@ -14,9 +14,9 @@ const OF_MAPS: [&str; 11] = [
     "parts",
 ];
 
-/// `kickdrift NAME` with the flags that were given, in the order of the help; of paths only the file's name.
+/// `kickdrift NAME` with the flags that were given, in the order of the help; paths by the name of their file alone.
 ///
-/// Of a map only how it is drawn, whether it is computed or joined: what it is of, the map says itself.
+/// For a map only the flags of its drawing, whether it is computed or joined: its document holds the rest.
 pub fn text(program: &Command, matches: &ArgMatches) -> String {
     let Some((name, given)) = matches.subcommand() else { return program.get_name().into() };
     let arguments = program.find_subcommand(name).into_iter().flat_map(Command::get_arguments);

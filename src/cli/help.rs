@@ -1,4 +1,4 @@
-//! What stands below the flags of each command: examples that run as they stand, and exit codes; and what is required.
+//! The help below the flags of each command: examples that run as they stand, exit codes, and required flags.
 
 use clap::Command;
 
@@ -6,9 +6,9 @@ use crate::question::{Bands, Question, Word};
 
 const EXIT_CODES: &str = "Exit codes:
   0  done
-  2  error: one line on standard error tells the field, its value and a remedy; nothing is half-written";
+  2  error: one line on standard error names the field, its value and a remedy; nothing is half-written";
 
-/// What a command requires, where the flags that are required depend on each other.
+/// The usage of commands whose required flags depend on each other.
 const USAGES: [(&str, &str); 7] = [
     ("map", "--lambda1 <X> --lambda2 <Y> --step <D> --h1-range <LO..HI> --h2-range <LO..HI>"),
     (

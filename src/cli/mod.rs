@@ -185,7 +185,7 @@ fn tidy_up_when_stopped() -> std::io::Result<()> {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGXCPU, SIGXFSZ};
     use signal_hook::low_level::emulate_default_handler;
     signal_hook::flag::register(SIGXFSZ, std::sync::Arc::default())?;
-    // What is ignored, as nohup and background jobs have it, stays so.
+    // Signals that are ignored, as under nohup and in background jobs, stay ignored.
     let heard = [SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGXCPU].into_iter().filter(|&signal| !is_ignored(signal));
     let mut signals = signal_hook::iterator::Signals::new(heard)?;
     std::thread::spawn(move || {

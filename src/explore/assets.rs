@@ -61,7 +61,7 @@ pub(super) fn index(begun: &[u8]) -> Reply {
     Reply { bytes: whole.into_bytes().into(), ..asset("").expect("the page") }
 }
 
-/// What a host that has no addresses for files can load.
+/// The module for a host that has no addresses for files.
 static MODULE: LazyLock<String> = LazyLock::new(|| {
     module("widget.js", "export const { mount } = $main;\nexport default { render: $widget.render };\n")
 });

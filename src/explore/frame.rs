@@ -7,7 +7,7 @@ use crate::question::StepRange;
 
 /// A window with rational ends; irrational ones are taken as the doubles nearest to them.
 pub(super) struct Frame {
-    /// Of h1 and h2: the low end and the width.
+    /// The low end and the width of h1 and of h2.
     sides: [(Rational, Rational); 2],
 }
 

@@ -105,13 +105,13 @@ impl Connected<IncomingStream<'_, Bounded>> for Caller {
 pub(super) struct Connection {
     stream: TcpStream,
     deadline: Pin<Box<Sleep>>,
-    /// What bids a stranger leave.
+    /// Sent to a stranger to make it leave.
     bidden: Option<oneshot::Receiver<()>>,
     caller: Caller,
 }
 
 impl Connection {
-    /// What the stream says, until it was silent too long, or a stranger for too long.
+    /// Polls the stream, until it was silent too long, or a stranger for too long.
     fn in_time<T>(&mut self, context: &mut Context, moved: Poll<io::Result<T>>) -> Poll<io::Result<T>> {
         // From here on the question's own time counts: the first one may wait longer than a stranger may.
         if self.caller.is_known() && self.bidden.take().is_some() {

@@ -61,7 +61,7 @@ pub use session::Session;
 /// that take long), the kicks that it may cost, and who answers.
 struct Question {
     name: &'static str,
-    /// Of use to the server alone.
+    /// Used by the server alone.
     #[cfg_attr(not(feature = "explore"), allow(dead_code))]
     at_once: bool,
     limit: u64,

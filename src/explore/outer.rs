@@ -72,7 +72,7 @@ pub(super) fn stretches(session: &Session, query: &Query) -> Result<Reply> {
             found.stretches.iter().map(one).collect()
         }
         Err(error) if error.kind() != Kind::Input => return Err(error),
-        // Of systems with nonlinear bonds, irrational numbers or friction.
+        // Systems with nonlinear bonds, irrational numbers or friction have none.
         Err(_) => Value::Null,
     };
     Ok(Reply::json(&json!({ "stretches": stretches })))

@@ -45,12 +45,12 @@ impl Query {
         self.0.get(key).map(String::as_str).filter(|text| !text.is_empty())
     }
 
-    /// What a parser makes of a parameter, if it is there.
+    /// Parses a parameter, if it is there.
     pub fn read<T>(&self, key: &str, parse: impl Fn(&str, &str) -> Result<T>) -> Result<Option<T>> {
         self.text(key).map(|text| parse(key, text)).transpose()
     }
 
-    /// What a parser makes of a parameter that must be there.
+    /// Parses a parameter that must be there.
     pub fn need<T>(&self, key: &str, parse: impl Fn(&str, &str) -> Result<T>) -> Result<T> {
         self.read(key, parse)?.ok_or_else(|| Error::missing(key, format!("add {key}=... to the address")))
     }

@@ -252,7 +252,7 @@ fn respond(reply: Reply) -> Response<Body> {
     response
 }
 
-/// A refusal ends the connection: who is refused has no reason to hold it. One that is told to come again keeps it.
+/// A refusal ends the connection, except for one that asks the client to come again.
 fn refuse(status: StatusCode, words: &'static str) -> Response<Body> {
     let reply =
         Reply { status: status.as_u16(), ..Reply::new("text/plain; charset=utf-8", words.as_bytes()) };

@@ -41,7 +41,7 @@ pub(super) fn scene(session: &Session, query: &Query) -> Result<Reply> {
         "want": ["map.json", "overlay.svg"],
     });
     let text = format!("{scene:#}\n");
-    // What is kept can be read again.
+    // A scene that is kept can be read again.
     Scene::from_json(&text)?;
     Ok(Reply::file("scene.json", "application/json", text.into_bytes()))
 }

@@ -1,10 +1,10 @@
-//! What a map knows of a band of columns.
+//! The verdicts of a band of columns of a map.
 
 use super::grid::Grid;
 use super::products::Growing;
 use crate::verdict::{Decision, Tier, Verdict};
 
-/// What the map knows of a band of columns, column by column, in each by increasing row.
+/// The verdicts of a band of columns, column by column, in each by increasing row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Band {
     /// The multiplier i of the first column.
@@ -21,7 +21,7 @@ pub struct Band {
     pub counters: Counters,
 }
 
-/// What the work was.
+/// Counts of the work done.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counters {
     pub pairs: u64,

@@ -13,7 +13,7 @@ use crate::vector::{double_of, each, integer_of};
 /// Bits of what all bases share.
 const BITS: u32 = 256;
 
-/// What the bases of a grid share, and the bases of its rows as they are asked for.
+/// The data that all bases of a grid share, and the bases of its rows as they are asked for.
 pub(super) struct Bases<'a> {
     grid: &'a Grid,
     /// d1² λ1 and d2² λ2: a base's strength is i² or j² times that.
@@ -141,7 +141,7 @@ impl<'b> OnBase<'b> {
     }
 }
 
-/// What [`OnBase::pair`] has, in all lanes at a time.
+/// The data of [`OnBase::pair`], in all lanes at a time.
 impl InLanes for OnBase<'_> {
     #[inline(always)]
     fn constants<const L: usize>(pairs: &[Self]) -> (Constants<L>, [[f64; L]; 2]) {

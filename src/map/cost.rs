@@ -1,4 +1,4 @@
-//! What a map costs, stated before it begins.
+//! The cost of a map, stated before it begins.
 
 use super::grid::Grid;
 use super::shard::Shard;

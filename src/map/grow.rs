@@ -71,7 +71,7 @@ const BLOCKS: [u64; 2] = [4, 1];
 /// Growth that the filter knows less well than this, relatively, is computed with more bits.
 const PRECISION: f64 = 1e-6;
 
-/// What the runs in doubles, for a pair that has no base, and in two doubles give; nothing of long periods, which have return maps.
+/// The ends of a run in doubles, for a pair that has no base, or in two doubles. `None` for long periods, which have return maps.
 fn kick_by_kick<T>(clocks: &TwoClocks<Laurent>, mut found: impl FnMut(Ends) -> Option<T>) -> Option<T> {
     if returns::is_worth(clocks.ratio(), 53) {
         return None;
@@ -81,7 +81,7 @@ fn kick_by_kick<T>(clocks: &TwoClocks<Laurent>, mut found: impl FnMut(Ends) -> O
     quick.and_then(&mut found).or_else(|| found(plain::sharp(clocks, &schedule)?))
 }
 
-/// What is asked for, as far as the filter gives it.
+/// The products asked for, as far as the filter gives them.
 fn quick(n: usize, ends: &Ends, verdict: Verdict, products: Products) -> Option<Growing> {
     let label = if products.label { Some(label(ends, verdict)?) } else { None };
     let growth = || ln_multiplier(ends, verdict.side()).filter(|ln| ln.within(PRECISION));

@@ -73,7 +73,7 @@ fn by_length(z: f64, exponent: i64, error: f64) -> Option<Enclosure> {
     Some(Enclosure::around(value, SECOND_ORDER * (error + 2.0 * U) + EVALUATION * value))
 }
 
-/// What evaluating a logarithm may cost, relatively: [`ln`] is within 16u, its arguments (1 + r)/(1 − r) and
+/// The relative error of a logarithm, evaluated: [`ln`] is within 16u, its arguments (1 + r)/(1 − r) and
 /// 1 + √(1 + 1/z) within 3u where it is 1/3 at least.
 const EVALUATION: f64 = 32.0 * U;
 

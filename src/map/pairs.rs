@@ -39,12 +39,12 @@ const FIELDS: [(&str, Option<&str>); 4] = [
 #[derive(Clone, Debug)]
 pub struct Pairs {
     quantities: [Vec<Laurent>; 4],
-    /// What doubles hold of them: apart, for it is read for every pair.
+    /// Their values in doubles: apart, because these are read for every pair.
     known: [Vec<Known>; 4],
     picked: [Vec<usize>; 4],
 }
 
-/// What doubles and machine integers hold of a quantity.
+/// A quantity as doubles and machine integers.
 #[derive(Clone, Copy, Debug)]
 struct Known {
     /// Within 2^-103; 0 of 0 and far from 1.
@@ -228,7 +228,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// Of numbers as they come, and of n b and (n + 1/2) b with one more or less: quotients next to a half.
+        /// Random numbers, and n b and (n + 1/2) b with one more or less: quotients next to a half.
         #[test]
         fn common_divisors_are_the_greatest(
             all in prop::collection::vec((1u32.., 0u32..1 << 16, 0u32..1 << 15, -1i64..=1, any::<bool>()), LANES),

@@ -1,10 +1,10 @@
-//! What a map may give beside the verdicts, of the pairs that grow.
+//! Further results of a map for the pairs that grow.
 
 use super::enclosure::Enclosure;
 use crate::number::Ratio;
 use crate::resonance::dominant_family;
 
-/// What is asked for. Verdicts and tiers come always; nothing else is computed unasked.
+/// The results that are asked for. Verdicts and tiers come always; nothing else is computed unasked.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Products {
     /// The label m of the tongue.

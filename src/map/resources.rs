@@ -1,4 +1,4 @@
-//! What a map may take.
+//! The time and the memory that a map may take.
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::parallel::{Pool, go_on};
 use crate::verdict::Limits;
 
-/// What a map or a list of pairs may take.
+/// The time and the memory that a map or a list of pairs may take.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Resources<'a> {
     /// Threads to run on; 0 for as many as there are processors.

@@ -43,7 +43,7 @@ impl<'a> Map<'a> {
         Map { grid, products, shard: Shard::WHOLE, resources, store: None }
     }
 
-    /// The same with these products beside the verdicts.
+    /// Asks for these products beside the verdicts.
     #[must_use]
     pub fn with(self, products: Products) -> Self {
         Map { products, ..self }
@@ -55,14 +55,14 @@ impl<'a> Map<'a> {
         Map { shard, ..self }
     }
 
-    /// The same with these resources.
+    /// Limits the work to these resources.
     #[must_use]
     pub fn within(self, resources: Resources<'a>) -> Self {
         Map { resources, ..self }
     }
 
-    /// The same with a store for its bands: those that the store holds are taken from there, new ones are put there.
-    /// Interrupted work goes on where it stopped and ends the same; a kill loses the bands under way.
+    /// Uses a store for the bands: those that the store holds are taken from there, new ones are put there.
+    /// Interrupted work goes on where it stopped and gives the same result; a kill loses the bands under way.
     #[must_use]
     pub fn kept_in(self, store: &'a Store) -> Self {
         Map { store: Some(store), ..self }
@@ -130,7 +130,7 @@ impl<'a> Map<'a> {
         Ok(verdicts)
     }
 
-    /// The same into a slice as long as there are pairs; `progress` is called with the number of pairs done.
+    /// Writes all verdicts into a slice, one for each pair; `progress` is called with the number of pairs done.
     ///
     /// # Errors
     /// As [`Map::for_each_band`], and where the slice has another length.

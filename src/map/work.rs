@@ -45,10 +45,10 @@ pub(super) struct Work<'a> {
     order: Vec<u32>,
 }
 
-/// Of a pair at work: its divisor, key, place among the sorted and among the undecided, the two while they are sorted, verdict, tier.
+/// Bytes of a pair at work: its divisor, key, place among the sorted and among the undecided, the two while they are sorted, verdict, tier.
 const BYTES_A_PAIR: u128 = 4 + 4 + 4 + 4 + 12 + 1 + 1;
 
-/// Of a row that is the base of pairs in one band: in a band of one column it makes three turns.
+/// Bytes of a row that is the base of pairs in one band: in a band of one column it makes three turns.
 const BYTES_A_ROW: usize = size_of::<OnceCell<Option<Base>>>() + 3 * size_of::<Turn>();
 
 impl<'a> Work<'a> {

@@ -95,7 +95,7 @@ impl Ball {
         Ball { mid: mid >> shift, rad: error.units(exp) + u64::from(inexact), exp }.normalized()
     }
 
-    /// The same set or a little more, its midpoint rounded to `bits` bits.
+    /// A ball that contains this one, its midpoint rounded to `bits` bits.
     pub fn round(&self, bits: u32) -> Ball {
         Ball::rounded(self.mid.clone(), self.exp, self.radius(), bits)
     }
@@ -111,7 +111,7 @@ impl Ball {
         Ball::rounded(BigInt::zero(), -MAX_EXPONENT, self.magnitude(), 64)
     }
 
-    /// The same midpoint, the radius enlarged by `extra`.
+    /// This ball with its radius enlarged by `extra`.
     fn widened(self, extra: Magnitude, bits: u32) -> Ball {
         if extra.is_zero() {
             return self;
@@ -123,7 +123,7 @@ impl Ball {
     /// All points within `distance` of 0, a double that is not negative.
     pub(crate) fn about_zero(distance: f64) -> Ball {
         let (whole, exponent, _) = Float::integer_decode(distance);
-        // Of 53 bits the first 30, rounded up.
+        // The first 30 of 53 bits, rounded up.
         Ball { mid: BigInt::zero(), rad: (whole >> 23) + 1, exp: i64::from(exponent) + 23 }
     }
 

@@ -37,7 +37,7 @@ impl Leading {
         Leading { lead, exp: exp + bits - 64, sticky: sticky || dropped }
     }
 
-    /// Of n/d, n and d positive.
+    /// The leading bits of n/d, n and d positive.
     fn of_quotient(n: u64, d: u64) -> Leading {
         // n at the top of 128 bits: the quotient has 64 bits at least.
         let shift = 64 + n.leading_zeros();
@@ -135,7 +135,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// The same quotient by long numbers and by short ones, next to doubles and halves between them, too.
+        /// Quotients by long numbers equal those by short ones, next to doubles and next to halves between them, too.
         #[test]
         fn short_quotients_are_rounded_as_long_ones(
             n in 1u64.., d in 1u64.., small in 0u32..64, coarse in 0u32..64, double in any::<bool>(),

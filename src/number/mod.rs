@@ -1,4 +1,4 @@
-//! What a quantity can be.
+//! The types of numbers.
 //!
 //! | type | set | sign by |
 //! |---|---|---|

@@ -1,4 +1,4 @@
-//! What a person types, exactly: `0.3` is 3/10, and `pi^2/25` stays what it is.
+//! Typed numbers, read exactly: `0.3` is 3/10, and `pi^2/25` keeps its π.
 //!
 //! The grammar: sums, differences, products `*`, quotients `/` and integer powers `^` of decimals
 //! (`3`, `0.3`, `.5`, `1e-3`), of `pi` (or `π`) and of parentheses. A product needs its `*`. The sign binds

@@ -1,4 +1,4 @@
-//! What a quantity can be given as: text, an integer, a rational, an element of ℚ[π, 1/π].
+//! The forms in which a quantity can be given: text, an integer, a rational, an element of ℚ[π, 1/π].
 //!
 //! A double is rarely the number that its writer meant (0.3 is not 3/10), so it has to be asked for by name.
 //!

@@ -128,7 +128,7 @@ impl Radical {
         g.hold(f).map(|root| (a.at(&root), b.clone()))
     }
 
-    /// The same number, its generator being `root`.
+    /// This number with `root` as its generator.
     fn at(&self, root: &Radical) -> Radical {
         self.polynomial().map(Radical::from_rational).eval(root)
     }

@@ -45,8 +45,8 @@ pub fn from_f64_exact(x: f64) -> Option<Rational> {
     Rational::from_float(x)
 }
 
-/// What the writer of a double most likely meant that came by a few roundings (a change of units, a quotient of steps): within 2^-51 |x| of it
-/// the decimal of at most twelve digits, or p/q with p q below 2^40, else the shortest decimal that rounds to x. `None` for infinities and NaN.
+/// The rational number that a double most likely stands for after a few roundings (a change of units, a quotient of steps): a decimal of at
+/// most twelve digits within 2^-51 |x|, or p/q with p q below 2^40, else the shortest decimal that rounds to x. `None` for infinities and NaN.
 ///
 /// ```
 /// use kickdrift::number::rational::{from_f64_meant, ratio};
@@ -109,7 +109,7 @@ pub fn simplest(lo: &Rational, hi: &Rational) -> Rational {
         if is_last {
             return Rational::new_raw(now.0, now.1);
         }
-        // What is left, rest/lo.1 ≤ x ≤ above/hi.1, upside down.
+        // The next term's range, rest/lo.1 ≤ x ≤ above/hi.1, inverted.
         (lo, hi) = ((hi.1, above), (lo.1, rest));
     }
 }

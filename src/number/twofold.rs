@@ -138,7 +138,7 @@ impl Twofold {
         (a.max(b) <= EXACT).then(|| Twofold::of_whole(a as f64, b as f64))
     }
 
-    /// The same of doubles that are whole.
+    /// As above, for doubles that are whole numbers.
     #[inline(always)]
     pub fn of_whole(a: f64, b: f64) -> Twofold {
         let hi = a / b;
@@ -156,7 +156,7 @@ impl Twofold {
         Twofold::from_fixed(x, 105 - ((near.to_bits() >> 52) as i64 - 1023), 32)
     }
 
-    /// What [`Twofold::near`] asks for.
+    /// The precision that [`Twofold::near`] asks for.
     pub const ENCLOSURE_BITS: u32 = 160;
 
     /// x to within 2^-103 relative, of either sign; `None` where the ball is wider than that, or x is 0 or far from 1.

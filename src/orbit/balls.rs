@@ -22,7 +22,7 @@ impl BallOrbit {
         BallOrbit { x, v, nodes: Nodes::default(), bits, ticks: schedule.clocks()[0].step() }
     }
 
-    /// The same solution later, at (x, v); its sign changes on the way not counted.
+    /// Moves the solution to (x, v) at a later time; its sign changes on the way are not counted.
     pub fn at(&self, x: Ball, v: Ball) -> Self {
         BallOrbit { x, v, ..self.clone() }
     }

@@ -16,7 +16,7 @@
 //! |⟨n, û_k⟩| |û_k| > 2 b_k |n|. Weakly and strongly unstable pairs alike: growth makes the bound better,
 //! since |û_k|² outruns b_k.
 
-/// What one step can do to a vector and to its error: the constants of the theorem.
+/// Bounds of one step on a vector and on its error: the constants of the theorem.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepBound {
     /// ‖M_k‖ ≤ κ.

@@ -1,4 +1,4 @@
-//! What a run of the filter proves: the theorem of [`super::bound`] with the kernel's constants.
+//! The proof behind a run of the filter: the theorem of [`super::bound`] with the kernel's constants.
 //!
 //! proofs/FILTER.md derives every constant, and gives examples that the tests compare with; in short, with u = 2^-53
 //! and g in the coordinates of [`super::floquet`], where a kick has the norm κ ≤ |β|/2 + √(1 + β²/4) and a turn
@@ -134,7 +134,7 @@ impl Certificates {
         Certificates { most: BLOCK, made: vec![None; REMEMBERED] }
     }
 
-    /// The same with at most so many updates between two looks: the fewer, the sharper.
+    /// The certificate with at most so many updates between two looks: the fewer, the sharper.
     pub fn watched(most: u64) -> Self {
         Certificates { most, ..Certificates::of_groups() }
     }

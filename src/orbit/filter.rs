@@ -116,7 +116,7 @@ impl<const L: usize> Group<L> {
         Group { instructions, lanes: Lanes::empty(), left: [[0.0; L]; 2], kicks: 0, certificates }
     }
 
-    /// The same for bounds that are the sharper the fewer updates there are between two looks.
+    /// A group with at most so many updates between two looks: the fewer, the sharper its bounds.
     pub fn watched(instructions: Instructions, most: u64) -> Self {
         Group { certificates: Certificates::watched(most), ..Group::new(instructions) }
     }
@@ -127,7 +127,7 @@ impl<const L: usize> Group<L> {
         self.report(pairs, certificate, ends);
     }
 
-    /// The same but for the turns, which stay uncounted.
+    /// As [`Group::everything`], without counting the turns.
     pub fn measured(&mut self, pairs: &[Pair], ends: &mut [Option<Ends>]) {
         let certificate = self.run::<Measured, _>(pairs);
         self.report(pairs, certificate, ends);
@@ -177,7 +177,7 @@ impl<const L: usize> Group<L> {
     }
 }
 
-/// What is compiled for each instruction set.
+/// The work that is compiled for each instruction set.
 struct Start<'a, P, const L: usize>(&'a [P], &'a mut Lanes<L>, &'a mut [[f64; L]; 2]);
 struct Finish<'a, const L: usize>(&'a Group<L>, &'a Certificate);
 struct Verdicts<'a, const L: usize>(&'a Group<L>, &'a Certificate);

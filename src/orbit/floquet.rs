@@ -28,7 +28,7 @@ use crate::propagator::TwoClocks;
 /// Bits of the strengths; the constants are made of two doubles each and end as one.
 const BITS: u32 = 192;
 
-/// What the updates need to know of the base clock alone. Every double has a relative error of at most 2u,
+/// The constants of the updates that depend on the base clock alone. Every double has a relative error of at most 2u,
 /// u = 2^-53, unless its comment says otherwise.
 #[derive(Clone, Debug)]
 pub struct Base {
@@ -71,8 +71,8 @@ impl Base {
         Base::of(half, start, first..=last)
     }
 
-    /// The same, many times faster, from s in two doubles, within 2^-99; `None` too so near 4 that 4 − s has lost digits, and for
-    /// long turns.
+    /// Computes the base many times faster, from s in two doubles, within 2^-99. Also `None` so near 4 that 4 − s has lost digits, and
+    /// for long turns.
     ///
     /// 4 − s is within 2^-97 and at least 2^-20, so its root is within 2^-88, a half of that and e^{iθ/2} within 2^-88, and
     /// e^{inθ/2} within n 2^-87: for n below 2^28 less than 2^-59.
@@ -167,7 +167,7 @@ impl Phase {
         }
     }
 
-    /// The same of its square: the two parts of im are one.
+    /// The real and imaginary part of its square: the two parts of im are one.
     #[inline(always)]
     pub fn square(self) -> Phase {
         let Phase { re, im } = self;
@@ -407,7 +407,7 @@ mod tests {
     }
 
     proptest! {
-        /// Of every constant: the error that it is said to have at most, in units of u.
+        /// The error that each constant is said to have at most, in units of u.
         #[test]
         fn constants_are_as_near_as_they_say(
             a in 1i64..1 << 40, first in 0u64..1 << 41, small in any::<bool>(), quick in any::<bool>(), close in any::<bool>(),

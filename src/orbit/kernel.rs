@@ -56,7 +56,7 @@ pub struct Lanes<const L: usize> {
     pub odd: Orbits<L>,
     /// 2r − q, r the remainder of kp mod q: an integer in [−q, q).
     place: [f64; L],
-    /// What a kick adds to it, the largest place without a carry, and what a kick with a carry adds.
+    /// The increment of a kick, the largest place without a carry, and the increment of a kick with a carry.
     step: [f64; L],
     limit: [f64; L],
     wrap: [f64; L],
@@ -75,13 +75,13 @@ pub struct Lanes<const L: usize> {
     /// crossed the w axis, and how often of these the first shear's coefficient and that of −w in the second one was
     /// negative.
     crossings: [[f64; L]; 4],
-    /// What `worst` must not exceed.
+    /// The limit of `worst`.
     pub worst: f64,
     /// Whether an orbit may grow so long that it must be scaled down on the way.
     pub strong: bool,
 }
 
-/// What a run does beside the updates.
+/// The work of a run beside the updates.
 pub trait Watch {
     /// Measure `worst`, not only whether it is within bounds.
     const MEASURE: bool;
@@ -91,7 +91,7 @@ pub trait Watch {
     const CERTIFY: bool = true;
 }
 
-/// What an update needs and leaves as it is.
+/// The data that an update reads.
 #[derive(Clone, Copy)]
 struct Course<V> {
     limit: V,
@@ -102,7 +102,7 @@ struct Course<V> {
     kick: [V; 2],
 }
 
-/// What an update changes.
+/// The data that an update changes.
 #[derive(Clone, Copy)]
 struct State<V> {
     place: V,
@@ -379,11 +379,11 @@ fn blocks<V: Vector, W: Watch, const N: usize>(
 
 /// Pairs that can be put into lanes.
 pub trait InLanes: Sized {
-    /// What the kernel starts from, lanes to spare holding the last pair, and the cosine and sine of the base's last turn.
+    /// The start of the kernel, lanes to spare holding the last pair, and the cosine and sine of the base's last turn.
     fn constants<const L: usize>(pairs: &[Self]) -> (Constants<L>, [[f64; L]; 2]);
 }
 
-/// What the lanes start from, by kind instead of by pair: one walk over the pairs, then vectors only.
+/// The start of the lanes, by kind instead of by pair: one walk over the pairs, then vectors only.
 pub struct Constants<const L: usize> {
     pub kick: [f64; L],
     pub slope: [f64; L],
@@ -520,7 +520,7 @@ impl<const L: usize> Lanes<L> {
         Hardest { beta: largest::<L>(&beta), slope: largest(&self.slope), steps }
     }
 
-    /// What the first so many lanes will have composed; the others hold the last one's pair.
+    /// The kicks that the first so many lanes will have composed; the others hold the pair of the last one.
     #[inline(always)]
     pub fn kicks(&self, pairs: usize) -> u64 {
         let spare = (L - pairs) as f64 * self.updates[L - 1];
@@ -573,7 +573,7 @@ impl<const L: usize> Lanes<L> {
         state.unless(over, before).store::<W, L>(self, at);
     }
 
-    /// What a look changes in the lanes themselves, of both solutions.
+    /// The sums that a look changes, of both solutions, in the lanes from `at` on.
     #[inline(always)]
     fn sums<V: Vector>(&self, at: usize) -> [V; 6] {
         let of = |orbits: &Orbits<L>| {

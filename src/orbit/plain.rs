@@ -1,6 +1,6 @@
 //! Kick by kick in doubles, with the same theorem: for pairs that have no Floquet coordinates, because both clocks
 //! are beyond their own Verlet limits or pull the wrong way. And in two doubles a number, for growth so weak that doubles
-//! do not tell it from none.
+//! cannot distinguish it from none.
 //!
 //! State (x, y), y = w v with w a power of two that makes kicks and drifts about equally strong: x ← x + a y,
 //! y ← y − b x, shears of norm κ(a) = |a|/2 + √(1 + a²/4) ≥ √(1 + a²). With a and b known to 2u and a shear that rounds by
@@ -40,7 +40,7 @@ pub fn run<S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule) -> Option<Ends> 
     run_in::<f64, S>(clocks, schedule)
 }
 
-/// The same in two doubles a number, 2^45 times as sharp at some six times the cost.
+/// Runs in two doubles a number, 2^45 times as sharp at some six times the cost.
 pub fn sharp<S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule) -> Option<Ends> {
     run_in::<Twofold, S>(clocks, schedule)
 }
@@ -54,11 +54,11 @@ fn run_in<N: Number, S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule) -> Opt
     Some(Ends { even: even.end(&steps)?, odd: odd.end(&steps)?, quarters })
 }
 
-/// What shears are done in.
+/// A number in which shears are computed.
 trait Number: Copy {
     /// u: strengths and drifts are within 2u, a shear rounds as the head of this file says.
     const ROUNDING: f64;
-    /// What the nearest double is off.
+    /// The relative error of the nearest double.
     const NEAR: f64;
     const ZERO: Self;
     const ONE: Self;
@@ -137,7 +137,7 @@ impl Number for Twofold {
     }
 }
 
-/// What is compiled for each instruction set.
+/// The work that is compiled for each instruction set.
 struct Run<'a, N>(&'a Steps<N>, &'a Schedule);
 
 impl<N: Number> Task for Run<'_, N> {

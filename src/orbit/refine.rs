@@ -33,7 +33,7 @@ pub fn run<S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule, bits: u32) -> Op
     Some(Ends { even: end(true)?, odd: end(false)? })
 }
 
-/// The bound's constants are doubles, which cannot tell a precision beyond this one from it.
+/// The constants of the bound are doubles, so a precision beyond this one counts as this one.
 const BOUNDED: u32 = 1000;
 
 /// The kicks of the half period, or as many as leaping over them costs.
@@ -196,7 +196,7 @@ impl<'a> Orbit<'a> {
         1.001 * self.angle * self.length()
     }
 
-    /// The sign of a component of the exact orbit, where the angle tells it.
+    /// The sign of a component of the exact orbit, where the angle proves it.
     fn certain_sign(&self, component: &BigInt) -> Option<Sign> {
         let beyond = component.abs().to_f64().unwrap_or(f64::INFINITY) > self.uncertainty();
         beyond.then(|| if component.is_negative() { Sign::Negative } else { Sign::Positive })

@@ -42,7 +42,7 @@ impl Strengths {
         pair.serves().then_some(pair)
     }
 
-    /// Of two clocks: the one of more kicks is the base, or the other one where that does not serve.
+    /// The clock of more kicks is the base, or the other one where that does not serve.
     pub fn of<S: Real>(clocks: &TwoClocks<S>) -> Option<Strengths> {
         let two = |x: &S| x.two_doubles().map(|(hi, lo)| Twofold { hi, lo });
         let on_first =

@@ -25,7 +25,7 @@ pub struct Oscillator {
     ratio: Rational,
 }
 
-/// The same without dimension, all that a verdict depends on: with h1 as the unit of time a fast kick
+/// Two clocks without dimensions, all that a verdict depends on: with h1 as the unit of time a fast kick
 /// has strength s = h1² L1, a slow one h1 h2 L2, and h2/h1 = p/q in lowest terms.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TwoClocks<S> {
@@ -55,7 +55,7 @@ impl Oscillator {
         Ok(TwoClocks { ratio, fast, slow })
     }
 
-    /// The same for a period of any number of kicks.
+    /// As [`Oscillator::clocks`], for a period of any number of kicks.
     pub fn long_clocks(&self) -> LongClocks<Laurent> {
         let [fast, slow] = [(&self.h1, &self.lambda1), (&self.h2, &self.lambda2)]
             .map(|(h, lambda)| Laurent::product(&Laurent::product(&self.h1, h), lambda));
@@ -137,7 +137,7 @@ impl<S: Ring> TwoClocks<S> {
         [fast.clone(), slow.clone(), fast + slow]
     }
 
-    /// The same system with the clocks' roles exchanged, in the time unit h2: s' = h2² L2 and so on.
+    /// Exchanges the roles of the two clocks, in the time unit h2: s' = h2² L2 and so on.
     /// No verdict changes (theorem `swap_clocks` in proofs/).
     pub fn swapped(&self) -> Self {
         let ratio = S::from_rational(&self.ratio.into());
@@ -145,7 +145,7 @@ impl<S: Ring> TwoClocks<S> {
         TwoClocks { ratio: self.ratio.inverse(), fast, slow }
     }
 
-    /// The same pair with its strengths in another ring.
+    /// Converts both strengths to another ring.
     pub fn map<U: Ring>(&self, convert: impl Fn(&S) -> U) -> TwoClocks<U> {
         TwoClocks { ratio: self.ratio, fast: convert(&self.fast), slow: convert(&self.slow) }
     }
@@ -155,7 +155,7 @@ impl<S: Real> TwoClocks<S> {
     /// [`TwoClocks::strengths`] in balls.
     pub(crate) fn enclosures(&self, bits: u32) -> [Ball; 3] {
         let (fast, slow) = (self.fast.enclosure(bits), self.slow.enclosure(bits));
-        // Of opposite signs much may cancel, and all of it: only the exact sum says so.
+        // With opposite signs much may cancel, even everything: only the exact sum shows it.
         let alike = fast.sign().is_some() && fast.sign() == slow.sign();
         let both = if alike {
             fast.add(&slow, bits)
@@ -190,7 +190,7 @@ impl<S: Ring> LongClocks<S> {
         &self.slow
     }
 
-    /// The same strengths at another ratio.
+    /// These strengths at another ratio.
     #[cfg(test)]
     pub(crate) fn with_ratio(self, ratio: Rational) -> Self {
         LongClocks { ratio, ..self }

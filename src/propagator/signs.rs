@@ -42,7 +42,7 @@ impl HalfSigns {
     }
 }
 
-/// The same four signs as far as they are known: `None` is "undecided", which is not zero.
+/// The four signs as far as they are known: `None` is "undecided", which is not zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PartialSigns {
     pub a: Option<Sign>,

@@ -50,7 +50,7 @@ question! {
         friction: Option<String>,
         /// Bonds that do not vibrate: h-bonds, all-bonds, or modes, as OH,NH [default: as the engine's text says]
         ///
-        /// Of Hessians h-bonds only, with the force of each potential in the file.
+        /// For Hessians h-bonds only, with the force of each potential in the file.
         #[arg(long, value_name = "WHICH")]
         constraints: Option<String>,
         /// Hydrogens of this mass in amu, taken from their heavy atoms.
@@ -65,18 +65,18 @@ question! {
         /// The file of Hessians in place of periods: one of a system, or FILE.npz.
         #[arg(skip)]
         file: Option<String>,
-        /// What stands in a system's file.
+        /// The contents of a system's file.
         #[arg(skip)]
         system: Option<SystemFile>,
     }
 }
 
 question! {
-    /// The same exactly: modes on their clocks or a system, and schemes of steps; lengths of time in fs.
+    /// The input in exact numbers: modes on their clocks or a system, and schemes of steps; lengths of time in fs.
     struct Advised {
         /// How far every period may be off, relatively.
         band: Rational,
-        /// What vibrates.
+        /// The modes that vibrate.
         modes: Option<Vec<Mode>>,
         /// The steps, from the innermost to the outermost one.
         schemes: Vec<Scheme>,
@@ -88,7 +88,7 @@ question! {
         constrained: Option<Vec<Mode>>,
         /// The name of a system's file.
         file: Option<String>,
-        /// What stands in it, in place of modes.
+        /// The contents of the system's file, in place of modes.
         system: Option<SystemFile>,
         /// Whether what would let the step grow is left out.
         no_levers: bool,
@@ -217,21 +217,21 @@ impl Mode {
     }
 }
 
-/// What is found.
+/// The advice.
 pub enum Safe {
-    /// Of periods and bonds.
+    /// On periods and bonds.
     Periods(Box<Advice>),
-    /// Of the Hessians of a system.
+    /// On the Hessians of a system.
     Hessians(Box<(SystemScene, Findings)>),
-    /// Of forces that are no gradient.
+    /// On forces that are no gradient.
     Direct(Box<(SystemScene, DirectFindings)>),
 }
 
-/// What is found, and how the question was read.
+/// The advice, and how the question was read.
 pub struct Answer {
     pub asked: Advised,
     pub safe: Safe,
-    /// What an engine's texts say.
+    /// The engine's texts, read.
     reading: Option<Reading>,
     /// For people.
     notes: Vec<String>,
@@ -241,7 +241,7 @@ pub struct Answer {
 const KICKS_A_SECOND: f64 = 5e6;
 const PRODUCTS_A_SECOND: f64 = 1e10;
 
-/// What would let a molecule's step grow costs as much as so many schemes, about.
+/// Levers of a molecule cost about as much as so many schemes.
 const LEVERS: usize = 10;
 
 /// Fastest periods of molecules, in fs.
@@ -277,7 +277,7 @@ impl Question for Advised {
             let found = direct.advise(&self.schemes, &self.band, (length, friction), &limits)?;
             return Ok(Safe::Direct(Box::new((scene, found))));
         }
-        // What would let the step grow is told where it is cheap, whatever the budget: a document tells the same with another one.
+        // Levers are computed where they are cheap, whatever the budget: the document does not depend on it.
         let others: Vec<_> = self.schemes.iter().take(1).cycle().take(LEVERS).cloned().collect();
         let levers = !self.no_levers && Molecule::allow(size, &others, friction.is_some(), None).is_ok();
         let schemes = [&self.schemes[..], if levers { &others } else { &[] }].concat();
@@ -312,7 +312,7 @@ impl Safe {
 }
 
 impl Safe {
-    /// What would let the step grow, where that was asked.
+    /// The levers that would let the step grow, where that was asked.
     pub fn levers(&self) -> Option<&Levers> {
         match self {
             Safe::Periods(advice) => advice.levers.as_ref(),
@@ -323,7 +323,7 @@ impl Safe {
 }
 
 impl Advised {
-    /// What would let the outer step of a molecule grow.
+    /// The levers that would let the outer step of a molecule grow.
     fn of_hessians(&self, file: &SystemFile, scene: &SystemScene, work: &Work) -> Result<Levers> {
         let (molecule, scheme) = (scene.molecule()?.0, &self.schemes[0]);
         let mut all = Levers::default();
@@ -436,14 +436,14 @@ impl Question for Advise {
 }
 
 impl Advise {
-    /// What would let the step grow, drawn; `None` where nothing is told of it.
+    /// The levers as a picture; `None` where there are none.
     #[cfg(feature = "figure")]
     pub fn levers_figure(&self, answer: &Answer) -> Option<Figure> {
         let levers = answer.safe.levers().filter(|own| !own.rows.is_empty())?;
         Some(report::levers_figure(levers, "What would let the outer step grow"))
     }
 
-    /// What the engine's texts say.
+    /// Reads the engine's texts.
     fn reading(&self) -> Result<Option<Reading>> {
         if self.engine.is_empty() {
             return Ok(None);

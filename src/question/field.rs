@@ -100,7 +100,7 @@ pub trait Field: Sized {
     /// Reads the value that is given; `None` where a value is missing that has to be there.
     fn of(given: Option<&Value>, name: &str) -> Option<Result<Self>>;
 
-    /// What documents echo, as a rule a text; `None` where the field is not to be there.
+    /// The value that documents echo, as a rule a text; `None` where the field is left out.
     fn shown(&self) -> Option<Value>;
 }
 

@@ -74,7 +74,7 @@ question! {
         window_h1: Option<StepRange>,
         /// The closed range of h2 that they show.
         window_h2: Option<StepRange>,
-        /// What the colours of the atlas show.
+        /// The quantity shown by the colours of the atlas.
         colour: Option<Colour>,
         /// The closed range of ρ in which closings are searched.
         rho_range: Option<(Rational, Rational)>,

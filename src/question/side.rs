@@ -104,7 +104,7 @@ impl CompareMethods {
         Ok(all.iter().map(|n| n * step).collect())
     }
 
-    /// What is drawn upwards: its range, its spacing, and Λ2/Λ1 where it is h2.
+    /// The vertical axis: its range, its spacing, and Λ2/Λ1 where it is h2.
     fn second(&self) -> Result<(&(Rational, Rational), &Rational, Option<Rational>)> {
         let by_ratio = self.rho_range.as_ref().zip(self.rho_step.as_ref());
         let by_step = self.h2_range.as_ref().zip(self.h2_step.as_ref());

@@ -23,7 +23,7 @@ question! {
         file: String,
         /// Its title, which documents take from the system.
         title: Option<String>,
-        /// What stands in the file.
+        /// The contents of the file.
         system: SystemFile,
         /// Synchronization periods to run.
         periods: u32 = "200",

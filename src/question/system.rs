@@ -26,7 +26,7 @@ question! {
         file: String,
         /// Its title, which documents take from the system.
         title: Option<String>,
-        /// What stands in the file.
+        /// The contents of the file.
         system: SystemFile,
         /// Decided in exact arithmetic alone.
         exact: bool,
@@ -71,7 +71,7 @@ impl Field for SystemFile {
     }
 }
 
-/// What was asked for.
+/// The result that was asked for.
 pub enum Found {
     Verdict(Box<Verdict>),
     Map(SystemMap),
@@ -89,14 +89,14 @@ pub struct Verdict {
     pub local: Option<SchemeSummary>,
 }
 
-/// What is found of a system.
+/// The answer about a system.
 pub struct Answer {
     pub scene: SystemScene,
     pub found: Found,
 }
 
 impl Work<'_> {
-    /// What one verdict on a system may cost.
+    /// The highest cost of one verdict on a system.
     pub fn products(&self) -> Limits {
         self.budget.map_or_else(Limits::default, |products| Limits { products, ..Limits::default() })
     }

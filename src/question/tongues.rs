@@ -36,7 +36,7 @@ question! {
     }
 }
 
-/// What the colours of an atlas stand for.
+/// The quantity shown by the colours of an atlas.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Colour {

@@ -61,7 +61,7 @@ const MOST_KICKS: u64 = 100;
 /// So many letters cost as much as one power of the force.
 const LETTERS: u64 = 1000;
 
-/// What is known of a word.
+/// The analysis of a word.
 #[derive(Clone, Debug)]
 pub struct Linted {
     pub word: crate::word::Word,
@@ -71,7 +71,7 @@ pub struct Linted {
     /// Λ2/Λ1; 0 for one force. `None` where the word names forces and the stiffnesses are not given.
     pub rho: Option<Rational>,
     pub stability: Option<Stability>,
-    /// The same of a word with exact flows, filters or friction: in steps h, within the range.
+    /// The stable and unstable intervals of a word with exact flows, filters or friction: in steps h, within the range.
     pub pieces: Option<Pieces>,
     /// The range of (h² Λ1) that is asked about, rounded outwards.
     pub range: Option<(Rational, Rational)>,
@@ -140,7 +140,7 @@ impl Word {
         !word.is_algebraic() || self.friction.is_some()
     }
 
-    /// Refuses friction that no letter feels, and flows of forces that push away.
+    /// Refuses friction without a letter O, and exact flows of repulsive forces.
     fn check(&self, word: &crate::word::Word) -> Result<()> {
         if let Some(friction) = &self.friction {
             if friction.sign() != Sign::Positive {
@@ -321,7 +321,7 @@ fn omega_h(edge: &Edge) -> Ball {
     edge.s().sqrt(BITS).expect("s > 0")
 }
 
-/// What is at least 0 as doubles.
+/// An enclosure, in doubles, of a number that is at least 0.
 fn positive(x: &Ball) -> (f64, f64) {
     let (lo, hi) = x.to_f64_enclosure();
     (lo.max(0.0), hi)
@@ -351,7 +351,7 @@ impl Linted {
         self.edge().map(omega_h).or_else(enclosed)
     }
 
-    /// The same when unstable intervals that are next to nothing do not count.
+    /// The edge when unstable intervals that are next to nothing do not count.
     fn nominal_edge(&self) -> Option<Ball> {
         match &self.stability {
             Some(stability) => stability.nominal_edge().map(omega_h),
@@ -532,7 +532,7 @@ impl Linted {
                 "friction",
                 match &question.friction {
                     Some(friction) => format!("{friction}: stable steps draw every start to 0, noise aside"),
-                    None => "not given: O does nothing, and what is told is of the word without it".into(),
+                    None => "not given: O does nothing, and the results are of the word without it".into(),
                 },
             );
         }
@@ -555,7 +555,7 @@ impl Linted {
         }
         if let (Some(found), Some(h)) = (&self.at, &question.h) {
             let stable = match (found.kind, found.is_stable()) {
-                ("edge", _) => "on an edge or nearer to one than balls tell",
+                ("edge", _) => "on an edge or nearer to one than balls can decide",
                 (_, true) => "stable",
                 (_, false) => "unstable",
             };
@@ -766,7 +766,7 @@ impl Question for Methods {
                 all.iter(),
             );
         let lines = [
-            format!("{} integrators; kickdrift word --method NAME tells more of one", all.len()),
+            format!("{} integrators; kickdrift word --method NAME shows one in full", all.len()),
             "two forces: omega1 h below which they are stable at lambda2/lambda1 = 1/16 (periods 1:4)".into(),
             "free: no unstable step there before the slow force's own limit omega2 h = 2".into(),
         ];
@@ -805,7 +805,7 @@ fn slow_range() -> StepRange {
 
 impl Listed {
     /// Whether no step below √Λ2 h = 2 is unstable at Λ2/Λ1 = 1/16: that is free of resonance. `None` for one force, and where edges that touch are
-    /// not told apart.
+    /// not separated.
     pub fn is_free(&self) -> Option<bool> {
         let two = self.two.as_ref()?;
         let limit = Rational::from_integer(64.into());

@@ -17,6 +17,8 @@ pub trait Recheck {
     const TABLE: &'static str;
     /// Values that the input does not determine.
     const LEFT: &'static [Left] = &[];
+    /// Whether `again` reads rows of the document beside its input.
+    const READS_ROWS: bool = false;
     /// The answer, or the part of it that the other route needs.
     type Found;
 
@@ -48,30 +50,30 @@ pub struct Compared {
     pub left: Vec<String>,
 }
 
-/// Holds a document against the one computed again; `table` is the key of its rows. Of the input, the fields are compared that
-/// `again` echoes.
-pub fn compare(told: &Map<String, Value>, again: Value, table: &str, left: &[Left]) -> Compared {
-    let (mut told, mut again) = (Value::Object(told.clone()), again);
+/// Compares a document with the one computed again; `table` is the key of its rows. Of its input only the fields that `again` echoes
+/// are compared.
+pub fn compare(written: &Map<String, Value>, again: Value, table: &str, left: &[Left]) -> Compared {
+    let (mut written, mut again) = (Value::Object(written.clone()), again);
     let version = ("kickdrift.version", "which version wrote it is no claim");
     let mut named = Vec::new();
     for (path, why) in [version].iter().chain(left) {
         let steps: Vec<&str> = path.split('.').collect();
-        let met = take(&mut told, &steps);
+        let met = take(&mut written, &steps);
         take(&mut again, &steps);
         named.extend(met.then(|| format!("{path}: {why}")));
     }
-    if let (Some(told), Some(again)) = (told["input"].as_object_mut(), again["input"].as_object()) {
-        told.retain(|key, _| again.contains_key(key));
+    if let (Some(written), Some(again)) = (written["input"].as_object_mut(), again["input"].as_object()) {
+        written.retain(|key, _| again.contains_key(key));
     }
     let rows = |whole: &mut Value| whole.as_object_mut().and_then(|own| own.shift_remove(table));
-    let (own, truth) = (rows(&mut told), rows(&mut again));
+    let (own, truth) = (rows(&mut written), rows(&mut again));
     let mut failures = match (&own, &truth) {
         (Some(Value::Array(own)), Some(Value::Array(truth))) => rows_apart(table, own, truth),
         _ => different(own.as_ref(), truth.as_ref()).map(|own| own.of(0, table)).into_iter().collect(),
     };
-    // What has no rows is one itself.
+    // A document without rows is one row itself.
     let row = u64::from(table.is_empty());
-    failures.extend(parts_apart(&told, &again, row));
+    failures.extend(parts_apart(&written, &again, row));
     Compared { failures, left: named }
 }
 
@@ -87,23 +89,23 @@ fn take(value: &mut Value, path: &[&str]) -> bool {
     }
 }
 
-fn rows_apart(table: &str, told: &[Value], again: &[Value]) -> Vec<Failure> {
-    let apart = (1..).zip(told.iter().zip(again)).filter_map(|(row, (told, again))| {
-        different(Some(told), Some(again)).map(|own| own.of(row, &place(told)))
+fn rows_apart(table: &str, written: &[Value], again: &[Value]) -> Vec<Failure> {
+    let apart = (1..).zip(written.iter().zip(again)).filter_map(|(row, (written, again))| {
+        different(Some(written), Some(again)).map(|own| own.of(row, &place(written)))
     });
-    let count = (told.len() != again.len()).then(|| {
-        let why = format!("{table} has {} rows, not {}", again.len(), told.len());
-        Failure { row: told.len().min(again.len()) as u64 + 1, place: table.into(), why }
+    let count = (written.len() != again.len()).then(|| {
+        let why = format!("{table} has {} rows, not {}", again.len(), written.len());
+        Failure { row: written.len().min(again.len()) as u64 + 1, place: table.into(), why }
     });
     apart.chain(count).collect()
 }
 
 /// The parts of a document beside its rows, one by one.
-fn parts_apart(told: &Value, again: &Value, row: u64) -> Vec<Failure> {
-    let (Value::Object(a), Value::Object(b)) = (told, again) else { return Vec::new() };
+fn parts_apart(written: &Value, again: &Value, row: u64) -> Vec<Failure> {
+    let (Value::Object(a), Value::Object(b)) = (written, again) else { return Vec::new() };
     let keys = b.keys().chain(a.keys().filter(|key| !b.contains_key(*key)));
     let apart = keys.filter_map(|key| {
-        let place = if row == 0 { key.clone() } else { place(told) };
+        let place = if row == 0 { key.clone() } else { place(written) };
         different(a.get(key), b.get(key)).map(|own| own.below(key).of(row, &place))
     });
     apart.collect()
@@ -139,9 +141,9 @@ impl Different {
     }
 }
 
-fn different(told: Option<&Value>, again: Option<&Value>) -> Option<Different> {
+fn different(written: Option<&Value>, again: Option<&Value>) -> Option<Different> {
     let here = |why: String| Some(Different { path: Vec::new(), why });
-    match (told, again) {
+    match (written, again) {
         (None, None) => None,
         (None, Some(_)) => here("is missing".into()),
         (Some(_), None) => here("does not belong there".into()),

@@ -1,15 +1,13 @@
 //! Boxes in which every ratio is unstable: pairs of steps in them, each decided by the ladder.
 
-use serde_json::Value;
-
-use super::again::Recheck;
+use super::again::{Recheck, asked};
 use super::context::{Checked, Context, Fault, Outcome, Place, holds};
 use super::sample::sample;
 use super::written::{Ends, Written};
 use crate::error::Result;
 use crate::number::{Laurent, Rational, Real, rational};
 use crate::propagator::Oscillator;
-use crate::question::{Bands, Fields, Question};
+use crate::question::{Bands, Fields};
 use crate::verdict::{Kind, decide_steps};
 
 const ROUTE: &str = "nine pairs of steps in each box, worst placed, with ratios as simple as there are: all are hyperbolic by the ladder";
@@ -58,13 +56,9 @@ impl Place for Row {
 
 impl Recheck for Claim {
     const TABLE: &'static str = "boxes";
-    type Found = ();
+    asked!(Bands);
 
-    fn again(&self, context: &Context) -> Result<(Value, ())> {
-        Ok((self.input.ask(&context.work())?.value(), ()))
-    }
-
-    fn check(&self, (): (), context: &Context) -> Result<Outcome> {
+    fn check(&self, _: Self::Found, context: &Context) -> Result<Outcome> {
         let of = self.boxes.len() as u64;
         let texts = self.input.input();
         let text: String = texts.iter().filter_map(|(_, text)| text.as_str()).collect();

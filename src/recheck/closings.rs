@@ -131,10 +131,10 @@ impl Claim {
             });
         }
         for odd in [true, false] {
-            let told = rows.iter().filter(|row| (row.m % 2 == 1) == odd).count();
+            let said = rows.iter().filter(|row| (row.m % 2 == 1) == odd).count();
             let truth =
                 count_closings(ratio.inverse(), Entry::of_tongue(odd), &mirrored.0, &mirrored.1).unwrap_or(0);
-            holds(told == truth, || format!("{ratio} has {truth} closings of this parity, not {told}"))?;
+            holds(said == truth, || format!("{ratio} has {truth} closings of this parity, not {said}"))?;
         }
         Ok(())
     }

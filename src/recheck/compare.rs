@@ -149,12 +149,12 @@ impl Claim {
         same("unstable", self.unstable, lines.iter().map(|(unstable, ..)| unstable).sum())?;
         same("tan.disagree", self.tan.disagree, 0)?;
         same("tan.agree", self.tan.agree, all)?;
-        let told = &self.resonance;
-        same("hits", told.hits, sum(|c| c.hits))?;
-        same("quiet", told.quiet, sum(|c| c.quiet))?;
-        same("misses", told.misses, sum(|c| c.misses))?;
-        same("false_alarms", told.false_alarms, sum(|c| c.false_alarms))?;
-        same("beyond_verlet", told.beyond_verlet, sum(|c| c.beyond_verlet))
+        let written = &self.resonance;
+        same("hits", written.hits, sum(|c| c.hits))?;
+        same("quiet", written.quiet, sum(|c| c.quiet))?;
+        same("misses", written.misses, sum(|c| c.misses))?;
+        same("false_alarms", written.false_alarms, sum(|c| c.false_alarms))?;
+        same("beyond_verlet", written.beyond_verlet, sum(|c| c.beyond_verlet))
     }
 
     fn offender(&self, pairs: &Pairs, placed: &Placed, context: &Context) -> Checked {
@@ -174,7 +174,7 @@ impl Claim {
         let rule = self.rule(&clocks, verdict);
         same("its offence", row.offence.as_str(), rule.map_or("none", Rule::name))?;
         const BITS: u32 = 96;
-        let (Some(angle), Some(m), Some(told)) = (clocks.angle(), row.m, row.distance) else {
+        let (Some(angle), Some(m), Some(written)) = (clocks.angle(), row.m, row.distance) else {
             return holds(rule.is_none() && row.m.is_none() && row.distance.is_none(), || {
                 "its angle is missing".into()
             });
@@ -185,7 +185,7 @@ impl Claim {
         let half = Rational::new(1.into(), 2.into());
         let nearest = distance.lower() <= half && (distance.upper() >= -half || m == 1) && m > 0;
         holds(nearest, || format!("m = {m} is not the nearest to {}", turns.mid_f64()))?;
-        holds(told.holds(&distance), || format!("its distance is {}", distance.mid_f64()))
+        holds(written.holds(&distance), || format!("its distance is {}", distance.mid_f64()))
     }
 }
 
@@ -224,12 +224,12 @@ impl Pairs {
         match self {
             Pairs::Grid(grid) => {
                 let steps = (grid.h1(grid.columns().0 + line as u64), grid.h2(grid.rows().0 + k));
-                let told = (row.h1.as_deref(), row.h2.as_deref());
-                told == (Some(&steps.0), Some(&steps.1)) && row.s.is_none() && row.rho.is_none()
+                let written = (row.h1.as_deref(), row.h2.as_deref());
+                written == (Some(&steps.0), Some(&steps.1)) && row.s.is_none() && row.rho.is_none()
             }
             Pairs::Ratios { rho, samples, .. } => {
-                let told = (row.s.as_deref(), row.rho.as_deref());
-                told == (Some(&Pairs::s(k, *samples)), Some(rho)) && row.h1.is_none() && row.h2.is_none()
+                let written = (row.s.as_deref(), row.rho.as_deref());
+                written == (Some(&Pairs::s(k, *samples)), Some(rho)) && row.h1.is_none() && row.h2.is_none()
             }
         }
     }

@@ -6,16 +6,18 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use crate::error::{Error, Result};
 use crate::parallel::try_map;
 use crate::question::{Watch, Work};
+#[cfg(feature = "system")]
+use crate::scene::Arrays;
 use crate::tongue::Progress;
 use crate::verdict::Limits;
 
-/// What to do with a document that cannot be read.
+/// The remedy for a document that cannot be read.
 pub const REMEDY: &str = "whole documents, as kickdrift wrote them, can be rechecked";
 
 /// How much is rechecked, and what one row may cost.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
-    /// What an answer may cost, as when it is asked for.
+    /// The highest cost of an answer, as when it is asked for.
     pub budget: Option<u64>,
     /// Whether the slower route takes every pair or tongue of a map or a survey, and not a sample of them.
     pub all: bool,
@@ -23,10 +25,10 @@ pub struct Options {
     pub folder: PathBuf,
 }
 
-/// What is shown of the progress: rows done, rows in all.
+/// Called with the progress: rows done, rows in all.
 pub type See<'a> = &'a (dyn Fn(u64, u64) + Sync);
 
-/// What a recheck found.
+/// The result of a recheck.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Outcome {
     /// The rows of the document; one where it has none.
@@ -35,7 +37,7 @@ pub struct Outcome {
     pub route: &'static str,
     /// Where the slower route took a sample: so many, of so many.
     pub sample: Option<(u64, u64)>,
-    /// What does not hold, in the order of the rows; last what concerns the whole document.
+    /// The claims that do not hold, in the order of the rows; last those about the whole document.
     pub failures: Vec<Failure>,
     /// The fields that were not rechecked, each with the reason.
     pub not_rechecked: Vec<String>,
@@ -48,11 +50,11 @@ pub struct Failure {
     pub row: u64,
     /// The row's name, as `p = 7, q = 3, m = 4`.
     pub place: String,
-    /// What is wrong.
+    /// The reason.
     pub why: String,
 }
 
-/// Why a row does not hold, or why that cannot be told.
+/// The reason why a row does not hold, or why it cannot be decided.
 pub enum Fault {
     Wrong(String),
     Error(Error),
@@ -65,7 +67,7 @@ impl From<Error> for Fault {
 }
 
 impl Fault {
-    /// What is wrong with an input.
+    /// The error of a wrong input.
     pub fn refused(self) -> Error {
         match self {
             Fault::Wrong(why) => Error::input("input", "given", why),
@@ -76,7 +78,7 @@ impl Fault {
 
 pub type Checked<T = ()> = std::result::Result<T, Fault>;
 
-/// What another route leaves out because of its cost.
+/// Names the checks that another route leaves out because of their cost.
 #[cfg(feature = "system")]
 pub fn too_costly(what: &str, error: &Error) -> String {
     let raise = |needed: u64| format!("a budget of {needed} allows it");
@@ -88,9 +90,9 @@ pub fn holds(truth: bool, wrong: impl FnOnce() -> String) -> Checked {
     if truth { Ok(()) } else { Err(Fault::Wrong(wrong())) }
 }
 
-/// What holds all along, or what it is instead.
-pub fn same<T: PartialEq + std::fmt::Display>(name: &str, told: T, truth: T) -> Checked {
-    holds(told == truth, || format!("{name} is {truth}, not {told}"))
+/// Holds a written value against the computed one.
+pub fn same<T: PartialEq + std::fmt::Display>(name: &str, written: T, truth: T) -> Checked {
+    holds(written == truth, || format!("{name} is {truth}, not {written}"))
 }
 
 /// A row that can be named.
@@ -98,7 +100,7 @@ pub trait Place: Sync {
     fn place(&self) -> String;
 }
 
-/// What is computed again shows its progress as the rows that are checked do.
+/// Computing again shows progress as checking rows does.
 impl Watch for Context<'_> {
     fn announce(&self, _: &str, _: f64) {}
 
@@ -124,12 +126,32 @@ impl Progress for Done<'_> {
 pub struct Context<'a> {
     pub options: &'a Options,
     pub see: Option<See<'a>>,
+    /// The arrays that systems refer to.
+    #[cfg(feature = "system")]
+    arrays: Arrays,
+}
+
+impl<'a> Context<'a> {
+    pub fn new(options: &'a Options, see: Option<See<'a>>) -> Self {
+        Context {
+            options,
+            see,
+            #[cfg(feature = "system")]
+            arrays: Arrays::from(&options.folder),
+        }
+    }
 }
 
 impl Context<'_> {
-    /// What computing an answer again may cost.
+    /// The highest cost of computing an answer again, and where its arrays are.
     pub fn work(&self) -> Work<'_> {
-        Work { budget: self.options.budget, watch: Some(self), ..Work::default() }
+        Work {
+            budget: self.options.budget,
+            watch: Some(self),
+            #[cfg(feature = "system")]
+            arrays: Some(&self.arrays),
+            ..Work::default()
+        }
     }
 
     /// The kicks that one verdict may compose.

@@ -73,15 +73,15 @@ impl Claim {
         let points = count(a0, a1).saturating_mul(count(b0, b1)).saturating_mul(samples.into());
         holds(points <= MOST && samples >= 2, || "more points than a document holds, or none".into())?;
         holds(self.input.lambda1.sign() == Sign::Positive, || "lambda1 is not positive".into())?;
-        let mut told = self.curves.iter().map(|curve| (curve.a, curve.b)).peekable();
+        let mut said = self.curves.iter().map(|curve| (curve.a, curve.b)).peekable();
         for (a, b) in (a0..=a1).flat_map(|a| (b0..=b1).map(move |b| (a, b))) {
-            let there = told.next_if_eq(&(a, b)).is_some();
+            let there = said.next_if_eq(&(a, b)).is_some();
             let passes = || window.expected(a, b).is_some_and(|pieces| pieces > 0);
             holds(there || !passes(), || {
                 format!("the curve a = {a}, b = {b} passes through the window and is missing")
             })?;
         }
-        let next = told.next();
+        let next = said.next();
         holds(next.is_none(), || format!("the curve {:?} does not belong here", next.unwrap_or_default()))
     }
 }
@@ -204,7 +204,7 @@ fn left(point: &Point) -> String {
 impl Point {
     fn holds(&self, curve: &Curve, lambda1: &Laurent) -> Checked {
         const BITS: u32 = 128;
-        let Point { h1, h2, theta_over_pi: told, .. } = *self;
+        let Point { h1, h2, theta_over_pi: said, .. } = *self;
         let exact = rational::from_f64_exact(h1).filter(|_| h1 > 0.0);
         let exact = exact.ok_or_else(|| Fault::Wrong(format!("h1 = {h1} is no step")))?;
         let s = &Laurent::from_rational(&exact * &exact) * lambda1;
@@ -216,11 +216,11 @@ impl Point {
         let step = Ball::from_rational(&exact, BITS).mul(&integer(curve.b), BITS).div(&denominator, BITS);
         let step = step.ok_or_else(|| Fault::Wrong(format!("h1 = {h1} is where the curve has no point")))?;
         // Written as the nearest doubles, to within one unit in the last place.
-        let near = |told: f64, x: &Ball| {
+        let near = |said: f64, x: &Ball| {
             let (lo, hi) = x.to_f64_enclosure();
-            lo.next_down() <= told && told <= hi.next_up()
+            lo.next_down() <= said && said <= hi.next_up()
         };
-        holds(near(told, &share), || format!("theta/pi at h1 = {h1} is {}, not {told}", share.mid_f64()))?;
+        holds(near(said, &share), || format!("theta/pi at h1 = {h1} is {}, not {said}", share.mid_f64()))?;
         holds(near(h2, &step), || format!("h2 at h1 = {h1} is {}, not {h2}", step.mid_f64()))
     }
 }

@@ -114,7 +114,7 @@ impl Claim {
     /// The fastest pair grows as fast as is written, and no other one faster.
     fn fastest(&self, grid: &Grid, largest: f64, context: &Context) -> Checked {
         let due = self.input.growth && largest > 0.0;
-        let Some(told) = self.fastest.as_ref().filter(|_| due) else {
+        let Some(written) = self.fastest.as_ref().filter(|_| due) else {
             return holds(!due && self.fastest.is_none(), || format!("the fastest growth is {largest}"));
         };
         let inside = |steps: (&Laurent, &Laurent), (first, last): (u64, u64)| {
@@ -124,18 +124,18 @@ impl Claim {
                 .ok_or_else(|| Fault::Wrong("its steps are not of the grid".into()))
         };
         let (step1, step2) = grid.steps();
-        let i = inside((&told.h1, step1), grid.columns())?;
-        let j = inside((&told.h2, step2), grid.rows())?;
+        let i = inside((&written.h1, step1), grid.columns())?;
+        let j = inside((&written.h2, step2), grid.rows())?;
         let (clocks, limits) = (grid.clocks(i, j)?, &context.limits());
         const BITS: u32 = 128;
         let ln = growth(&clocks, again(Tier::Refine, &clocks, limits)?.verdict, limits)?.ln_multiplier;
         let ln = ln.ok_or_else(|| Fault::Wrong("the fastest pair does not grow".into()))?;
-        let period = told.h1.enclosure(BITS).mul(&Ball::from_integer(&clocks.p().into()), BITS);
+        let period = written.h1.enclosure(BITS).mul(&Ball::from_integer(&clocks.p().into()), BITS);
         let rate = ln.div(&period, BITS).expect("T > 0");
         let ten = Ball::from_integer(&10.into()).ln(BITS).expect("10 > 0");
         let tenfold = ten.mul(&Ball::from_integer(&clocks.q().into()), BITS).div(&ln, BITS);
-        holds(told.growth_rate.holds(&rate), || format!("the fastest growth rate is {}", rate.mid_f64()))?;
-        let right = tenfold.is_some_and(|steps| told.steps_until_tenfold.holds(&steps));
+        holds(written.growth_rate.holds(&rate), || format!("the fastest growth rate is {}", rate.mid_f64()))?;
+        let right = tenfold.is_some_and(|steps| written.steps_until_tenfold.holds(&steps));
         holds(right, || "steps_until_tenfold does not belong to this growth rate".into())?;
         holds(largest <= rate.to_f64_enclosure().1, || {
             format!("another pair grows faster, at a rate of {largest}")

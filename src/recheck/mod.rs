@@ -99,7 +99,7 @@ use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
 use serde_path_to_error::{Path, Segment};
 
-use self::again::{Compared, Recheck, compare as compared};
+use self::again::{Compared, Recheck, compare};
 use self::context::{Context, REMEDY};
 use crate::error::{Error, Result};
 use crate::scene::json;
@@ -124,6 +124,12 @@ macro_rules! claims {
             fn recheck(&self, document: &Map<String, Value>, how: How, context: &Context) -> Result<Outcome> {
                 match self {
                     $($(#[$condition])? Rows::$variant(rows) => recheck(rows.as_ref(), document, how, context),)*
+                }
+            }
+
+            fn again(&self, document: &Map<String, Value>, context: &Context) -> Result<Option<Again>> {
+                match self {
+                    $($(#[$condition])? Rows::$variant(rows) => again(rows.as_ref(), document, context),)*
                 }
             }
         }
@@ -178,6 +184,15 @@ pub struct Claim {
     rows: Rows,
 }
 
+/// A document computed again from its input, against which others of the same input can be held.
+#[derive(Clone, Debug)]
+pub struct Again {
+    document: Value,
+    /// The schema and the input of the document that it was computed from.
+    head: [Option<Value>; 2],
+    compare: fn(&Map<String, Value>, Value) -> Compared,
+}
+
 /// Whether the document is computed again and compared, before another route is taken.
 #[derive(Clone, Copy, PartialEq)]
 enum How {
@@ -215,7 +230,7 @@ impl Claim {
     /// An input that makes no sense, and a recheck that costs more than the options allow; what does not hold is no error
     /// but a [`Failure`].
     pub fn recheck(&self, options: &Options, see: Option<See>) -> Result<Outcome> {
-        self.rows.recheck(&self.document, How::Both, &Context { options, see })
+        self.rows.recheck(&self.document, How::Both, &Context::new(options, see))
     }
 
     /// Takes the other route alone: it holds what is written against the mathematics, whichever version wrote it.
@@ -223,7 +238,22 @@ impl Claim {
     /// # Errors
     /// As [`Claim::recheck`].
     pub fn recheck_apart(&self, options: &Options, see: Option<See>) -> Result<Outcome> {
-        self.rows.recheck(&self.document, How::OtherRouteAlone, &Context { options, see })
+        self.rows.recheck(&self.document, How::OtherRouteAlone, &Context::new(options, see))
+    }
+
+    /// The document computed again from its input, for [`Claim::apart`]; `None` of a kind whose rows say what was asked, too.
+    ///
+    /// # Errors
+    /// As [`Claim::recheck`].
+    pub fn again(&self, options: &Options) -> Result<Option<Again>> {
+        self.rows.again(&self.document, &Context::new(options, None))
+    }
+
+    /// The first part of [`Claim::recheck`] against a document that was computed again before: the values that differ. `None` where that
+    /// one has another schema or another input.
+    pub fn apart(&self, again: &Again) -> Option<Vec<Failure>> {
+        let alike = again.head == asked_in(&self.document);
+        alike.then(|| (again.compare)(&self.document, again.document.clone()).failures)
     }
 
     /// About how many kicks the slower route composes; 0 where these are few.
@@ -248,7 +278,7 @@ fn recheck<R: Recheck>(
     if how == How::OtherRouteAlone {
         return rows.check(found, context);
     }
-    let Compared { failures, left } = compared(document, again, R::TABLE, R::LEFT);
+    let Compared { failures, left } = compared::<R>(document, again);
     if failures.is_empty() {
         let mut outcome = rows.check(found, context)?;
         outcome.not_rechecked.splice(0..0, left);
@@ -259,7 +289,20 @@ fn recheck<R: Recheck>(
     Ok(Outcome { rows, route: "computed again", sample: None, failures, not_rechecked: left })
 }
 
-/// What no recheck can find.
+fn again<R: Recheck>(rows: &R, own: &Map<String, Value>, context: &Context) -> Result<Option<Again>> {
+    let by_input = (!R::READS_ROWS).then(|| rows.again(context)).transpose()?;
+    Ok(by_input.map(|(document, _)| Again { document, head: asked_in(own), compare: compared::<R> }))
+}
+
+fn asked_in(document: &Map<String, Value>) -> [Option<Value>; 2] {
+    ["schema", "input"].map(|key| document.get(key).cloned())
+}
+
+fn compared<R: Recheck>(document: &Map<String, Value>, again: Value) -> Compared {
+    compare(document, again, R::TABLE, R::LEFT)
+}
+
+/// The limit of every recheck.
 const QUESTION: &str = "that this was the question, where another one has the same answer";
 
 /// That the head is one that kickdrift writes: which version and which command, and an input without nulls.

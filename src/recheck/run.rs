@@ -25,6 +25,7 @@ rows! {
 
 impl Recheck for Claim {
     const TABLE: &'static str = "products";
+    const READS_ROWS: bool = true;
     type Found = ();
 
     fn again(&self, _: &Context) -> Result<(Value, ())> {

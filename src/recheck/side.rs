@@ -10,7 +10,7 @@ use crate::word::{Bounded, Force, Integrator, Letter, Word};
 
 const ROUTE: &str = "the trace at every point in doubles, letter by letter; points within 1e-7 of an edge may fall on either side";
 
-/// A trace this near to ±2 tells nothing in doubles.
+/// A trace this near to ±2 decides nothing in doubles.
 const NEAR: f64 = 1e-7;
 
 rows! {

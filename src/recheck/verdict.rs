@@ -49,7 +49,7 @@ struct Truth {
     trace: Ball,
     ln_multiplier: Option<Ball>,
     exact: Option<Rational>,
-    /// m, where another route tells it; `None` where the kicks have to be followed for it.
+    /// m, where another route finds it; `None` where the kicks have to be followed for it.
     label: Option<Option<u64>>,
 }
 
@@ -143,12 +143,12 @@ impl Claim {
 
     /// The trace and the growth rate lie in their enclosures.
     fn numbers(&self, oscillator: &Oscillator, truth: &Truth) -> Checked {
-        let Trace { lo, hi, exact: told } = &self.trace;
+        let Trace { lo, hi, exact: written } = &self.trace;
         let ends = Ends::new(*lo, *hi);
         holds(ends.is_some_and(|ends| ends.holds(&truth.trace)), || {
             "the trace lies outside its enclosure".into()
         })?;
-        let right = told.is_none() || told.as_deref() == truth.exact.as_ref();
+        let right = written.is_none() || written.as_deref() == truth.exact.as_ref();
         holds(right, || "the exact trace is another one".into())?;
         let Some(ln) = &truth.ln_multiplier else {
             let Ends { lo, hi } = self.growth_rate;
@@ -161,7 +161,7 @@ impl Claim {
     /// The label m of what grows exponentially, and its dominant family, m = a p + b q.
     fn label(&self, oscillator: &Oscillator, truth: &Truth, limits: &Limits) -> Checked {
         let clocks = oscillator.clocks();
-        // Return maps need not tell a label, and the families of a longer period are not told.
+        // Return maps may find no label, and the families of a longer period are not written.
         let due =
             truth.label.map_or(*self.kind == Kind::Hyperbolic, |label| label.is_some()) && clocks.is_ok();
         let Some(Resonance { m, a, b }) = self.resonance else {

@@ -14,7 +14,7 @@ use crate::word::{Force, Letter, method};
 
 const ROUTE: &str = "letter by letter in exact numbers: a step of each interval, the order by halving a step; exact flows, filters and friction in doubles";
 
-/// Traces this near to an edge tell nothing in doubles.
+/// Traces this near to an edge decide nothing in doubles.
 const NEAR: f64 = 1e-7;
 
 rows! {
@@ -177,7 +177,7 @@ impl Row {
         let omega_h = (lo + hi) / Rational::from_integer(2.into());
         let sign = inside(word, &(&omega_h * &omega_h), rho);
         let stable = sign == Sign::Positive;
-        holds(sign == Sign::Zero || stable == self.stable, || told(rational::to_f64(&omega_h), stable))
+        holds(sign == Sign::Zero || stable == self.stable, || verdict_at(rational::to_f64(&omega_h), stable))
     }
 
     /// The trace in the middle against 1 + the determinant; γ in units of √Λ1.
@@ -186,11 +186,11 @@ impl Row {
         let omega_h = self.upper.map_or(lower + 0.01, |own| (lower + own.lo) / 2.0);
         let (trace, determinant) = step(word, omega_h * omega_h, rho, friction * omega_h);
         let margin = 1.0 + determinant - trace.abs();
-        holds(margin.abs() < NEAR || (margin > 0.0) == self.stable, || told(omega_h, margin > 0.0))
+        holds(margin.abs() < NEAR || (margin > 0.0) == self.stable, || verdict_at(omega_h, margin > 0.0))
     }
 }
 
-fn told(omega_h: f64, stable: bool) -> String {
+fn verdict_at(omega_h: f64, stable: bool) -> String {
     format!("at omega h = {omega_h} it is {}", if stable { "stable" } else { "unstable" })
 }
 

@@ -45,7 +45,7 @@ fn lines(bands: &Bands, share: f64, area: f64) -> Vec<String> {
     ]
 }
 
-/// What is written of a box.
+/// The record of a box.
 fn record(bands: &Bands) -> Record<'_, Cell> {
     let mut record = Record::new();
     for (step, key) in ["h1", "h2"].into_iter().enumerate() {

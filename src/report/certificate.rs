@@ -131,8 +131,8 @@ pub fn coq_of_tongue(ratio: Ratio, rho: &Rational, gap: &Gap, file_name: &str) -
     Ok(text)
 }
 
-/// What a word does at one step as a Coq proof (theorem `word_certificate` in proofs/): its letters, repeated ones written out, multiplied in
-/// exact fractions.
+/// The verdict of a word at one step as a Coq proof (theorem `word_certificate` in proofs/): its letters, repeated ones written out,
+/// multiplied in exact fractions.
 ///
 /// `found` is [`at`](crate::word::at) at h² Λ1; `lambda2` is 0 for a word that names no second force.
 ///

@@ -84,7 +84,7 @@ impl Document {
         self
     }
 
-    /// Adds one entry to the JSON body, at a path as those of a [`Record`](super::record::Record).
+    /// Adds one entry to the JSON body, at a path as in a [`Record`](super::record::Record).
     #[must_use]
     pub fn entry(mut self, key: &str, value: impl Into<Value>) -> Self {
         put(&mut self.body, key, value.into());

@@ -71,7 +71,7 @@ pub fn captured(work: impl FnOnce() -> Result<()>) -> Result<Vec<u8>> {
 fn to_stdout(content: impl FnOnce(&mut dyn Write) -> Result<()>) -> Result<()> {
     let mut sink = BufWriter::new(io::stdout().lock());
     let written = content(&mut sink).and_then(|()| sink.flush().map_err(Error::stream));
-    // What the buffer still holds has no reader, or is an error's; dropping it must not try again.
+    // The rest of the buffer has no reader, or belongs to a failed write; dropping it must not try again.
     drop(sink.into_parts());
     match written {
         Err(error) if error.lost_stream().is_some_and(|cause| cause.kind() == ErrorKind::BrokenPipe) => {
@@ -110,7 +110,7 @@ fn to_path(path: &Path, content: impl FnOnce(&mut dyn Write) -> Result<()>) -> R
     finish().map_err(Error::stream)
 }
 
-/// That a file may be replaced, if there is one: a rename would pass over what keeps it from being written to.
+/// Checks that a file may be replaced, if there is one: a rename alone would ignore its write protection.
 ///
 /// # Errors
 /// [`Kind::Io`](crate::error::Kind::Io) naming a file that is read-only, for all or for this process.

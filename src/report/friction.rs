@@ -27,7 +27,7 @@ pub(crate) fn lines(own: &Friction) -> Vec<String> {
         Some(Damping::Damped) => "spectral radius proven below 1: means and covariances stay bounded",
         Some(Damping::Marginal) => "spectral radius 1, exactly",
         Some(Damping::Growing) => "spectral radius proven above 1: it grows in spite of it",
-        None => "doubles do not tell whether the spectral radius is below 1",
+        None => "doubles cannot decide whether the spectral radius is below 1",
     };
     let rate =
         own.growth.map_or(String::new(), |(lo, hi)| format!("; ln rho/T = {}", decimal::enclosure(lo, hi)));

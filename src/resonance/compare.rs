@@ -24,7 +24,7 @@ use crate::parallel::{go_on, try_map};
 use crate::propagator::TwoClocks;
 use crate::verdict::{Decidable, Decision, Limits, Tier, Verdict, decide_from};
 
-/// What the rule of thumb makes of a pair.
+/// The rule of thumb held against the verdict of a pair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Outcome {
     /// Unstable and near a resonance.
@@ -38,7 +38,7 @@ pub enum Outcome {
 }
 
 impl Outcome {
-    /// What the rule makes of a pair that is stable or not, near a resonance or not.
+    /// The outcome for a pair that is stable or not, near a resonance or not.
     pub fn of(stable: bool, near: bool) -> Outcome {
         match (stable, near) {
             (false, true) => Outcome::Hit,
@@ -74,7 +74,7 @@ pub struct Comparison {
     pub tan: Verdict,
     /// The nearest resonance; `None` beyond the fast clock's Verlet limit s = 4, where there is no θ.
     pub nearest: Option<Nearest>,
-    /// What the rule of thumb makes of it; `None` where there is no θ.
+    /// The rule of thumb held against the verdict; `None` where there is no θ.
     pub outcome: Option<Outcome>,
 }
 

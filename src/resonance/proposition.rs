@@ -95,7 +95,7 @@ fn field(p: u64) -> CyclotomicField {
     CyclotomicField::new(u32::try_from(p).expect("a p whose field fits in memory"))
 }
 
-/// The same by 2 T_p(x/2) =: V_p(x), V_{k+1} = x V_k − V_{k−1}, x = 2 cos(m π/p).
+/// Decides the same by 2 T_p(x/2) =: V_p(x), V_{k+1} = x V_k − V_{k−1}, x = 2 cos(m π/p).
 fn closes_in(field: &CyclotomicField, p: u64, m: u64) -> bool {
     let x = field.two_cos(m as i64);
     let two = <Cyclotomic as Ring>::from_rational(&fraction(2, 1));
@@ -108,7 +108,7 @@ fn closes_in(field: &CyclotomicField, p: u64, m: u64) -> bool {
     now == if m.is_even() { two } else { -two }
 }
 
-/// What an exhaustive check found.
+/// The result of an exhaustive check.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Check {
     /// Resonant points (p, q, m) examined, each with a witness that satisfies eqs. (9) and (10).

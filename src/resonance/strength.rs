@@ -83,7 +83,7 @@ pub fn first_order(ratio: Ratio, m: u64, rho: f64) -> Option<FirstOrder> {
 }
 
 /// S0 and |S| over the q slow kicks of one period, p θ = m π. The kicks k and q − k mirror each other: n' = p − 1 − n, σ' = 1 − σ,
-/// P(σ') = e^{iθ} P(σ)*, so their terms of S are conjugate, and those of half the period tell both sums.
+/// P(σ') = e^{iθ} P(σ)*, so their terms of S are conjugate, and half the period gives both sums.
 fn means(ratio: Ratio, theta: f64) -> (f64, f64) {
     let (p, q) = ratio.terms();
     let turn = Complex64::cis(theta);

@@ -38,7 +38,7 @@ use crate::propagator::TwoClocks;
 use crate::propagator::methods::respa::power;
 use crate::verdict::{Decidable, HalfSigns, Kind, Limits, PartialSigns, Tier, Verdict};
 
-/// What the tan criterion says of a pair.
+/// The prediction of the tan criterion for a pair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Criterion(Verdict);
 

@@ -27,7 +27,7 @@ impl Event {
     }
 }
 
-/// What happens to the kicks at the two ends of the span.
+/// How the kicks at the two ends of the span are taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Ends {
     /// Whole at the beginning, left to the next period at the end.

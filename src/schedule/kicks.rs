@@ -2,7 +2,7 @@
 
 use super::events::{Event, Weight};
 
-/// What drifts and is kicked: an orbit, a matrix, a polynomial in the stiffness.
+/// Anything that can be drifted and kicked: an orbit, a matrix, a polynomial in the stiffness.
 pub trait KickDrift<K> {
     /// Lets `ticks` > 0 pass without a kick.
     fn drift(&mut self, ticks: u64);

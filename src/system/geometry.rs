@@ -5,7 +5,7 @@
 pub struct Geometry {
     /// In the file's unit of length.
     pub points: Vec<[f64; 3]>,
-    /// What each point is called: an element's symbol, X where none is known.
+    /// The name of each point: an element's symbol, X where none is known.
     pub symbols: Vec<String>,
     /// Pairs of bonded atoms; of a mesh the nodes of each element.
     pub cells: Vec<Vec<usize>>,

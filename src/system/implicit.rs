@@ -35,7 +35,7 @@ impl ImplicitExplicit {
         Ok(ImplicitExplicit { effective: of_step(&plain, &step)?, plain })
     }
 
-    /// The same with another outer step.
+    /// This system with another outer step.
     ///
     /// # Errors
     /// As [`ImplicitExplicit::new`].
@@ -43,7 +43,7 @@ impl ImplicitExplicit {
         of_step(&self.plain, step)
     }
 
-    /// The same with the step whose square this is, in a unit of time in which that step is 1.
+    /// This system with the step whose square is given, in a unit of time in which that step is 1.
     ///
     /// # Errors
     /// As [`ImplicitExplicit::new`].

@@ -31,7 +31,7 @@
 //!
 //! The cost for n degrees of freedom, whose potentials kick T/h_k times a period and hold e_k entries: n Σ (T/h_k) e_k
 //! for the half period, some n³ for the eigenvalues and their bound in doubles. Exact arithmetic grows with the length
-//! of its numbers, about n^4 T/h and n³ (T/h)² products of machine words, and tells its cost before it begins.
+//! of its numbers, about n^4 T/h and n³ (T/h)² products of machine words, and states its cost before it begins.
 //!
 //! ```
 //! use kickdrift::number::rational::ratio;

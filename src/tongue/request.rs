@@ -8,7 +8,7 @@ use super::tongues::Tongues;
 use crate::error::Result;
 use crate::number::{Ball, Laurent, Ratio, Rational, Real};
 
-/// What is asked for beside the edges in s.
+/// The columns asked for beside the edges in s.
 #[derive(Clone, Debug, Default)]
 pub struct Request {
     pub wanted: Wanted,
@@ -23,7 +23,7 @@ pub struct Request {
 pub struct Bounds {
     pub lo: f64,
     pub hi: f64,
-    /// The same by rational ends, where digits are asked for.
+    /// Its enclosure by rational ends, where digits are asked for.
     pub precise: Option<Enclosure>,
 }
 

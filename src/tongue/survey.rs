@@ -17,7 +17,7 @@ use crate::error::Result;
 use crate::number::{Ratio, Rational};
 use crate::parallel::try_map;
 
-/// What all coprime p + q ≤ N have to say at one ρ, about the tongues whose lower edge has s < 4.
+/// The tongues of all coprime p + q ≤ N at one ρ whose lower edge has s < 4, summed up.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Survey {
     pub max_sum: u64,

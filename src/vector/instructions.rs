@@ -77,7 +77,7 @@ impl Instructions {
         }
     }
 
-    /// The same with vectors of a single register, for kernels that hold many vectors at a time.
+    /// Computes with vectors of a single register, for kernels that hold many vectors at a time.
     pub fn compute_by_register<K: Kernel>(self, kernel: K) -> K::Output {
         match self {
             // Safety: as above.

@@ -99,7 +99,7 @@ pub(crate) trait Vector: Copy {
     fn below(self) -> Self;
     /// self, in which whole numbers are held as integers, one more where the signs of a and b differ.
     fn count_change(self, a: Self, b: Self) -> Self;
-    /// The same where the signs of a and b differ and c is negative.
+    /// Adds 1 in each lane where the signs of a and b differ and c is negative.
     fn count_change_below(self, a: Self, b: Self, c: Self) -> Self;
     /// The power of two that brings |self|, not below 2^-1022, to [1, 2).
     fn normalizing(self) -> Self;
@@ -133,7 +133,7 @@ pub(crate) trait Vector: Copy {
         (sum, self.sub(sum.sub(part)).add(other.sub(part)))
     }
 
-    /// The same of a difference.
+    /// As above, for a difference.
     #[inline(always)]
     fn two_sub(self, other: Self) -> (Self, Self) {
         let difference = self.sub(other);
@@ -189,7 +189,7 @@ mod tests {
         let (sum, rest) = a.two_sum(b);
         let (difference, left) = a.two_sub(b);
         let (product, lost) = a.two_product(b);
-        // What is done to bits holds for whole numbers and for positive ones.
+        // These operations on bits are right for whole numbers and for positive ones.
         let unit = V::splat((1u64 << 52) as f64);
         vec![
             a,

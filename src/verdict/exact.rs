@@ -33,7 +33,7 @@ pub trait Decidable: Real {
         half_period(clocks).signs()
     }
 
-    /// What [`Decidable::half_signs`] costs for a half period of so many kicks, in kicks of the refine tier (about
+    /// The cost of [`Decidable::half_signs`] for a half period of so many kicks, in kicks of the refine tier (about
     /// 1 µs each): the numbers grow with every kick. Measured, good to a factor of some units.
     fn exact_cost(_clocks: &TwoClocks<Self>, kicks: u64) -> u64 {
         kicks.saturating_pow(3)

@@ -97,7 +97,7 @@ impl Runs {
             return Ok(Growth { trace, ln_multiplier: None, label: None });
         }
         let ratio = clocks.ratio();
-        // Unless kicks had to decide, return maps tell more than the filter's could.
+        // Unless kicks had to decide, return maps give more than those of the filter could.
         if (self.refined.is_some() || self.filtered.is_none())
             && returns::is_worth(ratio, 53)
             && let Some(Returned { products, label, .. }) =
@@ -151,7 +151,7 @@ impl Runs {
     ) -> Option<Returned> {
         let of = |ends: &refine::Ends, bits| {
             let (products, label) = (ends.products(2 * bits), from_nodes(ends, verdict));
-            // More bits than two doubles have tell no label that these do not.
+            // More bits than two doubles have give no further labels.
             let is_labelled = label.is_some() || verdict.side() == 0 || bits > 53;
             let is_enough = products.accuracy() >= least && is_labelled;
             Returned { products, label, is_enough }
@@ -221,7 +221,7 @@ pub fn filter_trace<S: Real>(clocks: &TwoClocks<S>) -> Option<Ball> {
     Some(from_products(products(&ends), Verdict::Elliptic, None).trace)
 }
 
-/// What return maps tell.
+/// The ends and the label from return maps.
 struct Returned {
     products: Products,
     label: Option<u64>,

@@ -26,7 +26,7 @@ use std::fmt;
 use crate::number::Sign::{self, Negative, Positive, Zero};
 use crate::propagator::{HalfSigns, PartialSigns};
 
-/// What the powers of Q do: a [`Verdict`] without its side, which many clocks do not have.
+/// How the powers of Q behave: a [`Verdict`] without its side, which many clocks do not have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Kind {

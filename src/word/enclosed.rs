@@ -193,10 +193,10 @@ impl<'a> Enclosed<'a> {
                 here.value.add(&over.slope.mul(&off, BITS), BITS).sign().or(over.value.sign())
             })
             .collect();
-        told(&over, [signs[0], signs[1]])
+        stable(&over, [signs[0], signs[1]])
     }
 
-    /// The answer at one step h > 0. `kind` is `edge` where balls of 128 bits do not tell it, and `damped` where friction draws all to 0.
+    /// The answer at one step h > 0. `kind` is `edge` where balls of 128 bits cannot decide, and `damped` where friction draws all to 0.
     pub fn at(&self, h: &Laurent) -> Option<At> {
         let product = self.product(h.enclosure(BITS))?;
         let q = &product.denominator.value;
@@ -204,7 +204,7 @@ impl<'a> Enclosed<'a> {
         let determinant = product.damping.value.clone();
         let [above, below] = Self::margins(&product).map(|own| own.value.sign());
         let damped = determinant.compare(&Ball::one()) == Some(std::cmp::Ordering::Less);
-        let stable = told(&product, [above, below]);
+        let stable = stable(&product, [above, below]);
         let mut found = At {
             kind: match stable {
                 None => "edge",
@@ -236,12 +236,12 @@ impl<'a> Enclosed<'a> {
         Some(found)
     }
 
-    /// Every step of (lo, hi): pieces with one answer. `None` where there are more than can be told apart.
+    /// Every step of (lo, hi): pieces with one answer. `None` where there are more pieces than can be separated.
     pub fn pieces(&self, lo: f64, hi: f64) -> Option<Vec<Piece>> {
         let mut left = MOST_CELLS;
         let verdict = |lo: f64, hi: f64| {
             left = left.saturating_sub(1);
-            // What is left when all cells are spent is not told, and refused below.
+            // Cells beyond the limit are left undecided, and refused below.
             if left == 0 { Some(true) } else { self.verdict(lo, hi) }
         };
         let all = pieces(lo, hi, verdict);
@@ -249,8 +249,8 @@ impl<'a> Enclosed<'a> {
     }
 }
 
-/// Whether both margins are positive, or one negative.
-fn told(product: &Product<Jet>, margins: [Option<Sign>; 2]) -> Option<bool> {
+/// Whether a step is stable: both margins are positive. `None` where neither this nor a negative margin is proven.
+fn stable(product: &Product<Jet>, margins: [Option<Sign>; 2]) -> Option<bool> {
     // Letters O that sum to less than 0 feed energy in.
     match product.damping.value.compare(&Ball::one()) {
         Some(std::cmp::Ordering::Greater) => return Some(false),
@@ -276,10 +276,10 @@ pub(super) fn pieces(lo: f64, hi: f64, mut verdict: impl FnMut(f64, f64) -> Opti
     let mut cells: Vec<(f64, Option<bool>)> = Vec::new();
     let mut open = vec![(lo, hi, 0)];
     while let Some((lo, hi, depth)) = open.pop() {
-        let told = verdict(lo, hi);
-        if told.is_some() || depth == HALVINGS {
-            if cells.last().is_none_or(|last| last.1 != told) {
-                cells.push((lo, told));
+        let own = verdict(lo, hi);
+        if own.is_some() || depth == HALVINGS {
+            if cells.last().is_none_or(|last| last.1 != own) {
+                cells.push((lo, own));
             }
         } else {
             let middle = lo + (hi - lo) / 2.0;

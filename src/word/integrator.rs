@@ -23,8 +23,8 @@ pub enum Integrator {
 pub enum Bounded {
     Stable,
     Unstable,
-    /// Of one filtered kick beside one exact flow: nearer to an edge than thousands of bits tell, and no theorem says whether it is one, only where
-    /// h² Λ1 is neither rational nor (r π)² with a rational r. Of other words with flows or filters: on an edge, or nearer to one than 128 bits tell.
+    /// With one filtered kick beside one exact flow: nearer to an edge than thousands of bits resolve, and no theorem decides whether it is one; only
+    /// where h² Λ1 is neither rational nor (r π)² with a rational r. Other words with flows or filters: on an edge, or nearer than 128 bits resolve.
     Edge,
 }
 
@@ -62,23 +62,24 @@ impl Integrator {
 
     /// The answers at each s = h² Λ1 > 0, with Λ2 = ρ Λ1 > 0.
     pub fn along(&self, rho: &Rational, all: &[Laurent]) -> Vec<Bounded> {
-        let told = |stable: bool| if stable { Bounded::Stable } else { Bounded::Unstable };
+        let bounded = |stable: bool| if stable { Bounded::Stable } else { Bounded::Unstable };
         match self {
             Integrator::Word(word) if !word.is_algebraic() => {
                 let one = Laurent::from_integer(1);
                 let at = |s| Enclosed::scaled(word, s, rho).at(&one);
-                let answer = |own: At| if own.kind == "edge" { Bounded::Edge } else { told(own.is_stable()) };
+                let answer =
+                    |own: At| if own.kind == "edge" { Bounded::Edge } else { bounded(own.is_stable()) };
                 all.iter().map(|s| at(s).map_or(Bounded::Edge, answer)).collect()
             }
             Integrator::Word(word) => {
                 let product = word.polynomials(&Forces::ratio(rho));
                 // At a pole of a midpoint there is no step at all; forces that attract have none.
                 all.iter()
-                    .map(|s| at(&product, s).map_or(Bounded::Unstable, |own| told(own.is_stable())))
+                    .map(|s| at(&product, s).map_or(Bounded::Unstable, |own| bounded(own.is_stable())))
                     .collect()
             }
             Integrator::Trigonometric(own) => {
-                all.iter().map(|s| own.stable_at(s, rho).map_or(Bounded::Edge, told)).collect()
+                all.iter().map(|s| own.stable_at(s, rho).map_or(Bounded::Edge, bounded)).collect()
             }
         }
     }

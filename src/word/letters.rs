@@ -63,7 +63,7 @@ pub struct Place {
     pub mirrored: String,
 }
 
-/// What a step costs. Kicks without a drift between them share one evaluation, those at both ends of the step too.
+/// The cost of a step. Kicks without a drift between them share one evaluation, those at both ends of the step too.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Cost {
     /// Evaluations of each force; the whole force is one where the word does not name two.
@@ -157,7 +157,7 @@ impl Word {
         Some(Word { items })
     }
 
-    /// What is written.
+    /// The letters and groups as they are written.
     pub fn items(&self) -> &[Item] {
         &self.items
     }
@@ -298,7 +298,7 @@ impl Word {
     /// The cost of a step.
     pub fn cost(&self) -> Cost {
         let (all, mut cost) = (self.joined(), Cost::default());
-        // What was evaluated at the end of a step is known at the beginning of the next one.
+        // A force evaluated at the end of a step is known at the beginning of the next one.
         let mut known = fresh_at_end(&all);
         for letter in &all {
             match letter {

@@ -42,7 +42,7 @@ impl Forces<Polynomial<Radical>> {
     }
 }
 
-/// What the letters mean in a ring.
+/// The meaning of the letters in a ring.
 pub(super) trait Setting<S: Ring> {
     /// F = h² Λ.
     fn force(&self, force: Force) -> S;
@@ -59,7 +59,7 @@ pub(super) trait Setting<S: Ring> {
     fn damping(&self, c: &Radical) -> S;
 }
 
-/// Terms of the series of flows and filters in [`Forces`]: orders up to twice as many are told.
+/// Terms of the series of flows and filters in [`Forces`]: orders up to twice as many are found.
 pub(super) const TERMS: usize = 12;
 
 /// Σ f_k F^k by Horner's rule.

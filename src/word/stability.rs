@@ -1,7 +1,7 @@
 //! Where a word is stable: every interval of s = h² Λ1, its ends exact algebraic numbers.
 //!
 //! With trace T and denominator q the powers of the propagator are bounded where |T| < 2 |q|, and at a zero of T ∓ 2 q iff the
-//! propagator is ±I there (B = C = 0). The zeros are isolated by Sturm chains over ℚ(c^(1/n)) and told apart; between
+//! propagator is ±I there (B = C = 0). The zeros are isolated by Sturm chains over ℚ(c^(1/n)) and separated; between
 //! them the sign of T² − 4 q² is that at one rational point.
 
 use num_bigint::BigInt;

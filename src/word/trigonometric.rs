@@ -8,8 +8,8 @@
 //! ```
 //!
 //! A step is unstable where one of them is negative. Common factors c² and s² change no sign; they are 0 only where the filters are, and
-//! the propagator is ±I there. Balls over intervals of y tell the signs, all but at the edges themselves; whether a step is one is decided by
-//! where numbers are transcendental, see `at_edge`.
+//! the propagator is ±I there. Balls over intervals of y prove the signs everywhere but at the edges; theorems on transcendental numbers decide
+//! whether a step is an edge, see `at_edge`.
 //!
 //! ```
 //! use kickdrift::number::{Laurent, rational::ratio};
@@ -85,7 +85,7 @@ impl Trigonometric {
         }
     }
 
-    /// Whether it is told by its two-step form alone, Gautschi's and that of Hairer and Lubich; else kicks stand around an exact flow.
+    /// Whether only its two-step form is published, Gautschi's and that of Hairer and Lubich; else kicks stand around an exact flow.
     pub fn is_two_step(self) -> bool {
         matches!(self, Trigonometric::Gautschi | Trigonometric::HairerLubich)
     }
@@ -210,7 +210,7 @@ impl Shape {
         }
     }
 
-    /// At s = h² Λ1, ρ > 0; `None` at s = 0, and where 8192 bits do not tell and no theorem does.
+    /// Whether the step with s = h² Λ1 is stable, ρ > 0; `None` at s = 0, and where neither 8192 bits nor a theorem decide.
     pub fn stable_at(self, s: &Laurent, rho: &Rational) -> Option<bool> {
         if s.is_zero() {
             return None;
@@ -222,7 +222,7 @@ impl Shape {
             .or_else(|| doubled().take_while(|bits| *bits <= MOST_BITS).find_map(at))
     }
 
-    /// What holds at an edge; `None` where s is none, or where it is not known whether it is.
+    /// Whether an edge is stable; `None` where s is no edge, or where it is not known whether it is.
     ///
     /// For h w = r π, s = r² π²: where r is a whole number s or c is 0, the flow is ±I, and the step is ±I if the filter c^(i−1) (s/y)^(k−1) of the
     /// kick is 0 there, and else a kick, under which a displacement grows with every step. Where it is none, and k is not 2, c² and s² are algebraic and not 0, what is added to them is a
@@ -246,7 +246,7 @@ impl Shape {
     }
 
     /// Every step h of (lo, hi), 0 ≤ lo: pieces with one answer, their ends enclosed. Outside the enclosures every step is proven stable or unstable.
-    /// Intervals thinner than 2^−44 of the range are not told apart from edges that touch.
+    /// Intervals thinner than 2^−44 of the range are not distinguished from edges that touch.
     pub fn pieces(self, fast: &Laurent, slow: &Laurent, lo: f64, hi: f64) -> Vec<Piece> {
         let (half, rho) = (half_frequency(fast, BITS), over(slow, fast));
         let at = |h: f64| half.mul(&Ball::from_rational(&from_f64_exact(h).unwrap_or_default(), BITS), BITS);
@@ -254,7 +254,7 @@ impl Shape {
     }
 
     /// The unstable intervals of the step h that begin below `most` > 0, both ends of each enclosed; an end beyond `most` is not looked for, but
-    /// told as `most`.
+    /// given as `most`.
     pub fn unstable(self, fast: &Laurent, slow: &Laurent, most: f64) -> Vec<[(f64, f64); 2]> {
         let all = self.pieces(fast, slow, 0.0, most).into_iter();
         all.filter(|own| !own.stable).map(|own| [own.lower, own.upper]).collect()

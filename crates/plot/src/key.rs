@@ -22,7 +22,7 @@ const BAR_GAP: f64 = 8.0;
 const BAR: f64 = 7.0;
 /// The height of an arrow at its end.
 const ARROW: f64 = 7.0;
-/// Steps of colour in a bar: finer than the eye tells apart.
+/// Steps of colour in a bar: finer than the eye can distinguish.
 const SHADES: usize = 96;
 
 /// One entry: the layer it stands for and its words.

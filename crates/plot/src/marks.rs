@@ -135,7 +135,7 @@ fn rectangles(cells: impl Iterator<Item = (u32, u32)>) -> Vec<Run> {
     }
     let mut open: BTreeMap<(u32, u32), Run> = BTreeMap::new();
     for column in runs.chunk_by(|a, b| a.i == b.i) {
-        // What ends before this column's neighbour grows no more.
+        // A mark that ends before the neighbour of this column grows no more.
         let (near, ended): (BTreeMap<_, _>, BTreeMap<_, _>) = std::mem::take(&mut open)
             .into_iter()
             .partition(|(_, known)| known.i + known.across == column[0].i);

@@ -22,8 +22,8 @@ pub const HYPERBOLIC: Colour = Colour(0x27, 0x3c, 0x75);
 pub const PARABOLIC: Colour = Colour(0xd9, 0x5f, 0x02);
 pub const COEXISTENCE: Colour = Colour(0x1b, 0xb0, 0x8a);
 
-/// What advice says of steps: safe, with caution, growing where it was sampled, unstable. From light to dark, so that grey
-/// print tells them apart.
+/// The judgements of advice: safe, with caution, growing where it was sampled, unstable. From light to dark, so that they differ in
+/// grey print.
 pub const SAFE: Colour = Colour(0xcf, 0xec, 0xdf);
 pub const CAUTION: Colour = Colour(0xf3, 0xb4, 0x7a);
 pub const SAMPLED: Colour = Colour(0x8f, 0x8f, 0x9b);

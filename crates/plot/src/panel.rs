@@ -27,7 +27,7 @@ pub struct ColourBar {
 const RESOLVED: f64 = 100.0;
 
 impl ColourBar {
-    /// Shades of a gradient: neighbours are barely told apart.
+    /// Shades of a gradient: neighbours barely differ.
     pub const SHADES: u16 = 40;
 
     /// The values that the colours stand for; the gradient runs evenly along the axis.

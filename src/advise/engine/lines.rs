@@ -204,7 +204,7 @@ pub(super) fn lammps(text: &str) -> Result<Reading> {
     let direct: Vec<&str> = styles.iter().filter(|style| style.is_direct).map(|style| style.name).collect();
     reading.remarks.extend(no_gradient(&direct));
     if reading.scheme.steps().len() < levels {
-        reading.remarks.push("levels of equal steps are told as one".into());
+        reading.remarks.push("levels of equal steps are taken as one".into());
         reading.forces = vec!["forces of all its levels".into(); reading.scheme.steps().len()];
         places.clear();
     }
@@ -265,7 +265,7 @@ fn on_levels(rest: &[(&str, Range<usize>)], styles: &[PairStyle]) -> Vec<(String
     found
 }
 
-/// What grompp wants to be multiples of `mts-level2-factor` where it is not 0, with its default; and of the first one (0: of none).
+/// Keys that grompp wants to be multiples of `mts-level2-factor` where they are not 0, with their defaults; all but the first also of the first.
 const GROMACS_INTERVALS: [(&str, u64); 4] =
     [("nstcalcenergy", 100), ("nstenergy", 1000), ("nstlog", 1000), ("nstfout", 0)];
 

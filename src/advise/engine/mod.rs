@@ -1,4 +1,4 @@
-//! What simulation engines write about their time steps, read as they read it.
+//! The input of simulation engines about their time steps, read as the engines read it.
 //!
 //! | engine | notation | dt is | scheme |
 //! |---|---|---|---|
@@ -9,9 +9,9 @@
 //! | Tinker | `INTEGRATOR RESPA`, `RESPA-INNER`; the outer step is no part of the key file | – | half kicks |
 //! | i-PI | `<timestep>`, `<nmts>`, level 0 the outermost | the outermost step | half kicks |
 //!
-//! Keys that have no say in this are passed over, as the engines pass over none; the reading lists what was used. A text is
-//! rewritten in place: only the numbers that change are touched. What an engine wants to be a multiple of the changed number becomes
-//! one, and is written out where its default is none: at a factor of 6, GROMACS's energies of every 100 steps are of every 102.
+//! Keys that do not affect the steps are skipped; the reading lists those that were used. A text is
+//! rewritten in place: only the numbers that change are touched. A number that the engine wants to be a multiple of the changed one becomes
+//! a multiple, and is written out where its default is none: at a factor of 6, GROMACS's energies of every 100 steps are of every 102.
 //!
 //! ```
 //! use kickdrift::advise::engine::{Engine, read};

@@ -215,7 +215,7 @@ fn integrator(text: &str) -> Result<Reading> {
             Some(forces) => *forces += &format!(", group {group}"),
             None => reading.forces.push(format!("group {group}")),
         }
-        // With an outermost group that is itself evaluated more than once, dt stays: only then the counts would not tell the steps.
+        // With an outermost group that is itself evaluated more than once, dt stays: only then the counts do not determine the steps.
         if slowest == 1 {
             reading.places.push((place.clone(), Place::PerOuter(level)));
         }

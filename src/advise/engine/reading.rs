@@ -1,4 +1,4 @@
-//! What an engine's text says, and the text with other steps.
+//! The text of an engine, read, and rewritten with other steps.
 
 use std::ops::Range;
 
@@ -46,7 +46,7 @@ impl Engine {
     }
 }
 
-/// What a number in the text is, as a function of the steps.
+/// A number in the text as a function of the steps.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Place {
     /// The outermost step in units of so many fs.
@@ -63,7 +63,7 @@ pub(super) enum Place {
     Append(&'static str),
     /// The innermost step in fs, of an engine that takes the next shorter one which divides the outermost: behind a key to add, if any.
     Inner(&'static str),
-    /// What is done in one step of the level below the outermost, written out as often as that is made.
+    /// The work in one step of the level below the outermost, written out as often as that step is made.
     Loop(Loop),
 }
 
@@ -128,18 +128,18 @@ impl Unit {
     }
 }
 
-/// What an engine's text says.
+/// The text of an engine, read.
 #[derive(Clone, Debug)]
 pub struct Reading {
     pub engine: Engine,
     pub scheme: Scheme,
-    /// What is on each clock, the innermost first, in the engine's own words.
+    /// The forces on each clock, the innermost first, in the engine's own words.
     pub forces: Vec<String>,
     /// The keys that were used, as they stand in the text.
     pub used: Vec<String>,
-    /// What its writer should know: what the engine would refuse, what was not read.
+    /// Remarks for the writer of the text: parts that the engine would refuse, parts that were not read.
     pub remarks: Vec<String>,
-    /// The bonds that it constrains, where its text tells.
+    /// The bonds that it constrains, where its text says so.
     pub constraints: Option<Constraints>,
     text: String,
     pub(super) places: Vec<(Range<usize>, Place)>,
@@ -161,7 +161,7 @@ pub fn not_nested(scheme: &Scheme) -> Option<String> {
     Some(format!("{} fs is no multiple of {} fs", decimal(&pair[1]), decimal(&pair[0])))
 }
 
-/// Of two steps that are no multiples of each other, what they are and the outer steps beside that are.
+/// For two steps that are no multiples of each other: the steps, and the outer steps beside that are multiples.
 pub fn nested_beside(scheme: &Scheme) -> Option<String> {
     let ([inner, outer], Some(why)) = (scheme.steps(), not_nested(scheme)) else { return None };
     let one = Rational::from_integer(1.into());

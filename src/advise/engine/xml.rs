@@ -123,10 +123,10 @@ pub(super) fn ipi(text: &str) -> Result<Reading> {
         .collect();
     reading.remarks.extend(no_gradient(&direct(root, text)));
     if reading.scheme.steps().len() < levels {
-        reading.remarks.push("levels of equal steps are told as one".into());
+        reading.remarks.push("levels of equal steps are taken as one".into());
         reading.forces = vec!["forces of all its levels".into(); reading.scheme.steps().len()];
     }
-    // An outermost level of several iterations, or levels of equal steps: then these two numbers do not tell the steps.
+    // An outermost level of several iterations, or levels of equal steps: then these two numbers do not determine the steps.
     if inside.split(',').next().map(str::trim) == Some("1") && reading.scheme.steps().len() == levels {
         reading.places = vec![(start..start + value.len(), Place::Outer(unit))];
         if levels > 1 {

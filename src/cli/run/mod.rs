@@ -37,16 +37,16 @@ impl Args {
         let contents = scene.want.iter().map(|want| work.contents(*want)).collect::<Result<Vec<_>>>()?;
         let mut lines: Vec<String> =
             Some(scene.title.clone()).filter(|title| !title.is_empty()).into_iter().collect();
-        let mut told = Vec::new();
+        let mut shown = Vec::new();
         for (want, contents) in scene.want.iter().zip(contents) {
             let (product, path) = (want.product, folder.path().join(want.file_name()));
             work.write(contents, &path)?;
             lines.push(path.display().to_string());
             // A product's summary is shown once, with its first file.
-            if let Some(summary) = work.summary(product).filter(|_| !told.contains(&product)) {
+            if let Some(summary) = work.summary(product).filter(|_| !shown.contains(&product)) {
                 lines.extend(summary.lines().map(|line| format!("    {line}")));
             }
-            told.push(product);
+            shown.push(product);
         }
         let document = scene.written(folder.path()).summary(&lines);
         folder.keep();

@@ -86,7 +86,7 @@ pub struct Args {
     paper: Paper,
 }
 
-/// What may be computed of a tongue beside p, q, m, (a, b), its edges and its width.
+/// Columns of a tongue beside p, q, m, (a, b), its edges and its width.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Columns {
     /// Nothing else.

@@ -146,7 +146,7 @@ fn each_row<T: Send>(
 /// A summary, and the rows where a terminal or a table holds them.
 fn document(question: &Stream, common: &Common, format: Format, sink: &mut dyn Write) -> Result<TongueTally> {
     let most = if format == Format::Text { ROWS_FOR_PEOPLE } else { MOST_ROWS };
-    // What is asked for by name is shown in full.
+    // Columns asked for by name are shown in full.
     let record = record(&question.asked.request, question.columns.is_none());
     let mut table = record.table("tongues", CAPTION, []).captioned(CAPTION_LATEX);
     let mut tally = TongueTally::default();

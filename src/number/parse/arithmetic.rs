@@ -2,7 +2,7 @@
 
 use std::ops::Neg;
 
-/// What stands between two numbers.
+/// An operator between two numbers.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum Operation {
     Plus,

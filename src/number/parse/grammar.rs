@@ -25,7 +25,7 @@ const MAX_EFFORT: u64 = 100_000_000_000;
 /// See [`MAX_EFFORT`].
 const OVERHEAD: u64 = 100_000;
 
-/// What to do about a text that is not a number.
+/// The remedy for a text that is not a number.
 type Remedy = String;
 type Parsed<T> = Result<T, Remedy>;
 

@@ -99,7 +99,7 @@ pub(crate) fn roots_within(f: &[BigInt], lo: &Rational, hi: &Rational) -> Vec<Ro
     roots.into_iter().filter_map(|bracket| clipped(f, bracket, lo, hi)).collect()
 }
 
-/// The same root with a positive lower end.
+/// An interval of the same root with a positive lower end.
 fn away_from_zero(f: &[BigInt], (mut a, mut b): RootInterval) -> RootInterval {
     let above = sign_at(f, &b);
     while a.is_zero() {

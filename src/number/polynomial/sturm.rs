@@ -106,7 +106,7 @@ impl<C: SignAt> Sturm<C> {
         }
     }
 
-    /// The same root in an interval of at most the given width > 0, by bisection.
+    /// Bisects until the interval of the root is at most as wide as the given width > 0.
     pub fn refine(&self, (lo, hi): &RootInterval, width: &Rational) -> RootInterval {
         let (mut lo, mut hi) = (lo.clone(), hi.clone());
         if lo == hi {

@@ -55,7 +55,7 @@ impl<T: Coefficient> Branch<T> {
 pub struct Budget(u64);
 
 impl Budget {
-    /// What a run may cost whose first levels are known in these numbers.
+    /// The highest cost of a run whose first levels are known in these numbers.
     pub fn of<T: Coefficient>() -> Self {
         Budget(T::PRODUCTS * T::COST)
     }

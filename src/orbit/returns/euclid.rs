@@ -34,10 +34,10 @@ pub struct Reached<P> {
     pub left: u128,
 }
 
-/// What the roundings of all passes through a level may add up to: a result that is known less well has few digits.
+/// The highest sum of the roundings of all passes through a level: a result that is known less well has few digits.
 const ROUNDINGS: f64 = 1.0 / 32768.0;
 
-/// What is left out of a level's products may add up to this share of the error that long products may have.
+/// The terms left out of a level's products may add up to this share of the error that long products may have.
 const LEFT_OUT: f64 = 1e-3;
 
 /// Whether a level's branches may be known to these numbers' digits, where the product is wanted to those of P.
@@ -56,7 +56,7 @@ pub fn walk<T: Coefficient, P: Coefficient>(
     if T::BITS > P::BITS && suffices::<T::Lower, P>(left.length + right.length) {
         return walk::<T::Lower, P>(left.rounded(), right.rounded(), n, entered, budget);
     }
-    // What is left out of a product is met on each pass.
+    // The terms left out of a product add an error on each pass.
     let least = LEFT_OUT * P::CLOSE / (left.length + right.length) as f64;
     [&mut left, &mut right].into_iter().for_each(|branch| branch.map.least = branch.map.least.max(least));
     let back = fit::coordinates(&left.map, &right.map).map(|(there, back)| {

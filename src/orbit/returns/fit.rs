@@ -31,7 +31,7 @@ fn product([a, b, c, d]: Real, [e, f, g, h]: Real) -> Real {
 /// The middle of a branch with determinant 1; `None` where doubles do not hold it.
 fn middle<T: Coefficient>(map: &Map<T>) -> Option<Real> {
     let [a, b, c, d] = map.terms()[0].each_ref().map(T::near);
-    // A long hyperbolic product has a determinant that doubles do not tell: its norm stands for it.
+    // Doubles cannot resolve the determinant of a long hyperbolic product: its norm stands for it.
     let determinant = (a * d - b * c).max(1e-12 * (a * a + b * b + c * c + d * d));
     let unit = determinant.sqrt().recip();
     unit.is_finite().then_some([a, b, c, d].map(|x| x * unit))

@@ -19,7 +19,7 @@ use crate::propagator::{LongClocks, PartialSigns};
 /// Bits of a base's angle beside those of the number of its steps.
 const ANGLE: u32 = 50;
 
-/// The binary digits of a number of steps whose turn doubles tell.
+/// Doubles know the turn of a number of steps that has at most so many binary digits.
 const FEW: u32 = 17;
 
 /// |σ²| below which a base beyond its own limit keeps the unit of the velocity.
@@ -68,7 +68,7 @@ pub struct Frame<T: Coefficient> {
 enum Turning {
     /// 0 < s < 4: by θ/2π, known so well that of as many steps' turns the whole ones are.
     By(Ball),
-    /// The same within 2^-25, for few steps.
+    /// The turn within 2^-25, for few steps.
     Near(f64),
     /// s ≥ 4: a half turn, and (1, 0) stays on its side.
     Half,
@@ -76,7 +76,7 @@ enum Turning {
     Not,
 }
 
-/// What a run finds.
+/// The result of a run.
 pub struct Found {
     pub signs: PartialSigns,
     /// `None` where their logarithms are too large for the exponents of balls.
@@ -99,7 +99,7 @@ struct Rotation<E> {
 }
 
 impl<T: Coefficient> Frame<T> {
-    /// `None` where these numbers do not tell on which side of its own limit the base is. Turns are followed where they are `wanted`.
+    /// `None` where these numbers cannot decide on which side of its own limit the base is. Turns are followed where they are `wanted`.
     pub fn new<S: Real>(clocks: &LongClocks<S>, wanted: bool) -> Option<Self> {
         let beat = Beat::of(clocks.ratio())?;
         // Each squaring doubles the radius, and adds four of them: it loses a bit and a half.
@@ -327,7 +327,7 @@ impl<T: Coefficient> Frame<T> {
         Some((product(&journey.entries()?, &whole), exponent))
     }
 
-    /// What is left from the last kick of the other clock up to T/2, or half a kick less.
+    /// The rest from the last kick of the other clock up to T/2, or half a kick less.
     fn close(&self, journey: &mut Journey<T>) -> Option<()> {
         let Beat { whole, rest, q } = &self.beat;
         let p = self.beat.p();

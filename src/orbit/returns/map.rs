@@ -50,7 +50,7 @@ pub struct Map<T> {
     error: f64,
     /// e.
     pub exponent: i128,
-    /// Of (1, 0) at t = 0.
+    /// The turn of (1, 0) at t = 0.
     pub turn: Option<Turn>,
     /// Last terms that are smaller than this, relatively, are left out of what is made of it.
     pub least: f64,
@@ -86,7 +86,7 @@ pub fn sizes<T: Coefficient, const N: usize>(terms: &[Entries<T>]) -> [f64; N] {
     sizes
 }
 
-/// What no Σ M_j t^j exceeds on [−1, 1] in norm; `known` is such a bound already, or infinite.
+/// A bound of the norm of Σ M_j t^j on [−1, 1]; `known` is such a bound already, or infinite.
 #[inline(always)]
 fn largest<T: Coefficient, const N: usize>(terms: &[Entries<T>], known: f64) -> f64 {
     let first = norm(&terms[0]);
@@ -200,7 +200,7 @@ impl<T: Coefficient> Map<T> {
         self.error
     }
 
-    /// What no Σ M_j t^j exceeds in norm.
+    /// A bound of the norm of Σ M_j t^j.
     #[inline(always)]
     pub fn norm(&self) -> f64 {
         self.norm
@@ -216,7 +216,7 @@ impl<T: Coefficient> Map<T> {
         self.error / norm(&self.terms[0])
     }
 
-    /// What no value exceeds in norm, with the power of two.
+    /// A bound of the norm of all values, with the power of two.
     pub fn size(&self) -> f64 {
         (self.norm + self.error) * power_of_two(self.exponent) * UP
     }
@@ -227,7 +227,7 @@ impl<T: Coefficient> Map<T> {
         self
     }
 
-    /// The same matrix function, known up to `by` times its size less well.
+    /// This matrix function with its remainder enlarged by `by` times its size.
     pub fn widened(mut self, by: f64) -> Self {
         self.error = (self.error + by * (self.norm + self.error)) * UP + FLOOR;
         self

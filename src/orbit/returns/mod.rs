@@ -53,7 +53,7 @@ pub fn is_worth(ratio: Ratio, bits: u32) -> bool {
     ratio.p().min(ratio.q()) >= if bits > 53 { LONG_FOR_BITS } else { LONG }
 }
 
-/// What a run is asked for.
+/// The results that a run is asked for.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Wanted {
     /// The four entries.
@@ -98,8 +98,8 @@ fn better<S: Real>(clocks: &LongClocks<S>, bits: u32, wanted: Wanted) -> Option<
     if decides(&second) { second } else { first.or(second) }
 }
 
-/// With the fast or the slow clock as the base; the kicks of the rarer one tell in which numbers its first levels are known well
-/// enough (`euclid::suffices`).
+/// A run with the fast or the slow clock as the base. The number of kicks of the rarer clock decides which numbers know its first
+/// levels well enough (`euclid::suffices`).
 fn over<S: Real>(clocks: &LongClocks<S>, fast: bool, bits: u32, wanted: Wanted) -> Option<Found> {
     match (bits, clocks.shorter_bits()) {
         (0..=53, 0..=38) => over_in::<S, f64>(clocks, fast, bits, wanted),

@@ -11,7 +11,7 @@ use crate::number::{Ball, Rational, Twofold, U};
 /// A floating number. Every operation returns its exact result but for [`UNIT`](Coefficient::UNIT): a product within
 /// UNIT |a b|, a sum within UNIT (|a| + |b|), as long as nothing is smaller than 2^-900.
 pub trait Coefficient: Copy {
-    /// What a pair's constants are enclosed in.
+    /// The type that encloses the constants of a pair.
     type Enclosure: Enclosure;
     /// The next shorter numbers; of the shortest themselves.
     type Lower: Coefficient;
@@ -24,7 +24,7 @@ pub trait Coefficient: Copy {
     /// The logarithm of the factors that are multiplied in one row, up to `row::LONGEST` of them: 0 where single products, which leave
     /// out what is small when it is known, are cheaper.
     const ROW: u32;
-    /// What a product of functions costs, in those of doubles, about.
+    /// The cost of a product of functions, about, relative to that of doubles.
     const COST: u64;
     /// The most products of functions that one run may cost: a fraction of a second, or some seconds.
     const PRODUCTS: u64;
@@ -54,7 +54,7 @@ pub trait Coefficient: Copy {
     fn to<P: Coefficient>(&self) -> P;
     /// A number this near to the enclosed one, at most.
     fn near_enclosure(enclosure: &Self::Enclosure) -> (Self, f64);
-    /// What lies within `error` of it.
+    /// All numbers within `error` of it.
     fn enclosed(&self, error: f64, bits: u32) -> Self::Enclosure;
 
     /// n/d within 3 UNIT relatively.

@@ -22,7 +22,7 @@ pub const LONGEST: usize = 8;
 /// Room for the terms of most functions of doubles.
 const SHORT: usize = 8;
 
-/// What (g/f_0)^q may be.
+/// The largest (g/f_0)^q.
 const GROWTH: f64 = 4.0;
 
 /// The part at `places[0]` first; `None` where the bounds would lose digits.
@@ -38,17 +38,17 @@ struct Row<'a, T> {
     beta: T,
 }
 
-/// What is known before any product is made.
+/// Everything known before any product is made.
 struct Plan {
     /// f_j, as far as parts have terms.
     majorant: [f64; MOST],
     /// Terms of parts, and of products.
     terms: [usize; 2],
-    /// What the computed part lacks at most, all of it.
+    /// A bound of everything that the computed part lacks.
     lacks: f64,
     /// v.
     value: f64,
-    /// What is left out of i products together, over v^i.
+    /// The terms left out of i products together, over v^i.
     left_out: f64,
 }
 
@@ -199,7 +199,7 @@ impl<T: Coefficient> Task for Row<'_, T> {
     #[inline(always)]
     fn run(self) -> Option<Map<T>> {
         let plan = self.plan()?;
-        // What stays in registers, or near them.
+        // Small cases stay in registers, or near them.
         Some(match plan.terms[1].max(self.whole.terms().len()) {
             n if n <= SHORT => self.with_room::<SHORT>(&plan),
             n if n <= FEW => self.with_room::<FEW>(&plan),

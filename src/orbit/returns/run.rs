@@ -16,11 +16,11 @@ const MANY: u32 = 3;
 /// A branch and what is known of its products.
 pub struct Run<T> {
     pub branch: Branch<T>,
-    /// What a very long product may lack beside roundings, relatively.
+    /// The relative error of a very long product allowed beside roundings.
     allowed: f64,
     /// By the logarithm of n and the place: some dozens.
     pieces: Vec<((u32, i128), Branch<T>)>,
-    /// What very long products are made of.
+    /// The factors of very long products.
     slow: Option<Slow<T>>,
 }
 

@@ -133,7 +133,7 @@ fn levels_in_fewer_bits_are_what_long_numbers_give() {
             let (s, k) = (ratio(1 + next(3998) as i64, 1000), ratio(next(2000) as i64 - 300, 1000));
             let kicks = TwoClocks::new(Ratio::new(1, 1).unwrap(), s, k);
             let clocks = LongClocks::from(&kicks).with_ratio(ratio_of_steps);
-            // Of strong kicks, entries so large that no ball holds their exponents.
+            // Strong kicks can make entries so large that no ball holds their exponents.
             let Some(reference) = run(&clocks, 256, Wanted::Nodes) else { continue };
             pairs += 1;
             for (decided, bits) in decided.iter_mut().zip(PRECISIONS) {

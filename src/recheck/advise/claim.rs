@@ -1,15 +1,14 @@
 //! The rows of the document `kickdrift/advise/1`, and what concerns it as a whole.
 
 use num_traits::One;
-use serde_json::Value;
 
 use super::mass::{BITS, Mass, crosses, exact, fastest_growth};
 use crate::advise::Mode;
 use crate::error::Result;
 use crate::number::rational::to_f64;
 use crate::number::{Ball, Laurent, Rational, Real, Sign};
-use crate::question::{Advised, Question};
-use crate::recheck::again::{Left, Recheck};
+use crate::question::Advised;
+use crate::recheck::again::{Left, Recheck, asked};
 use crate::recheck::context::{Checked, Context, Fault, Outcome, Place, holds};
 use crate::recheck::written::{Ends, Written};
 use crate::verdict::Kind;
@@ -118,13 +117,9 @@ impl Recheck for Claim {
         ("engine", "the text that it was read from is not part of the document"),
         ("input.constrained", "bonds that are held take no part in the answer"),
     ];
-    type Found = ();
+    asked!(Advised);
 
-    fn again(&self, context: &Context) -> Result<(Value, ())> {
-        Ok((self.input.ask(&context.work())?.value(), ()))
-    }
-
-    fn check(&self, (): (), context: &Context) -> Result<Outcome> {
+    fn check(&self, _: Self::Found, context: &Context) -> Result<Outcome> {
         context.outcome(ROUTE, ("the schemes", self.whole()), &self.rows, |row| self.row(row))
     }
 }

@@ -1,13 +1,11 @@
 //! Advice on forces that are no gradient: computed again, whole; its growth by the dense full period.
 
-use serde_json::Value;
-
-use super::system::{LEFT, again};
+use super::LEFT;
 use crate::error::{Error, Result};
 use crate::number::Rational;
 use crate::number::rational::to_f64;
 use crate::question::{Advised, Safe};
-use crate::recheck::again::{Left, Recheck};
+use crate::recheck::again::{Left, Recheck, asked};
 use crate::recheck::context::{Checked, Context, Outcome, REMEDY, holds};
 use crate::system::Jacobians;
 
@@ -35,11 +33,7 @@ fn growth(own: &Jacobians, unit: &Rational, steps: &[Rational], rate: (f64, f64)
 impl Recheck for Claim {
     const TABLE: &'static str = "rows";
     const LEFT: &'static [Left] = LEFT;
-    type Found = Safe;
-
-    fn again(&self, context: &Context) -> Result<(Value, Safe)> {
-        again(&self.input, context)
-    }
+    asked!(Advised);
 
     fn check(&self, safe: Safe, context: &Context) -> Result<Outcome> {
         let Safe::Direct(own) = safe else { return Err(Error::missing("input.system", REMEDY)) };

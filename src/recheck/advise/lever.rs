@@ -1,4 +1,4 @@
-//! What would let the step grow: kicks and drifts by the pivots of their action, other methods by their traces.
+//! Levers that would let the step grow: kicks and drifts by the pivots of their action, other methods by their traces.
 
 use num_traits::One;
 
@@ -84,7 +84,7 @@ impl Claim {
         })
     }
 
-    /// The step is damped, the next one is not, or cannot be told.
+    /// The step is damped; the next one is not, or is not proven to be.
     fn masked(&self, own: &LeverRow) -> Checked {
         let (Some(step), Some(rate)) = (&own.step, &self.input.friction) else {
             return holds(false, || "a friction masks no step".into());

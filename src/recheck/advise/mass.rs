@@ -61,7 +61,7 @@ impl Mass {
         self.steps.iter().zip(&self.stiffness).map(strength).collect()
     }
 
-    /// The same with all steps times `factor`.
+    /// This mass with all steps times `factor`.
     pub fn scaled(&self, factor: &Rational) -> Mass {
         Mass {
             steps: self.steps.iter().map(|step| step * factor).collect(),
@@ -182,9 +182,9 @@ pub fn fastest_growth(at: &impl Fn(f64) -> Mass, (lo, hi): (f64, f64), steps: Op
         }
         width /= 2.0;
     }
-    // The steps told are those at the place where the rate is largest; at its top a place off by 1e-5 of the width tells little.
+    // The steps written are those where the rate is largest; near its maximum an error of the place of 1e-5 of the width changes little.
     let truth = std::f64::consts::LN_10 / (best.0 * best.1);
-    // Of what hardly grows nothing need be told.
+    // Where hardly anything grows the steps may be left out.
     let right = steps.map_or(truth > 1e9, |steps| (truth / steps - 1.0).abs() < 1e-3);
     holds(right, || format!("growth is tenfold in {truth} steps at worst"))
 }

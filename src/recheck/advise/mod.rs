@@ -7,9 +7,8 @@
 //! |---|---|
 //! | `claim` | the rows of the document, and what concerns it as a whole |
 //! | `mass` | one mass on its clocks: trace, friction, first region |
-//! | `scheme`, `row` | what is told of a scheme, of a mode at a scheme |
-//! | `lever` | what would let the step grow |
-//! | `system` | advice on a system's file, computed again |
+//! | `scheme`, `row` | the row of a scheme, of a mode at a scheme |
+//! | `lever` | levers that would let the step grow |
 //! | `direct` | advice on forces that are no gradient: computed again, its growth by the dense full period |
 //! | `molecule` | advice on Hessians: computed again, its proofs and growth by another route |
 
@@ -20,8 +19,13 @@ mod mass;
 mod molecule;
 mod row;
 mod scheme;
-mod system;
 
 pub use claim::Claim;
 pub use direct::Claim as Direct;
 pub use molecule::Claim as Molecule;
+
+use super::again::Left;
+
+/// The leaves of advice on a system's file that nothing follows from.
+const LEFT: &[Left] =
+    &[("input.file", "a name"), ("engine", "the text that it was read from is not part of the document")];

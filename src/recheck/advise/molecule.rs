@@ -2,20 +2,18 @@
 
 use std::borrow::Cow;
 
-use num_traits::Zero;
-use serde_json::Value;
-
-use super::system::{LEFT, again};
+use super::LEFT;
 use crate::advise::{Finding, MOST_PRODUCTS, Scheme};
 use crate::error::{Error, Result};
 use crate::number::Rational;
 use crate::number::rational::{from_f64_exact, to_f64};
 use crate::question::{Advised, Safe};
-use crate::recheck::again::{Left, Recheck};
+use crate::recheck::again::{Left, Recheck, asked};
 use crate::recheck::context::{Checked, Context, Outcome, REMEDY, holds, too_costly};
 use crate::scene::SystemScene;
 use crate::system::levels::{Hessians, Near};
 use crate::system::{Holds, Limits, Potential, System, decide_system};
+use num_traits::Zero;
 
 /// Another route to what a row proves.
 trait Route {
@@ -24,7 +22,7 @@ trait Route {
     fn row(&self, own: &Finding) -> Checked;
     /// Whether the ends of the region are among what it proves.
     fn has_ends(&self, own: &Finding) -> bool;
-    fn told(&self) -> &'static str;
+    fn route(&self) -> &'static str;
 }
 
 /// The route that does not share a step with how this system is advised on.
@@ -98,7 +96,7 @@ impl Route for Many<'_> {
         true
     }
 
-    fn told(&self) -> &'static str {
+    fn route(&self) -> &'static str {
         "the scheme, both sides of the first unstable step and the corners of the band, each at one step, by half periods of a rational system of the doubles given"
     }
 }
@@ -177,7 +175,7 @@ impl Route for Other {
         self.has_paths(own)
     }
 
-    fn told(&self) -> &'static str {
+    fn route(&self) -> &'static str {
         ROUTE
     }
 }
@@ -194,11 +192,7 @@ const ROUTE: &str = "the ends of the first region and of the band by the action 
 impl Recheck for Claim {
     const TABLE: &'static str = "rows";
     const LEFT: &'static [Left] = LEFT;
-    type Found = Safe;
-
-    fn again(&self, context: &Context) -> Result<(Value, Safe)> {
-        again(&self.input, context)
-    }
+    asked!(Advised);
 
     fn check(&self, safe: Safe, context: &Context) -> Result<Outcome> {
         let Safe::Hessians(own) = safe else { return Err(Error::missing("input.system", REMEDY)) };
@@ -227,7 +221,7 @@ impl Recheck for Claim {
         }
         Ok(Outcome {
             rows: findings.schemes.len() as u64,
-            route: other.told(),
+            route: other.route(),
             sample: None,
             failures,
             not_rechecked,

@@ -1,4 +1,4 @@
-//! What is said of a mode at a scheme.
+//! The row of a mode at a scheme, checked.
 
 use super::claim::{Claim, Row};
 use super::mass::{BITS, Mass, crosses, exact, fastest_growth};
@@ -57,7 +57,7 @@ impl Claim {
         ];
         for (n, (lower, upper, worst)) in intervals.into_iter().enumerate() {
             let (Some(lower), Some(upper)) = (lower, upper) else {
-                // One point, or without an end: the pivots tell where the first one begins.
+                // One point, or without an end: the pivots show where the first one begins.
                 holds(upper.is_none() && worst.is_none(), || "an interval lacks an end".into())?;
                 lower.filter(|_| n > 0).map_or(Ok(()), |lower| crosses(&at, lower, "lower"))?;
                 continue;
@@ -84,11 +84,11 @@ impl Claim {
             holds(right, || "masked_above is not the friction that masks it".into())?;
         }
         match (row.damped, &self.input.friction) {
-            (Some(told), Some(friction)) => {
+            (Some(said), Some(friction)) => {
                 let truth = own.is_damped(friction)?;
-                holds(truth.is_none_or(|truth| truth == told), || format!("damped is not {told}"))
+                holds(truth.is_none_or(|truth| truth == said), || format!("damped is not {said}"))
             }
-            (told, given) => holds(told.is_none() || given.is_some(), || "damped without a friction".into()),
+            (said, given) => holds(said.is_none() || given.is_some(), || "damped without a friction".into()),
         }
     }
 }
@@ -129,7 +129,7 @@ impl Row {
         holds(self.growth_rate.holds(&per_ps), || format!("the growth rate is {}", per_ps.mid_f64()))?;
         let ten = Ball::from_integer(&10.into()).ln(BITS).expect("10 > 0");
         let steps = ten.div(&rate.mul(&Ball::from_rational(outer, BITS), BITS), BITS);
-        let right = self.tenfold_steps.zip(steps).is_some_and(|(told, steps)| told.holds(&steps));
+        let right = self.tenfold_steps.zip(steps).is_some_and(|(said, steps)| said.holds(&steps));
         holds(right, || "tenfold_steps is not that of the growth rate".into())
     }
 }

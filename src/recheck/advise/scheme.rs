@@ -1,4 +1,4 @@
-//! What is said of a scheme of steps.
+//! The row of a scheme of steps, checked.
 
 use num_traits::One;
 
@@ -9,7 +9,7 @@ use crate::recheck::context::{Checked, holds, same};
 use crate::recheck::written::Ends;
 
 impl Claim {
-    /// Every field of a scheme but `within_run`; `needs` is told to a millionth.
+    /// Every field of a scheme but `within_run`; `needs` is checked to a millionth.
     pub fn scheme(&self, n: usize, row: &SchemeRow) -> Checked {
         let corner = self.corner(n)?;
         let outer = corner.steps.last().cloned().unwrap_or_default();
@@ -37,7 +37,7 @@ impl Claim {
         self.largest(&corner, row)?;
         let silent = corner.steps.len() > 1
             && corner.stiffness.last().is_some_and(|last| last.sign() == Some(Sign::Zero));
-        holds(row.needs.is_some() == (silent && in_band), || "needs is told of a silent clock".into())?;
+        holds(row.needs.is_some() == (silent && in_band), || "needs is given for a silent clock".into())?;
         let Some(needs) = row.needs else { return Ok(()) };
         let with = |period: f64| -> Checked<Option<bool>> {
             let turn = Ball::pi(BITS).scale2(1);

@@ -62,7 +62,7 @@ pub fn growth(scene: &SystemScene, analysis: &Analysis, limits: &Limits) -> Chec
         return Ok(());
     };
     let off = STILL / analysis.period.to_f64() + ROUNDED * found;
-    // Beyond doubles the dense period tells nothing.
+    // Beyond the range of doubles the dense period decides nothing.
     let right = !found.is_finite() || (lo - off <= found && found <= hi + off);
     holds(right, || format!("the growth rate is {lo} to {hi}, that of the dense full period {found}"))
 }

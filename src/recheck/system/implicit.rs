@@ -4,7 +4,7 @@ use crate::recheck::context::{Checked, holds};
 use crate::system::levels::Method;
 use crate::system::{Analysis, ImplicitExplicit, Limits, MeasuredSystem, Model, Route};
 
-/// That doubles, where they tell the kind at all, tell the same: by definite forms in the fast modes, no masses other than the system's own.
+/// Checks that doubles, where they decide the kind at all, find the same one: by definite forms in the fast modes, with the system's own masses.
 pub fn in_doubles(own: &ImplicitExplicit, analysis: &Analysis) -> Checked {
     // A mass matrix, or numbers beyond doubles: there is no such second route.
     let Ok(doubles) = MeasuredSystem::rounded(own.plain()) else { return Ok(()) };

@@ -1,11 +1,11 @@
-//! Two sparse levels run kick by kick: the growing modes that a document tells.
+//! Two sparse levels run kick by kick: the growing modes of a document.
 
 use crate::recheck::context::{Checked, Outcome, holds};
 use crate::system::levels::Outer;
 use crate::system::levels::sparse::SparseLevels;
 use crate::system::{Analysis, Holds};
 
-/// What is done.
+/// The other route, in words.
 pub const ROUTE: &str = "each growing mode run kick by kick over a period from rest";
 
 /// Residuals of modes are at most 10^-6 of their length by V, whose eigenvalues are p at most and where modes grow some hundredths or more.
@@ -20,7 +20,7 @@ pub fn modes(own: &SparseLevels, outer: &Outer, analysis: &Analysis) -> Checked 
         let off = length(&mut after.iter().zip(&y).map(|(after, y)| after - factor * y));
         let right = off <= OFF * length(&mut y.iter().copied());
         holds(right, || {
-            format!("a mode that is told to be multiplied by {factor} in a period is not: it is off by {off}")
+            format!("a mode said to be multiplied by {factor} in a period is not: it is off by {off}")
         })
     })
 }
@@ -42,7 +42,7 @@ fn period(own: &SparseLevels, outer: &Outer, y: &[f64]) -> Vec<f64> {
     x
 }
 
-/// With what no run tells.
+/// Names the claims that no run can check.
 pub fn unseen(analysis: &Analysis, mut outcome: Outcome) -> Outcome {
     if analysis.holds() != Holds::Unstable {
         outcome

@@ -18,7 +18,7 @@ const MOST: usize = 16;
 /// Steps of Lanczos's recursion: it sees all motions of a scheme with no more degrees of freedom, of a larger one the extreme motions.
 pub const SEEN: usize = 120;
 
-/// What doubles may be off by, relative to the norm of f: a recursion of some hundred steps, each of sums of some dozen terms.
+/// The error of doubles, relative to the norm of f: a recursion of some hundred steps, each of sums of some dozen terms.
 const ROUNDED: f64 = 1e-10;
 
 /// Relative to what grows: its enclosure is as wide.
@@ -94,20 +94,20 @@ pub fn subcycles(
     own: &SparseSubcycles,
     dt: f64,
     analysis: &Analysis,
-    told: Option<&SchemeSummary>,
+    said: Option<&SchemeSummary>,
 ) -> Checked {
     held(own, dt, analysis.holds())?;
-    let Some((lo, hi)) = told.and_then(|told| told.first_unstable) else { return Ok(()) };
+    let Some((lo, hi)) = said.and_then(|said| said.first_unstable) else { return Ok(()) };
     held(own, lo, Holds::Stable)?;
     held(own, hi, Holds::Unstable)
 }
 
-/// What is said of a stretch of steps, in the middle of it.
-pub fn stretch_of_subcycles(own: &SparseSubcycles, told: &Stretch) -> Checked {
-    held(own, told.lo + (told.hi - told.lo) / 2.0, told.verdict)
+/// Checks the verdict of a stretch of steps, in the middle of it.
+pub fn stretch_of_subcycles(own: &SparseSubcycles, said: &Stretch) -> Checked {
+    held(own, said.lo + (said.hi - said.lo) / 2.0, said.verdict)
 }
 
-fn held(own: &SparseSubcycles, dt: f64, told: Holds) -> Checked {
+fn held(own: &SparseSubcycles, dt: f64, said: Holds) -> Checked {
     let n = own.size();
     let pull = |x: DMatrixView<f64>| {
         let columns = x.column_iter().flat_map(|y| own.plain().pull(&y.iter().copied().collect::<Vec<_>>()));
@@ -117,18 +117,18 @@ fn held(own: &SparseSubcycles, dt: f64, told: Holds) -> Checked {
     let after = subcycled(std::slice::from_ref(own.level()), dt, pull, at_rest);
     let all = after.rows(0, n).into_owned().complex_eigenvalues();
     let excess = all.iter().map(|mu| mu.im.abs().max(mu.re.abs() - 1.0)).fold(f64::NEG_INFINITY, f64::max);
-    let right = match told {
+    let right = match said {
         Holds::Stable => excess <= MEETING,
         Holds::Unstable => excess >= -MEETING,
         Holds::NotTold => true,
     };
     holds(right, || {
-        format!("at a step of {dt} the scheme, run, has Q11 off (-1, 1) by {excess}: not {}", told.name())
+        format!("at a step of {dt} the scheme, run, has Q11 off (-1, 1) by {excess}: not {}", said.name())
     })
 }
 
 /// The verdict on a large scheme, its growth and its limits.
-pub fn sparse(own: &SparseSteps, dt: f64, analysis: &Analysis, told: Option<&SchemeSummary>) -> Checked {
+pub fn sparse(own: &SparseSteps, dt: f64, analysis: &Analysis, said: Option<&SchemeSummary>) -> Checked {
     verdict(own, dt, analysis.holds())?;
     if let Some((lo, hi)) = analysis.growth_rate().filter(|_| analysis.holds() == Holds::Unstable) {
         let ritz = Extreme::of(own, dt);
@@ -144,15 +144,15 @@ pub fn sparse(own: &SparseSteps, dt: f64, analysis: &Analysis, told: Option<&Sch
             format!("the scheme, run, has f beyond its ends by {found}, not as it is said to grow")
         })?;
     }
-    let Some(told) = told else { return Ok(()) };
+    let Some(said) = said else { return Ok(()) };
     let n = own.size();
-    if let Some((lo, hi)) = told.plain_limit {
+    if let Some((lo, hi)) = said.plain_limit {
         let [_, most] = extremes(n, |y| own.pull(y));
         let found = 2.0 / most.sqrt();
         let right = found >= lo * (1.0 - ROUNDED) && (n > SEEN || found <= hi * (1.0 + ROUNDED));
         holds(right, || format!("plain leapfrog's limit is {found}"))?;
     }
-    if let Some((lo, hi)) = told.first_unstable {
+    if let Some((lo, hi)) = said.first_unstable {
         verdict(own, lo, Holds::Stable)?;
         let excess = Extreme::of(own, hi).excess;
         holds(n > SEEN || excess > -RESONANT, || format!("nothing is unstable up to a step of {hi}"))?;
@@ -160,21 +160,21 @@ pub fn sparse(own: &SparseSteps, dt: f64, analysis: &Analysis, told: Option<&Sch
     Ok(())
 }
 
-/// What is said of a stretch of steps, in the middle of it.
-pub fn stretch(own: &SparseSteps, told: &Stretch) -> Checked {
-    verdict(own, told.lo + (told.hi - told.lo) / 2.0, told.verdict)
+/// Checks the verdict of a stretch of steps, in the middle of it.
+pub fn stretch(own: &SparseSteps, said: &Stretch) -> Checked {
+    verdict(own, said.lo + (said.hi - said.lo) / 2.0, said.verdict)
 }
 
 /// No motion beyond the ends where all are said to be stable; some, where all are seen and one is said to grow.
-fn verdict(own: &SparseSteps, dt: f64, told: Holds) -> Checked {
+fn verdict(own: &SparseSteps, dt: f64, said: Holds) -> Checked {
     let Extreme { excess, room } = Extreme::of(own, dt);
-    let right = match told {
+    let right = match said {
         Holds::Stable => excess <= room,
         Holds::Unstable => own.size() > SEEN || excess >= -room,
         Holds::NotTold => true,
     };
     holds(right, || {
-        format!("at a step of {dt} the scheme, run, has f beyond its ends by {excess}: not {}", told.name())
+        format!("at a step of {dt} the scheme, run, has f beyond its ends by {excess}: not {}", said.name())
     })
 }
 
@@ -249,7 +249,7 @@ fn extremes(n: usize, of: impl Fn(&[f64]) -> Vec<f64>) -> [f64; 2] {
 struct Scheme<'a, T> {
     /// Whether a degree of freedom moves at a level: all do at the coarsest.
     moves: Vec<Vec<bool>>,
-    /// Of each level but the finest one.
+    /// The substeps of each level but the finest one.
     substeps: Vec<u32>,
     /// M⁻¹ K x.
     pull: &'a dyn Fn(&[T]) -> Vec<T>,

@@ -1,7 +1,7 @@
-//! Documents of systems: computed again whole, and what they claim found by another route.
+//! Documents of systems: computed again as a whole, then checked by another route.
 //!
-//! The same input gives the same document, so every value must be what it is when it is computed again. That finds what was
-//! changed afterwards; what would be wrong from the start is looked for by exact arithmetic (the kind) and by the dense full
+//! Equal inputs give equal documents, so every value is compared with the one computed again. That finds any change made
+//! afterwards. Errors made from the start are looked for by exact arithmetic (the kind) and by the dense full
 //! period in doubles (multipliers, runs of linear systems).
 
 mod dense;
@@ -9,17 +9,15 @@ mod implicit;
 mod levels;
 mod local;
 
-use serde_json::Value;
-
-use super::again::{Left, Recheck};
+use super::again::{Left, Recheck, asked};
 use super::context::{Checked, Context, Fault, Outcome, same, too_costly};
 use super::sample::sample;
 use crate::avi::Ends;
 use crate::error::{Kind as Reason, Result};
 use crate::number::rational::{from_f64_exact, to_f64};
-use crate::question::{Found, Question, Simulate, System, SystemAnswer, Work};
+use crate::question::{Found, Simulate, System, SystemAnswer};
 use crate::report::system::SystemMap;
-use crate::scene::{Arrays, SystemScene};
+use crate::scene::SystemScene;
 use crate::system::stretches::Stretch;
 use crate::system::vary::Intervals;
 use crate::system::{Analysis, Holds, Limits, Model, SchemeSummary, SparseSteps, SparseSubcycles};
@@ -46,7 +44,7 @@ pub struct Simulated {
 /// The file is a name.
 const LEFT: &[Left] = &[("input.file", "a name")];
 
-/// What another route says of the whole document.
+/// The outcome of another route for the whole document.
 fn outcome(context: &Context, route: &'static str, other: Checked) -> Result<Outcome> {
     let failures = context.failure(0, || "the document".into(), other)?.into_iter().collect();
     Ok(Outcome { rows: 1, route, sample: None, failures, not_rechecked: Vec::new() })
@@ -55,21 +53,10 @@ fn outcome(context: &Context, route: &'static str, other: Checked) -> Result<Out
 /// Where there is no other route.
 const ALONE: &str = "none: every value is computed again, by the same route";
 
-/// The document and the answer to its question, computed again.
-fn again<Q: Question>(input: &Q, context: &Context) -> Result<(Value, Q::Answer)> {
-    let arrays = Arrays::from(&context.options.folder);
-    let answer = input.answer(&Work { arrays: Some(&arrays), ..context.work() })?;
-    Ok((input.document(&answer).value(), answer))
-}
-
 impl Recheck for Claim {
     const TABLE: &'static str = "rows";
     const LEFT: &'static [Left] = LEFT;
-    type Found = SystemAnswer;
-
-    fn again(&self, context: &Context) -> Result<(Value, SystemAnswer)> {
-        again(&self.input, context)
-    }
+    asked!(System);
 
     fn check(&self, SystemAnswer { scene, found }: SystemAnswer, context: &Context) -> Result<Outcome> {
         match found {
@@ -150,7 +137,7 @@ fn run(own: &SparseSubcycles, context: &Context, check: impl FnOnce() -> Checked
     outcome(context, "the scheme substep by substep, and the eigenvalues of its period", check())
 }
 
-/// With what Lanczos's recursion does not see.
+/// Names the claims that Lanczos's recursion does not see.
 fn seen(steps: &SparseSteps, mut outcome: Outcome) -> Outcome {
     if steps.size() > local::SEEN {
         let what = "that no motion is less stable than the extreme ones of Lanczos's recursion: by factorizations alone";
@@ -169,26 +156,27 @@ fn exact_kind(scene: &SystemScene, limits: &Limits) -> Result<Option<Kind>> {
 }
 
 impl Claim {
-    /// What is said of stretches of the outer step, in the middle of each of a sample: large local steps are run, what is no gradient is decided in exact
-    /// arithmetic.
+    /// Checks a sample of the stretches of the outer step, each in its middle: large local steps are run, systems without a gradient are decided in
+    /// exact arithmetic.
     fn stretches(&self, scene: &SystemScene, found: &Intervals, context: &Context) -> Result<Outcome> {
         let (of, limits) = (found.stretches.len() as u64, context.work().products());
         let most = if context.options.all { of } else { MIDDLES };
         let is_outer = found.number == "outer";
         let sampled = sample(&scene.source().to_string(), of, most);
-        let told = sampled.into_iter().map(|n| (n + 1, &found.stretches[n as usize]));
-        let told = told.filter(|(_, own)| own.verdict != Holds::NotTold);
+        let sample = sampled.into_iter().map(|n| (n + 1, &found.stretches[n as usize]));
+        let sample = sample.filter(|(_, own)| own.verdict != Holds::NotTold);
         let place = |own: &Stretch| format!("{} to {}", own.lo, own.hi);
         let (mut failures, mut decided) = (Vec::new(), 0);
         let mut outcome = match scene.model() {
             Model::Sparse(own) if is_outer => {
                 if let Some(own) = own.subcycles() {
-                    let mut told = told.map(|own| own.1);
-                    let check = || told.try_for_each(|stretch| local::stretch_of_subcycles(own, stretch));
+                    let mut stretches = sample.map(|own| own.1);
+                    let check =
+                        || stretches.try_for_each(|stretch| local::stretch_of_subcycles(own, stretch));
                     return run(own, context, check);
                 }
                 let Some(steps) = own.local_steps() else { return outcome(context, ALONE, Ok(())) };
-                for (row, own) in told {
+                for (row, own) in sample {
                     decided += 1;
                     failures.extend(context.failure(row, || place(own), local::stretch(steps, own))?);
                 }
@@ -196,7 +184,7 @@ impl Claim {
             }
             Model::NoGradient(own) | Model::Subcycled(own, _) if is_outer => {
                 let longest = scene.model().steps().into_iter().max().unwrap_or_default();
-                for (row, stretch) in told {
+                for (row, stretch) in sample {
                     let middle = stretch.lo + (stretch.hi - stretch.lo) / 2.0;
                     let Some(middle) = from_f64_exact(middle) else { continue };
                     let model = Model::NoGradient(Box::new(own.slowed(&(middle / &longest))?));
@@ -247,11 +235,7 @@ impl Claim {
 impl Recheck for Simulated {
     const TABLE: &'static str = "series";
     const LEFT: &'static [Left] = LEFT;
-    type Found = crate::question::Simulated;
-
-    fn again(&self, context: &Context) -> Result<(Value, Self::Found)> {
-        again(&self.input, context)
-    }
+    asked!(Simulate);
 
     fn check(&self, found: Self::Found, context: &Context) -> Result<Outcome> {
         if found.run.linear && self.input.form == Ends::Symmetric {

@@ -22,6 +22,7 @@ const ROUTE: &str = "the entries' exact signs at both ends of every enclosure, v
 
 impl Recheck for Claim {
     const TABLE: &'static str = "tongues";
+    const READS_ROWS: bool = true;
     type Found = ();
 
     fn again(&self, context: &Context) -> Result<(Value, ())> {

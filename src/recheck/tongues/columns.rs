@@ -16,8 +16,8 @@ use crate::tongue::{Resonance, Side};
 /// Rounded numbers are right to nine digits: some are the end of a few hundred operations in doubles.
 const ROUNDED: f64 = 1e-9;
 
-fn near(told: f64, truth: f64) -> bool {
-    (told - truth).abs() <= ROUNDED * truth.abs()
+fn near(said: f64, truth: f64) -> bool {
+    (said - truth).abs() <= ROUNDED * truth.abs()
 }
 
 fn exact(x: f64) -> Checked<Rational> {
@@ -58,7 +58,7 @@ impl Growth {
         holds(near(self.steps_until_tenfold, steps), || format!("tenfold takes {steps} slow steps"))?;
         let truth = input.lambda1.as_ref().map(|lambda1| rate * lambda1.to_f64().sqrt());
         match (self.growth_rate, truth) {
-            (Some(told), Some(truth)) => holds(near(told, truth), || format!("the growth rate is {truth}")),
+            (Some(said), Some(truth)) => holds(near(said, truth), || format!("the growth rate is {truth}")),
             (None, None) => Ok(()),
             _ => Err(Fault::Wrong("growth_rate is there where lambda1 is".into())),
         }
@@ -188,7 +188,7 @@ impl FirstOrder {
         // The law is the sum of q terms of size 1 in doubles.
         let off = 1e-12 * reach;
         let ulps = 8.0 * f64::EPSILON * s;
-        let close = |told: f64, truth: f64, by: f64| (told - truth).abs() <= by;
+        let close = |said: f64, truth: f64, by: f64| (said - truth).abs() <= by;
         holds(close(self.centre, centre, off + ulps), || format!("the law's centre is {centre}"))?;
         holds(close(self.width, law, off), || format!("the law's width is {law}"))?;
         // Half the width in p θ: ds = 2 sin θ dθ.

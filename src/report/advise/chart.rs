@@ -218,7 +218,7 @@ fn draw(blocks: &[Block], right: f64, (title, near): (&str, &str)) -> Figure {
     Figure::of_rows(150.0, ROW * (high - low)).named(title).with(panel.legend(Place::Above))
 }
 
-/// What would let the step grow: a row a lever, the steps to take and those that are proven for the band.
+/// Levers that would let the step grow: a row each, the steps to take and those that are proven for the band.
 pub fn levers(levers: &Levers, title: &str) -> Figure {
     let (rows, mut layers) = (levers.rows.len(), Layers::default());
     let ends = |own: &Lever| {
@@ -260,7 +260,7 @@ pub fn levers(levers: &Levers, title: &str) -> Figure {
 /// The height of a lever's row, in mm.
 const LEVER: f64 = 5.0;
 
-/// What the kinds of bars mean.
+/// The legend of the kinds of bars.
 struct Names<'a> {
     safe: &'a str,
     caution: &'a str,
@@ -288,7 +288,7 @@ fn ratio(scheme: &Scheme) -> String {
     format!("{}:1", ratios.join(" x "))
 }
 
-/// What is drawn, kind by kind.
+/// The bars that are drawn, kind by kind.
 #[derive(Default)]
 struct Layers {
     safe: Vec<Band>,

@@ -11,7 +11,7 @@ use crate::report::document::{Document, enclosure};
 use crate::report::record::Record;
 use crate::report::table::{Cell, Column, Table};
 
-/// What Jacobians at one place do not tell.
+/// Limits of Jacobians at one place.
 const UNKNOWN: [&str; 2] = [
     "outer steps between the multiples that were looked at, and how far the Jacobians change along a run, beyond the band: they are those of one place",
     lines::NONLINEAR,
@@ -172,7 +172,7 @@ fn line(findings: &DirectFindings, own: &DirectFinding) -> String {
     format!("{:7} {adds}{of_steps}{tenfold}{masks}{run}{band}", fs(own.scheme.outer()))
 }
 
-/// What the advice rests on.
+/// The modes that the advice rests on.
 fn looked_at(best: &DirectFinding) -> Option<String> {
     let (first, last) = (best.ladder.first()?, best.ladder.last()?);
     Some(format!(

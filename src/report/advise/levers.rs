@@ -1,4 +1,4 @@
-//! What would let the step grow: its table, its lines.
+//! Levers that would let the step grow: table and lines.
 
 use serde_json::Value;
 
@@ -91,7 +91,7 @@ pub(super) fn add(document: Document, levers: Option<&Levers>) -> Document {
     if levers.rows.is_empty() { document } else { document.and_rows(shown(levers, &table)) }
 }
 
-/// What lets the outer step grow most: the three best ways, longer than kicks and drifts as they are.
+/// The three levers that let the outer step grow most, longer than kicks and drifts as they are.
 pub(super) fn longer(levers: Option<&Levers>) -> String {
     let Some(levers) = levers else { return "longer: what would let the step grow was not looked at".into() };
     let one = Rational::from_integer(1.into());
@@ -115,7 +115,7 @@ fn gained(own: &Lever) -> Option<(&Lever, &Rational, &Rational)> {
     Some((own, step, own.gain.as_ref()?))
 }
 
-/// What stands beside the table.
+/// The lines beside the table.
 pub(super) fn lines(levers: &Levers) -> Vec<String> {
     let mut lines = Vec::new();
     let best = levers.rows.iter().filter(|own| own.gain.is_some() && own.way != Way::Friction);

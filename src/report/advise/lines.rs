@@ -1,4 +1,4 @@
-//! What a person can act on: a line for each scheme, then what to do, then why.
+//! Advice as text: a line for each scheme, then which step to take, then why.
 
 use super::words::{choice, down, fs, named, nearest, percent, within};
 use crate::advise::engine::{Reading, nested_beside, not_nested};
@@ -8,7 +8,7 @@ use crate::number::Rational;
 use crate::number::rational::to_f64;
 use crate::report::decimal::few;
 
-/// What no linear analysis of given periods tells; the first not where these are of all modes.
+/// Limits of every linear analysis of given periods; the first is left out where these are the periods of all modes.
 const UNKNOWN: [&str; 3] = [
     "whether a faster mode exists than those given: coupled modes are faster than two-body formulas say",
     "how far anharmonic motion, another temperature or other surroundings move the periods beyond the band",
@@ -16,7 +16,7 @@ const UNKNOWN: [&str; 3] = [
 ];
 pub(super) const NONLINEAR: &str = "how much the nonlinear resonances near T/3 and T/4 heat this system";
 
-/// What is not known of these periods.
+/// The limits that apply to these periods.
 pub(super) fn unknown(advice: &Advice) -> &'static [&'static str] {
     &UNKNOWN[usize::from(advice.all_modes)..]
 }
@@ -107,11 +107,11 @@ fn line(advice: &Advice, answer: &Answer) -> String {
         Status::Unstable | Status::NotTold => unstable(answer, worst),
     };
     let within = within(answer.within_run, &advice.length);
-    // What no engine runs is no resonance to be frightened of.
+    // No engine runs this scheme, so its resonance does no harm.
     if let Some(beside) = nested_beside(&answer.scheme) {
         let kind = if answer.rows.iter().any(|row| row.found.rate.1 > 0.0) { "unstable" } else { "stable" };
         return format!(
-            "{:7} {beside} (asynchronous, as it stands, it is {kind}; `verdict` tells more)",
+            "{:7} {beside} (asynchronous, as it stands, it is {kind}; `verdict` shows more)",
             fs(answer.scheme.outer())
         );
     }
@@ -287,7 +287,7 @@ fn reasons(advice: &Advice) -> Vec<String> {
         lines.push(format!("  engines    {why}: OpenMM, LAMMPS, GROMACS and NAMD refuse that; the scheme is decided above all the same"));
     }
     if advice.silent {
-        let line = "  unknown    a clock has no period given: its force is taken as 0; with it unstable steps begin somewhat below the one told";
+        let line = "  unknown    a clock has no period given: its force is taken as 0; with it unstable steps begin somewhat below the step given here";
         lines.push(line.into());
         lines.push(format!("  slow       measured at a minimum: {}", SLOW.each_ref().map(slow).join("; ")));
     }

@@ -22,7 +22,7 @@ pub use chart::{figure, levers as levers_figure};
 use tables::{enclosed, engine, for_people, published};
 pub use words::nearest;
 
-/// What advice is about.
+/// The subject of advice.
 #[derive(Clone, Copy)]
 pub enum View<'a> {
     /// Periods and bonds.

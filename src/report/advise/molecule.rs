@@ -1,4 +1,4 @@
-//! What is said of a molecule's Hessians: lines to act on, then tables.
+//! Advice on the Hessians of a molecule: lines of text, then tables.
 
 use super::lines::{self, advised, read_from};
 use super::tables::{self, enclosed, for_people, published};
@@ -49,7 +49,7 @@ pub(super) fn document(findings: &Findings, reading: Option<&Reading>, notes: &[
         .summary(&summary(findings, reading, notes))
 }
 
-/// What Hessians at one place do not tell.
+/// Limits of Hessians at one place.
 const UNKNOWN: [&str; 2] = [
     "how far the Hessians change along a run, beyond the band: they are those of one place",
     lines::NONLINEAR,
@@ -64,7 +64,7 @@ fn summary(findings: &Findings, reading: Option<&Reading>, notes: &[String]) -> 
     let period = fastest.period.0;
     let name = named(fastest);
     let band = percent(&findings.band);
-    // What is safe, what limits it, what would let it grow; then the steps that were asked for.
+    // The safe step, its limit, the levers; then the steps that were asked for.
     let safe = choice(&best.scheme, [&best.safe, &best.largest], &band, (&name, (period, period)));
     let mut lines = vec![safe, limit(&name, period, best), super::levers::longer(findings.levers.as_ref())];
     lines.extend(findings.schemes.iter().map(|own| line(findings, own)));
@@ -114,7 +114,7 @@ fn rounded(x: f64, digits: usize) -> String {
     nearest((x, x), digits)
 }
 
-/// What bounds the outer step.
+/// The bound of the outer step.
 fn limit(name: &str, period: f64, own: &Finding) -> String {
     let first = own.first.map_or_else(String::new, |(lo, hi)| {
         format!("; outer steps are unstable from {} fs on (proven)", nearest((lo, hi), 4))
@@ -206,7 +206,7 @@ fn grows(own: &Finding) -> String {
         }
         (None, Some(mask)) => {
             format!(
-                "a friction of {}/ps masks it, of the one given it is not told",
+                "a friction of {}/ps masks it; for the one given this is not proven",
                 rounded(1000.0 * mask, 3)
             )
         }
@@ -231,7 +231,7 @@ fn groups(findings: &Findings) -> Table {
         .table("groups", "Modes of the fast stiffness alone, the fastest first", &findings.groups)
 }
 
-/// Of each scheme, those at its ratio.
+/// The intervals of each scheme at its ratio.
 fn intervals(findings: &Findings) -> Table {
     let schemes = (1u64..).zip(&findings.schemes);
     let found: Vec<(u64, &Growing)> =

@@ -9,7 +9,7 @@ use crate::number::Rational;
 use crate::report::record::Record;
 use crate::report::table::{Cell, Column, Table};
 
-/// What was read of an engine's text, and its lines rewritten with the outer step that is advised.
+/// An engine's text as it was read, and its lines rewritten with the outer step that is advised.
 pub fn engine(advised: Option<&Rational>, reading: &Reading) -> Value {
     let rewritten = advised.and_then(|outer| reading.changed_lines(outer).ok());
     json!({"name": reading.engine.name(), "dt": reading.engine.dt(), "forces": reading.forces, "used": reading.used, "remarks": reading.remarks, "rewritten": rewritten})

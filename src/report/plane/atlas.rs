@@ -64,7 +64,7 @@ impl Atlas<'_> {
         ranks.sort_unstable_by(f64::total_cmp);
         ranks.dedup();
         let (own, others) = ranks.split_at(ranks.len().min(FAMILIES));
-        // Each curve in a pale shade of its family's hue: the pattern of the line tells the family, too.
+        // Each curve in a pale shade of its family's hue: the pattern of the line names the family, too.
         let place = |a| own.iter().position(|&own| own == rank(a));
         let mut panel = self.panel(|a| place(a).map_or(PALE, palette::behind));
         for (n, &own) in own.iter().enumerate() {

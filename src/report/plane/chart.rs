@@ -37,7 +37,7 @@ impl Colouring {
 
     /// The larger, the stronger: of the pairs in a cell the strongest is shown.
     fn strength(self, found: &Found) -> f64 {
-        // What grows so slowly that its rate rounds to nothing is still shown, as the weakest.
+        // Growth so slow that its rate rounds to 0 is still shown, as the weakest.
         let positive = |x: Option<f64>| x.filter(|&x| x > 0.0).unwrap_or(f64::MIN_POSITIVE);
         match self {
             Colouring::Verdict => 1.0,

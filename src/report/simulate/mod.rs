@@ -53,7 +53,7 @@ pub fn document(run: &Run) -> Document {
         .summary_alone(&lines)
 }
 
-/// What is written of a sample.
+/// The record of a sample.
 fn record() -> Record<'static, Sample> {
     Record::new()
         .field(Column::new("time"), |of: &Sample| of.time.into())

@@ -1,4 +1,4 @@
-//! What stands beside a system's verdict: the unit of time, friction, the integrator's own orbit, what the growing modes move.
+//! Entries beside the verdict of a system: the unit of time, friction, the integrator's own orbit, the motions of the growing modes.
 
 use serde_json::{Value, json};
 
@@ -11,7 +11,7 @@ use crate::system::friction::Friction;
 use crate::system::nearest::Nearest;
 use crate::system::{Analysis, Instability, NoGradient, OwnOrbit, Scheme, SchemeSummary, middle};
 
-/// What is known beside the verdict at the equilibrium and without friction.
+/// Results beside the verdict at the equilibrium and without friction.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Beside<'a> {
     /// The unit of time, where it has a name.
@@ -20,20 +20,20 @@ pub struct Beside<'a> {
     pub orbit: Option<&'a OwnOrbit>,
     /// That an orbit was searched for in vain.
     pub is_orbit_missing: bool,
-    /// What each degree of freedom is called.
+    /// The name of each degree of freedom.
     pub labels: Option<&'a [String]>,
     /// The unstable outer steps next to this one, where they were asked for.
     pub nearest: Option<&'a Nearest>,
     /// The scheme of local time steps, where it is one.
     pub local: Option<&'a SchemeSummary>,
-    /// What sets its model apart ([`crate::system::Model::remark`]).
+    /// The remark on its model ([`crate::system::Model::remark`]).
     pub remark: Option<&'a str>,
-    /// What is known of forces that are no gradient.
+    /// Results on forces that are no gradient.
     pub no_gradient: Option<&'a NoGradient>,
 }
 
-/// The degrees of freedom told of a growing mode: those that move most.
-const TOLD: usize = 4;
+/// A growing mode lists this many degrees of freedom: those that move most.
+const LISTED: usize = 4;
 
 /// The entries of a document.
 pub(super) fn entries(own: &Beside, analysis: &Analysis) -> Vec<(&'static str, Value)> {
@@ -41,8 +41,8 @@ pub(super) fn entries(own: &Beside, analysis: &Analysis) -> Vec<(&'static str, V
         let modes = analysis.parts.iter().flat_map(|part| &part.instabilities);
         let one =
             |(i, amplitude): (usize, f64)| json!({"dof": i, "label": labels[i], "amplitude": amplitude});
-        let told = modes.map(|mode| Value::from(moving(mode).into_iter().map(one).collect::<Vec<_>>()));
-        Value::from(told.collect::<Vec<_>>())
+        let all = modes.map(|mode| Value::from(moving(mode).into_iter().map(one).collect::<Vec<_>>()));
+        Value::from(all.collect::<Vec<_>>())
     };
     let orbit = own.orbit.map(|own| {
         let about = &own.analysis;
@@ -133,13 +133,13 @@ pub(super) fn local_lines(own: &SchemeSummary, unit: &str) -> Vec<String> {
     [format!("  {name}: {}", levels.join("; of these "))].into_iter().chain(limit).chain(first).collect()
 }
 
-/// The same for people.
+/// The entries as lines of text.
 pub(super) fn lines(own: &Beside, analysis: &Analysis) -> Vec<String> {
     let mut lines = Vec::new();
     if let Some(labels) = own.labels {
         for (n, mode) in fastest(analysis).0 {
-            let told: Vec<_> = moving(mode).iter().map(|&(i, x)| format!("{} {x:.3}", labels[i])).collect();
-            lines.push(format!("  growing mode {n} moves most: {}", told.join(", ")));
+            let named: Vec<_> = moving(mode).iter().map(|&(i, x)| format!("{} {x:.3}", labels[i])).collect();
+            lines.push(format!("  growing mode {n} moves most: {}", named.join(", ")));
         }
     }
     lines.extend(own.friction.into_iter().flat_map(friction::lines));
@@ -169,8 +169,8 @@ fn moving(mode: &Instability) -> Vec<(usize, f64)> {
     let length = |i: usize| mode.shape[i].hypot(mode.quadrature[i]);
     let mut order: Vec<usize> = (0..mode.shape.len()).filter(|&i| length(i) > 0.0).collect();
     order.sort_by(|&a, &b| length(b).total_cmp(&length(a)).then(a.cmp(&b)));
-    let told = |&i: &usize| (i, if mode.quadrature[i] == 0.0 { mode.shape[i] } else { length(i) });
-    order.iter().take(TOLD).map(told).collect()
+    let moved = |&i: &usize| (i, if mode.quadrature[i] == 0.0 { mode.shape[i] } else { length(i) });
+    order.iter().take(LISTED).map(moved).collect()
 }
 
 fn orbit_line(own: &OwnOrbit, analysis: &Analysis) -> String {

@@ -9,7 +9,7 @@ use crate::number::rational::to_f64;
 use crate::system::scan::Point;
 use crate::verdict::Kind;
 
-/// What colours stand for.
+/// The quantity shown by colours.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Colouring {
@@ -49,7 +49,7 @@ impl SystemMap {
             .with(panel)
     }
 
-    /// Of one number: growth over it, a line where it is known; nothing is drawn as no growth that was not decided.
+    /// One number varied: growth over it, a line where it is known; an undecided point is not drawn as no growth.
     fn profile(&self, title: &str, number: &(String, i8)) -> Figure {
         let (first, step) = pitch(&self.xs);
         // Half a step beyond both ends, so that no point is cut by the frame.
@@ -165,8 +165,8 @@ mod tests {
 
     #[test]
     fn growth_that_is_not_known_is_not_drawn_as_none() {
-        type Told = (Option<Kind>, Option<(f64, f64)>, f64);
-        let map = |own: &[Told]| {
+        type Known = (Option<Kind>, Option<(f64, f64)>, f64);
+        let map = |own: &[Known]| {
             let xs: Vec<Rational> = (1..=own.len() as i64).map(|k| ratio(k, 4)).collect();
             let points = own.iter().zip(&xs).map(|(&(kind, growth_rate, at_least), x)| Point {
                 at: (x.clone(), Rational::default()),

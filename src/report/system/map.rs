@@ -16,7 +16,7 @@ use crate::verdict::Kind;
 /// The points of a scan, row by row of y.
 #[derive(Clone, Debug)]
 pub struct SystemMap {
-    /// What is varied along x and, if anything is, along y.
+    /// The number varied along x and, if there are two, along y.
     pub names: Vec<String>,
     pub xs: Vec<Rational>,
     pub ys: Vec<Rational>,

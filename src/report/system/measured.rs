@@ -32,7 +32,7 @@ fn has_other_method(own: &Measured) -> bool {
     own.method != Method::Respa.name()
 }
 
-/// The same for people; `unit` is that of times, after a space.
+/// The entries as lines of text; `unit` is that of times, after a space.
 pub(super) fn lines(own: &Measured, is_stable: bool, unit: &str) -> Vec<String> {
     let mut lines = Vec::new();
     if has_other_method(own) {

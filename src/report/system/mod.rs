@@ -230,7 +230,7 @@ fn resonance(own: &Resonance) -> String {
 /// A multiplier, its part, and the part's number from 1.
 type Own<'a> = (u64, &'a Part, &'a Multiplier);
 
-/// What is written of a multiplier.
+/// The record of a multiplier.
 fn record<'a>() -> Record<'a, Own<'a>> {
     let titled = |key: &str, title: &str| Column::new(key).titled(title, title);
     Record::new()

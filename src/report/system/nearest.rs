@@ -19,9 +19,9 @@ pub(super) fn value(own: &Nearest) -> Value {
     })
 }
 
-/// The same for people; `unit` is that of times, after a space.
+/// The entry as lines of text; `unit` is that of times, after a space.
 pub(super) fn lines(own: &Nearest, unit: &str) -> Vec<String> {
-    let told = |name: &str, found: Option<Unstable>, end: f64| match found {
+    let side = |name: &str, found: Option<Unstable>, end: f64| match found {
         Some(found) => format!("  {name}: {}", interval(found, unit)),
         None => format!("  {name}: none between {} and {end:.6}{unit}", own.number),
     };
@@ -29,8 +29,8 @@ pub(super) fn lines(own: &Nearest, unit: &str) -> Vec<String> {
     if let Some(found) = own.own {
         lines.push(format!("  this one lies in {}", interval(found, unit)));
     }
-    lines.push(told("below", own.below, own.searched.0));
-    lines.push(told("above", own.above, own.searched.1));
+    lines.push(side("below", own.below, own.searched.0));
+    lines.push(side("above", own.above, own.searched.1));
     for &(lo, hi) in &own.untold {
         let between = decimal::enclosure(lo, hi);
         lines.push(format!(

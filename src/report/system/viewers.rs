@@ -6,12 +6,12 @@ use super::beside::fastest;
 use crate::error::{Error, Result};
 use crate::system::{Analysis, Geometry, Instability};
 
-/// The modes that are told first, each with its number in documents.
+/// The fastest modes, each with its number in documents.
 fn modes<'a>(analysis: &'a Analysis, geometry: &Geometry) -> Result<Vec<(usize, &'a Instability)>> {
     let (modes, _) = fastest(analysis);
     if modes.is_empty() {
         let found = format!("the modes that grow, of a system that is {}", analysis.kind_name());
-        return Err(Error::input("output", found, "none is told: choose an unstable step, or another form"));
+        return Err(Error::input("output", found, "none is known: choose an unstable step, or another form"));
     }
     if modes.iter().any(|(_, own)| own.shape.len() != geometry.moved.len()) {
         let remedy =
@@ -28,7 +28,7 @@ fn vectors(shape: &[f64], geometry: &Geometry) -> Vec<[f64; 3]> {
     vectors
 }
 
-/// Whether a shape turns into another one: then both are told.
+/// Whether a shape turns into another one: then both are written.
 fn turns(own: &Instability) -> bool {
     own.quadrature.iter().any(|x| *x != 0.0)
 }

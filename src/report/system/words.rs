@@ -19,7 +19,7 @@ pub(super) fn rate(own: Option<(f64, f64)>) -> String {
     }
 }
 
-/// The same with its unit, where there is a number.
+/// A rate with its unit, where there is a number.
 pub(super) fn rate_per(own: Option<(f64, f64)>, unit: &str) -> String {
     let unit = if own.is_some_and(|own| own.1.is_finite()) { format!(" per {unit}") } else { String::new() };
     rate(own) + &unit

@@ -79,8 +79,8 @@ impl Edge {
         let column = |key: &str| Column::new(&format!("{end}_{key}"));
         let title = Column::new(end).titled(&format!("{end} edge"), &format!("$s_{sign}$")).enclosure();
         let mut record = record.field(title, move |of| {
-            let told = short.then(|| told(self.s(of), request)).flatten();
-            told.unwrap_or_else(|| self.s(of).map(ends).into())
+            let digits = short.then(|| concisely(self.s(of), request)).flatten();
+            digits.unwrap_or_else(|| self.s(of).map(ends).into())
         });
         if request.digits.is_some() {
             record = record
@@ -114,8 +114,8 @@ impl Edge {
                 // h2 is p/q of h1.
                 let title = if n == 1 { title.aside() } else { title };
                 record = record.at(path(h), title, move |of| {
-                    let told = short.then(|| told(self.step(of, n), request)).flatten();
-                    told.unwrap_or_else(|| self.step(of, n).map(ends).into())
+                    let digits = short.then(|| concisely(self.step(of, n), request)).flatten();
+                    digits.unwrap_or_else(|| self.step(of, n).map(ends).into())
                 });
                 if request.digits.is_some() {
                     record = record
@@ -137,7 +137,7 @@ fn ends(quantity: &Bounds) -> (f64, f64) {
 }
 
 /// A place to the digits that are asked for, its error in the last of them.
-fn told(quantity: Option<&Bounds>, request: &Request) -> Option<Cell> {
+fn concisely(quantity: Option<&Bounds>, request: &Request) -> Option<Cell> {
     let (x, digits) = quantity.and_then(|quantity| quantity.precise.as_ref()).zip(request.digits)?;
     Some(Cell::Decimal(concise(&x.lo, &x.hi, digits).to_string()))
 }

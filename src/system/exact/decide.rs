@@ -31,7 +31,7 @@ use crate::system::spectrum::rate::Multiplier;
 use crate::system::verdict::limits::{Limits, degrees_of_freedom};
 use crate::verdict::Kind;
 
-/// What exact arithmetic says of a system without rigid modes.
+/// The result of exact arithmetic for a system without rigid modes.
 #[derive(Clone, Debug)]
 pub struct ExactVerdict {
     /// Elliptic: stable. Coexistence: stable with a multiplier ±1. Parabolic: all |λ| = 1, with a Jordan block.
@@ -105,11 +105,11 @@ pub(in crate::system) fn multipliers(
     Some(found)
 }
 
-/// The kind, where the trace of Bᵀ C tells or one of the half period's forms is definite: a few eliminations in integers, no
-/// polynomial; `None` where none is. The rigid modes of `frame` are set apart.
+/// The kind, where the trace of Bᵀ C decides it or one of the half period's forms is definite: a few eliminations in integers, no
+/// polynomial; `None` otherwise. The rigid modes of `frame` are set apart.
 ///
-/// Stable motion has all n eigenvalues μ in \[−1, 0\], so a trace outside \[−n, 0\] is growth. It costs n² products: what grows by
-/// more than doubles can hold apart is decided by it, where a characteristic polynomial takes minutes.
+/// Stable motion has all n eigenvalues μ in \[−1, 0\], so a trace outside \[−n, 0\] is growth. It costs n² products and decides
+/// growth beyond the range of doubles, where a characteristic polynomial takes minutes.
 ///
 /// # Errors
 /// A budget error with the estimated cost, before the work that exceeds it.
@@ -292,8 +292,8 @@ mod tests {
         System::new(Symmetric::diagonal(&vec![ratio(1, 1); n]), potentials).unwrap()
     }
 
-    /// By forms where one is definite, by doubles or whatever tells, by characteristic polynomials and by power sums: how often which kind came
-    /// of forms.
+    /// Decides by forms where one is definite, by doubles, by characteristic polynomials and by power sums, which must agree: how often forms
+    /// gave each kind.
     fn agreed(count: usize) -> std::collections::BTreeMap<&'static str, usize> {
         let (mut numbers, limits) = (Numbers(7), Limits::default());
         let mut decided = std::collections::BTreeMap::new();

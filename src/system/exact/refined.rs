@@ -21,7 +21,7 @@ use crate::system::spectrum::rate::{self, Multiplier};
 
 type Gaussian = Complex<BigInt>;
 
-/// 2^13 bits tell an excess of 2^-8000: none is nearer to 0 among systems that exact arithmetic decides in seconds.
+/// 2^13 bits resolve an excess of 2^-8000: none is nearer to 0 among systems that exact arithmetic decides in seconds.
 const MOST_BITS: u32 = 1 << 13;
 
 /// Corrections at one precision: from far, each takes away some n-th part of the distance.

@@ -1,4 +1,4 @@
-//! What friction makes of a period.
+//! A period with friction: damped or growing.
 
 /// Where the spectral radius of a period with friction lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

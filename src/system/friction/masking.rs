@@ -31,7 +31,7 @@ const DEEPEST: u32 = 60;
 /// that nothing grows exponentially.
 ///
 /// # Errors
-/// A budget error where the period is longer than 4096 ticks, or where balls do not tell.
+/// A budget error where the period is longer than 4096 ticks, or where balls cannot decide.
 pub fn masking<S: Real>(clocks: &ManyClocks<S>) -> Result<Option<Masking>> {
     let degree = clocks.schedule().period();
     if degree > HIGHEST {
@@ -158,7 +158,7 @@ impl Bernstein {
         ]
     }
 
-    /// Sign changes of the coefficients; `None` where a sign is not told.
+    /// Sign changes of the coefficients; `None` where a sign is not decided.
     fn changes(&self) -> Option<usize> {
         let signs = self.coefficients.iter().map(Ball::sign).collect::<Option<Vec<_>>>()?;
         let signs: Vec<_> = signs.into_iter().filter(|&sign| sign != Sign::Zero).collect();
@@ -166,7 +166,7 @@ impl Bernstein {
     }
 
     /// An interval with the largest zero below 1 of a polynomial that is negative at 1, positive at its lower end; `None`
-    /// where the balls do not tell.
+    /// where the balls cannot decide.
     fn last_zero(self) -> Option<(Ball, Ball)> {
         let mut open = vec![(self, 0)];
         while let Some((own, depth)) = open.pop() {

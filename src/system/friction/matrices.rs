@@ -23,12 +23,12 @@ use crate::system::verdict::limits::{Limits, Route, degrees_of_freedom};
 use crate::system::verdict::measured::Holds;
 use crate::verdict::{self, Tier};
 
-/// What friction does to a system.
+/// The effect of friction on a system.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Friction {
     /// γ, per unit time.
     pub rate: Rational,
-    /// Where the spectral radius lies, rigid motions apart; `None`: doubles do not tell.
+    /// Where the spectral radius lies, rigid motions apart; `None`: doubles cannot decide.
     pub damping: Option<Damping>,
     /// ln ρ(Q)/T of the part where it is largest, enclosed, per unit time: below 0 the slowest decay, above 0 the growth;
     /// `None` where doubles bound nothing.
@@ -44,8 +44,8 @@ pub enum Mask {
     NotNeeded,
     /// Something does, and this masks it.
     At(Masked),
-    /// Not found: no friction that is proven to mask, a period too long for the polynomial in c, or doubles that do not tell whether anything
-    /// grows.
+    /// Not found: no friction that is proven to mask, a period too long for the polynomial in c, or doubles that cannot decide whether
+    /// anything grows.
     NotTold,
 }
 
@@ -76,7 +76,7 @@ pub struct Masked {
 /// The relative width to which a masking friction of many degrees of freedom is bisected: what linear theory is good for.
 const WIDTH: f64 = 1e-4;
 
-/// What friction of the rate γ per unit time does to a system, and how much of it masks its resonances.
+/// The effect of friction of the rate γ per unit time on a system, and the friction that masks its resonances.
 ///
 /// # Errors
 /// A rate that is not positive; budget errors, before the work.
@@ -109,7 +109,7 @@ pub fn damped_system(system: &System, rate: &Rational, limits: &Limits) -> Resul
     })
 }
 
-/// The same for one part, which ticks with all clocks of the whole.
+/// As [`damped_system`], for one part, which ticks with all clocks of the whole.
 fn damped_part(part: &System, ticking: &System, rate: &Rational, limits: &Limits) -> Result<Friction> {
     if let Some(clocks) = ticking.as_many_clocks() {
         let unit = Laurent::from_rational(ticking.clocks()[0].step.clone());
@@ -119,7 +119,7 @@ fn damped_part(part: &System, ticking: &System, rate: &Rational, limits: &Limits
     Ok(Friction { rate: rate.clone(), damping, growth, masking: masked(part, ticking, limits)? })
 }
 
-/// The same for a pair of steps.
+/// As [`damped_system`], for a pair of steps.
 ///
 /// # Errors
 /// As [`damped`]; a period of more kicks than the limits allow.
@@ -132,7 +132,7 @@ pub fn damped_pair(oscillator: &Oscillator, rate: &Rational, limits: &verdict::L
     damped_oscillator(&clocks, oscillator.h1(), rate)
 }
 
-/// The same for K clocks on one oscillator, whose stiffnesses and steps may involve π; `unit` is h_1, the unit of time of the
+/// As [`damped_system`], for K clocks on one oscillator, whose stiffnesses and steps may involve π; `unit` is h_1, the unit of time of the
 /// clocks, and γ is per unit of what `unit` is in.
 ///
 /// # Errors
@@ -159,10 +159,10 @@ pub fn damped_oscillator<S: Real>(
     })
 }
 
-/// Bits of the quotients that are told.
+/// Bits of the quotients that are given.
 const BITS: u32 = 128;
 
-/// Growing if any part is; not told if any other is not.
+/// Growing if any part is; else `None` if any part is undecided.
 fn worst(parts: impl Iterator<Item = Option<Damping>>) -> Option<Damping> {
     let all: Vec<_> = parts.collect();
     if all.contains(&Some(Damping::Growing)) {
@@ -241,8 +241,8 @@ pub(in crate::system) struct Radius {
 }
 
 impl Radius {
-    /// Of all matrices within `error` (2-norm) of q: no eigenvalue lies outside the discs, and one at least in each connected component of
-    /// them. `None` where doubles bound nothing.
+    /// For all matrices within `error` (2-norm) of q: no eigenvalue lies outside the discs, and at least one in each of their connected
+    /// components. `None` where doubles bound nothing.
     pub fn of(q: &Mat<f64>, error: f64) -> Option<Radius> {
         let eigen = q.eigen().ok()?;
         let values: Vec<_> = (0..q.nrows()).map(|i| eigen.S()[i]).collect();
@@ -289,7 +289,7 @@ fn masked(part: &System, ticking: &System, limits: &Limits) -> Result<Mask> {
         match side(middle) {
             Some(Damping::Growing) => lo = middle,
             Some(Damping::Damped) => hi = middle,
-            // So near to 1 that doubles do not tell: the bracket is as narrow as it gets.
+            // So near to 1 that doubles cannot decide: the bracket is as narrow as it gets.
             _ => break,
         }
     }

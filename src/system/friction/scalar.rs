@@ -8,7 +8,7 @@ use crate::number::{Ball, Real, Sign};
 use crate::schedule::{KickDrift, Kicks};
 use crate::system::ManyClocks;
 
-/// What a rate of friction does to one oscillator.
+/// The effect of a rate of friction on one oscillator.
 #[derive(Clone, Debug)]
 pub struct Damped {
     /// Where ρ(Q) lies, proven.
@@ -32,7 +32,7 @@ pub(super) fn precisions(steps: u64) -> impl Iterator<Item = u32> {
 /// as that takes.
 ///
 /// # Errors
-/// A rate that is not positive; a budget error where the radius is too near to 1 for 2^16 bits or some seconds to tell.
+/// A rate that is not positive; a budget error where the radius is too near to 1 to be decided by 2^16 bits or in some seconds.
 pub fn damped<S: Real>(clocks: &ManyClocks<S>, rate: &impl Real) -> Result<Damped> {
     if rate.sign() != Sign::Positive {
         return Err(Error::input("friction", format!("{rate:?}"), "a rate of friction must be positive"));
@@ -49,7 +49,7 @@ pub fn damped<S: Real>(clocks: &ManyClocks<S>, rate: &impl Real) -> Result<Dampe
     found.ok_or_else(untold)
 }
 
-/// |Tr| against 1 + det, det < 1, where the balls tell.
+/// |Tr| against 1 + det, det < 1, where the balls decide.
 fn jury(sum: &Ball, trace: &Ball, bits: u32) -> Option<Damping> {
     match (sum.sub(trace, bits).sign(), sum.add(trace, bits).sign()) {
         (Some(Sign::Negative), _) | (_, Some(Sign::Negative)) => Some(Damping::Growing),

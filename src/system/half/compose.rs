@@ -22,7 +22,7 @@ use crate::system::linear::sparse::Symmetric;
 use crate::system::linear::system::{Potential, System};
 use crate::system::verdict::limits::Limits;
 
-/// What an event costs beside its multiplications, in columns of the half period.
+/// The cost of an event beside its multiplications, in columns of the half period.
 const OVERHEAD: u64 = 16;
 
 /// The multiplications of a half period with all 2n columns, roughly.
@@ -46,7 +46,7 @@ pub(in crate::system) fn check_length(system: &System, limits: &Limits) -> Resul
 /// The coefficients of one row: (column, value) pairs.
 pub(in crate::system) type Row<S> = Vec<(usize, S)>;
 
-/// What the events of a system do, in ticks: rows of M⁻¹ and of the F_k over any scalar.
+/// The events of a system, in ticks: rows of M⁻¹ and of the F_k over any scalar.
 #[derive(Clone, Debug)]
 pub(in crate::system) struct Program<S> {
     /// The rows of M⁻¹.
@@ -126,7 +126,7 @@ impl<S> Program<S> {
         Program { inverse_mass, islands, island_of, kicks }
     }
 
-    /// The same program over another scalar.
+    /// Converts the program to another scalar.
     pub fn map<U>(&self, convert: impl Fn(&S) -> U) -> Program<U> {
         let row = |row: &Row<S>| row.iter().map(|(j, x)| (*j, convert(x))).collect::<Row<U>>();
         let kick = |kick: &Kick<S>| Kick {

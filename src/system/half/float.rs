@@ -70,7 +70,7 @@ struct Rows {
     shear: Option<Shear>,
 }
 
-/// What a shear changes.
+/// The rows that a shear changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Side {
     Positions,

@@ -28,7 +28,7 @@ pub(in crate::system) fn absolute(m: &Mat<f64>) -> f64 {
     size.min(by_sums(m.nrows(), (0..m.ncols()).map(|j| m.col_as_slice(j))))
 }
 
-/// The same by sums alone, of a matrix of finite entries given by its columns, or by its rows, each of this length.
+/// The bound by sums alone, for a matrix of finite entries given by its columns, or by its rows, each of this length.
 pub(in crate::system) fn by_sums<'a>(length: usize, lines: impl Iterator<Item = &'a [f64]>) -> f64 {
     let (mut across, mut largest) = (vec![0.0; length], 0.0_f64);
     for line in lines {

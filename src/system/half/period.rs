@@ -34,8 +34,7 @@ pub(in crate::system) enum Stiffness {
     Whole(Mat<f64>),
 }
 
-/// What happens between the events: drifts with M⁻¹ in ticks, which is known but for `off` (2-norm), v → c v with c = exp(−decay) a
-/// tick.
+/// The motion between the events: drifts with M⁻¹ in ticks, which is known to `off` (2-norm), v → c v with c = exp(−decay) a tick.
 #[derive(Clone, Debug)]
 pub(in crate::system) struct Drifts<'a> {
     pub inverse_mass: &'a [Row<f64>],
@@ -92,7 +91,7 @@ pub(in crate::system) fn follow<'a>(
     followed(drifts, events, kick, |_| false).expect("never given up")
 }
 
-/// The same with a bound; `None` as soon as there can be none.
+/// Follows with a bound; `None` as soon as there can be none.
 pub(in crate::system) fn follow_proven<'a>(
     drifts: &Drifts,
     events: impl Iterator<Item = Event>,
@@ -219,7 +218,7 @@ impl Propagated {
         };
         *p_size = bound(&self.p, columns);
         if stiff.known > 0.0 {
-            // What is known of a kick exceeds its roundings by far: the norm is worth the products.
+            // The error of a kick exceeds its roundings by far: the norm is worth the products.
             *x_size = x_size.min(spectral(&self.x, self.n));
         }
         let error = 1.01 * (U * squares.sqrt() + weight.abs() * stiff.off * *x_size);
@@ -243,7 +242,7 @@ impl Propagated {
         squares
     }
 
-    /// The same at once, w a power of 2: whatever the order of its sums, an entry is off by n + 1 roundings of the sum of all sizes at most.
+    /// Kicks at once, w a power of 2: whatever the order of its sums, an entry is off by n + 1 roundings of the sum of all sizes at most.
     fn kick_whole(&mut self, stiffness: &Mat<f64>, weight: f64) -> f64 {
         let (n, columns) = (self.n, 2 * self.n);
         let sizes = |rows: &[f64]| Mat::from_fn(n, 1, |i, _| norm2(Propagated::row(rows, columns, i)).sqrt());
@@ -283,7 +282,7 @@ fn bound(rows: &[f64], columns: usize) -> f64 {
     }
 }
 
-/// The same, nearer and at the cost of products: ‖(A B)‖² ≤ ‖A‖² + ‖B‖².
+/// A sharper bound at the cost of products: ‖(A B)‖² ≤ ‖A‖² + ‖B‖².
 fn spectral(rows: &[f64], n: usize) -> f64 {
     let block = |first: usize| norm::spectral(&Mat::from_fn(n, n, |i, j| rows[i * 2 * n + first + j]));
     1.01 * block(0).hypot(block(n))

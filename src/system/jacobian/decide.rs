@@ -17,7 +17,7 @@ use crate::system::verdict::analysis::{Analysis, Evidence, Part};
 use crate::system::verdict::limits::{Limits, Route, degrees_of_freedom};
 use crate::verdict::Kind;
 
-/// What is known beside the verdict.
+/// Results beside the verdict.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NoGradient {
     /// |J − Jᵀ|/|J + Jᵀ| of each potential, rounded.
@@ -89,7 +89,7 @@ impl Jacobians {
         n.saturating_pow(3).saturating_mul(kicks.saturating_add(60 + damped))
     }
 
-    /// What is known beside the verdict.
+    /// The results beside the verdict.
     pub fn no_gradient(&self) -> NoGradient {
         NoGradient {
             asymmetries: self.asymmetries.clone(),
@@ -104,7 +104,7 @@ impl Jacobians {
         self.rate_of(self.spectrum().0.as_ref()?)
     }
 
-    /// The same for all matrices within their accuracy; `None` of exact ones too.
+    /// The enclosure for all matrices within their accuracy; also `None` for exact matrices.
     pub fn within_accuracy(&self) -> Option<(f64, f64)> {
         self.accuracy?;
         let (spectrum, error_within) = self.spectrum();

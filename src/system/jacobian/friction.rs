@@ -27,7 +27,7 @@ const ABOVE: f64 = 1.01;
 const BITS: u32 = 96;
 
 impl Jacobians {
-    /// Where the spectral radius of a period with friction γ per unit time lies; `None`: doubles do not tell.
+    /// Where the spectral radius of a period with friction γ per unit time lies; `None`: doubles cannot decide.
     pub fn damping(&self, friction: &Rational) -> Option<Damping> {
         let (period, error) = self.damped_period(friction);
         let found = Spectrum::of(period, error.is_finite().then_some(error))?;
@@ -56,7 +56,7 @@ impl Jacobians {
         DMatrix::from_fn(period.nrows(), period.ncols(), |i, j| period[(i, j)])
     }
 
-    /// The same with friction, and a bound on its error for the matrices given (2-norm).
+    /// The period with friction, and a bound on its error for the matrices given (2-norm).
     fn damped_period(&self, rate: &Rational) -> (Mat<f64>, f64) {
         let n = self.size();
         let whole = Mat::<f64>::identity(2 * n, 2 * n);

@@ -27,7 +27,7 @@ use crate::system::verdict::measured::Holds;
 const LEAST_RHO: f64 = 0.25;
 
 impl Jacobians {
-    /// The same with all steps `factor` > 0 times as long.
+    /// This system with all steps `factor` > 0 times as long.
     ///
     /// # Errors
     /// A factor that is not positive.
@@ -40,7 +40,7 @@ impl Jacobians {
     }
 
     /// The verdicts on all longest steps from `lo` to `hi`, all steps in their ratios, for the matrices given: stretches that cover them.
-    /// No interval wider than `width` times the larger end is missed, unless modes lie so close together that discs tell nothing: then nothing is told.
+    /// No interval wider than `width` times the larger end is missed, unless modes lie so close together that discs cannot decide: then the stretch stays open.
     ///
     /// # Errors
     /// A range that is empty or not positive, a width outside \[10^-9, 1/10\].
@@ -59,7 +59,7 @@ impl Jacobians {
             * (3.0 * self.schedule.strikes() as f64 + 60.0)
     }
 
-    /// What discs prove of all longest steps in \[lo, hi\].
+    /// The verdict that discs prove for all longest steps in \[lo, hi\].
     fn cell(&self, lo: f64, hi: f64) -> Result<Holds> {
         let middle = lo + (hi - lo) / 2.0;
         let longest = self.clocks.iter().map(|own| &own.step).max().expect("one clock or more");

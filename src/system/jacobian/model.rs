@@ -74,7 +74,7 @@ pub struct Jacobians {
     pub(super) rigid: Vec<Vec<Rational>>,
     /// Positions in the coordinates given from those that are left, a column each.
     pub(super) lift: Mat<f64>,
-    /// What moves.
+    /// The masses that move.
     pub(super) body: Body,
     /// With the symmetric parts alone.
     pub(super) symmetric: System,
@@ -106,7 +106,7 @@ impl Jacobians {
             (DMatrix::from_fn(n, n, |a, b| &j[(a, b)] / &masses[a]), step.clone(), phase.clone())
         });
         let clocks = merged(weighted);
-        // What no force sees: A_k n = 0. In the coordinates y_i = x_i − Σ n_J[i] x_J of the others A_k keeps its rows' images.
+        // Motions n that no force sees: A_k n = 0. In the coordinates y_i = x_i − Σ n_J[i] x_J of the others A_k keeps its rows' images.
         let rows = clocks.iter().flat_map(|(a, ..)| {
             a.row_iter().map(|row| {
                 row.iter().cloned().enumerate().filter(|(_, x)| !x.is_zero()).collect::<BTreeMap<_, _>>()
@@ -185,7 +185,7 @@ impl Jacobians {
         Jacobians::new(clocks.collect(), (rigid, lift), asymmetries, known, symmetric)?.at_accuracy(accuracy)
     }
 
-    /// The same with every matrix known to this times its norm.
+    /// This system with every matrix known to this times its norm.
     ///
     /// # Errors
     /// Rational matrices; an accuracy that is not in (0, 1/10).
@@ -227,7 +227,7 @@ impl Jacobians {
         })
     }
 
-    /// The same with another step for each clock, by increasing step.
+    /// This system with another step for each clock, by increasing step.
     ///
     /// # Errors
     /// Another number of steps than clocks; phases; as [`Schedule::new`].
@@ -262,7 +262,7 @@ impl Jacobians {
         &self.asymmetries
     }
 
-    /// What moves, of rational matrices its masses alone.
+    /// The masses that move; for rational matrices their masses alone.
     pub fn body(&self) -> &Body {
         &self.body
     }
@@ -295,7 +295,7 @@ impl Jacobians {
     }
 }
 
-/// What has the size and the clocks of a system, and no stiffness.
+/// A system of this size with these clocks and no stiffness.
 fn stand_in<'a>(n: usize, steps: impl Iterator<Item = &'a Rational>) -> Result<System> {
     let own = steps.map(|step| Potential::new(Symmetric::zero(n), step.clone())).collect();
     System::new(Symmetric::diagonal(&vec![Rational::one(); n]), own)

@@ -156,7 +156,7 @@ pub(super) struct Blocks {
     pub product: DMatrix<Rational>,
 }
 
-/// Of rational matrices, or of the doubles that stand for them.
+/// The blocks of rational matrices, or of the doubles that stand for them.
 pub(super) fn exact(own: &Jacobians) -> Blocks {
     let (n, events) = (own.size(), own.schedule.half_period().collect::<Vec<_>>());
     let half = |is_reversed: bool, starts_moving: bool| {

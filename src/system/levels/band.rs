@@ -60,7 +60,7 @@ impl Kernel {
         let [_, slow] = self.errors_within(epsilon);
         // Of the half period of p inner steps a/b is 2/p, in the time unit h.
         let two = vec![(2.0 / outer.inner_steps as f64).next_down(); self.size()];
-        // Of h² S/2, and of its rounding.
+        // The error of h² S/2, and its rounding.
         let slack = 1.02 * factors.most * outer.half_kick() * (slow + 4.0 * f64::EPSILON * self.norms()[1]);
         is_definite(self.with_slow(outer, &self.slow, -factors.most, &two), slack)
     }

@@ -43,7 +43,7 @@ impl Near {
 /// The half period in the eigenbasis, with the errors of everything in it.
 struct Blocks {
     halves: Vec<[f64; 4]>,
-    /// Of a, b, c, d.
+    /// The enclosures of a, b, c, d.
     near: [Near; 4],
     /// Half an outer kick.
     kick: Mat<f64>,
@@ -82,13 +82,13 @@ impl Kernel {
         Some(Blocks { halves, near, kick, near_kick })
     }
 
-    /// What the eigenvalues of S prove of all F + E₁, S + E₂, ‖E₁‖₂ ≤ ε ‖F‖₂, ‖E₂‖₂ ≤ ε ‖S‖₂, if anything.
+    /// The kind that the eigenvalues of S prove for all F + E₁, S + E₂, ‖E₁‖₂ ≤ ε ‖F‖₂, ‖E₂‖₂ ≤ ε ‖S‖₂, if any.
     pub(super) fn beyond(&self, outer: &Outer, epsilon: f64) -> Option<Kind> {
         let blocks = self.blocks(outer, epsilon)?;
         blocks.certified(&self.spectrum_of(outer, &blocks)?)
     }
 
-    /// The same for the matrices given, where `is_open`, with their eigenvalues.
+    /// The kind for the matrices given, where `is_open`, with their eigenvalues.
     pub(super) fn spectrum(&self, outer: &Outer, is_open: bool) -> Option<(Option<Kind>, Spectrum)> {
         let blocks = self.blocks(outer, 0.0)?;
         let spectrum = self.spectrum_of(outer, &blocks)?;
@@ -125,7 +125,7 @@ impl Kernel {
     }
 
     /// The largest ε, within a tenth, for which all F + E₁, S + E₂, ‖E₁‖₂ ≤ ε ‖F‖₂, ‖E₂‖₂ ≤ ε ‖S‖₂, are proven unstable: by counts where these
-    /// tell, else by the discs about the eigenvalues at this step.
+    /// decide, else by the discs about the eigenvalues at this step.
     pub(super) fn unstable_margin(&self, outer: &Outer, spectrum: Option<&Spectrum>) -> Option<f64> {
         let by_discs = |epsilon: f64| {
             let error = self.blocks(outer, epsilon)?.s().1;
@@ -162,7 +162,7 @@ fn lipschitz(p: u64, beyond: f64) -> [f64; 4] {
 ///
 /// By the differences T_(j+1) − T_j = T_j − T_(j−1) + 2 x T_j, and the same of U: no term is negative from the first one on.
 pub(super) fn slopes(k: u64, x: f64) -> [[f64; 2]; 3] {
-    // Of T_0 and U_0: values, slopes, and their differences from those before.
+    // T_0 and U_0: values, slopes, and their differences from those before.
     let (mut value, mut slope, mut rise, mut steeper) = ([1.0; 2], [0.0; 2], [-x, 1.0], [-1.0, 0.0]);
     let mut last = [[0.0; 2]; 3];
     for _ in 0..=k {

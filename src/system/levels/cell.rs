@@ -31,7 +31,7 @@ pub struct Cells<'a> {
     size: Mat<f64>,
 }
 
-/// What the filter is in a cell, see [`Cells::filter`].
+/// The filter in a cell, see [`Cells::filter`].
 struct Filter {
     phi: Vec<Interval>,
     /// m ‖N‖ (1 + 1/τ) r²,
@@ -72,7 +72,7 @@ impl<'a> Cells<'a> {
         Ok(Cells { kernel, shifts: kernel.errors_within(accuracy), size })
     }
 
-    /// What is proven of all outer steps from lo to hi of `inner_steps` inner ones.
+    /// The verdict that is proven for all outer steps from lo to hi of `inner_steps` inner ones.
     ///
     /// # Errors
     /// As [`Outer::new`].
@@ -80,10 +80,14 @@ impl<'a> Cells<'a> {
         Outer::new(lo, inner_steps).and(Outer::new(hi, inner_steps))?;
         let step = Interval { lo, hi } / Interval::point(inner_steps as f64);
         let fast = step * step;
-        Ok(self.told(&Cell { inner_steps, fast, slow: fast * Interval::point(inner_steps as f64).half() }))
+        Ok(self.holds_over(&Cell {
+            inner_steps,
+            fast,
+            slow: fast * Interval::point(inner_steps as f64).half(),
+        }))
     }
 
-    /// What is proven at an outer step of all systems in which one level (0: the fast one) is lo to hi times as stiff.
+    /// The verdict at an outer step that is proven for all systems in which one level (0: the fast one) is lo to hi times as stiff.
     pub fn verdict_scaled(&self, outer: &Outer, level: usize, (lo, hi): (f64, f64)) -> Holds {
         if level == 0 && lo <= 0.0 {
             return Holds::NotTold;
@@ -92,13 +96,13 @@ impl<'a> Cells<'a> {
         let (scale, square) =
             (Interval { lo: lo.next_down(), hi: hi.next_up() }, Interval::point(outer.inner_square) * room);
         let slow = square * Interval::point(outer.inner_steps as f64).half();
-        self.told(&match level {
+        self.holds_over(&match level {
             0 => Cell { inner_steps: outer.inner_steps, fast: square * scale, slow },
             _ => Cell { inner_steps: outer.inner_steps, fast: square, slow: slow * scale },
         })
     }
 
-    fn told(&self, cell: &Cell) -> Holds {
+    fn holds_over(&self, cell: &Cell) -> Holds {
         let counts = self.counts(cell);
         if counts.as_ref().is_some_and(Counts::tell_instability) {
             return Holds::Unstable;
@@ -213,7 +217,7 @@ impl<'a> Cells<'a> {
         Some((Spectrum::of(s, Some(error))?, off))
     }
 
-    /// The same where all functions of F are enclosed over the whole cell.
+    /// The spectrum where all functions of F are enclosed over the whole cell.
     fn spectrum_in_one_go(&self, cell: &Cell) -> Option<(Spectrum, Mat<f64>)> {
         let (kernel, p, m) = (self.kernel, cell.inner_steps, self.kernel.size());
         let halves: Vec<Half> =

@@ -32,7 +32,7 @@ const ZERO: f64 = 1e-6;
 const FEW: usize = 32;
 
 impl Hessians {
-    /// What is proven at one outer step. Where many steps are asked for, [`Kernel`] serves them all.
+    /// The verdict that is proven at one outer step. Where many steps are asked for, [`Kernel`] serves them all.
     ///
     /// Cost: four Cholesky factorizations, side by side in pairs, where [`Hessians::is_stable_by_chord`] holds: a tenth of the eigenbasis that is
     /// made where it does not.

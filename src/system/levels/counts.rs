@@ -20,7 +20,7 @@ use crate::system::signs::inertia::negative_bounds;
 /// Twists of an index: more of them cost more than discs about the eigenvalues.
 const MOST_TWISTS: usize = 6;
 
-/// What all kicks between two have in common: neg J_hh and neg J_hf, which fall apart into modes.
+/// The counts that all kicks between two have in common: neg J_hh and neg J_hf, which fall apart into modes.
 pub(super) struct Counts {
     /// The modes with the least and the greatest fast kicks,
     less: Vec<Half>,
@@ -57,7 +57,7 @@ impl Counts {
         Some(Counts { less, more, slow, slack, hh, hf })
     }
 
-    /// Of diag(twisted) − M no fewer eigenvalues than the first are negative for all kicks, no more than the second are negative or 0.
+    /// Bounds for diag(twisted) − M: for all kicks at least the first number of its eigenvalues are negative, at most the second are negative or 0.
     fn bounds(&self, s: f64) -> (usize, usize) {
         let form = |slow: &Mat<f64>, diagonal: &dyn Fn(usize) -> f64| {
             let m = self.less.len();

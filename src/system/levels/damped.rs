@@ -43,13 +43,13 @@ struct Fast {
 
 impl Kernel {
     /// Where the spectral radius of a period with friction γ per unit time lies, v → exp(−γ t) v in the middle of every drift;
-    /// `None`: doubles do not tell.
+    /// `None`: doubles cannot decide.
     pub fn damping(&self, outer: &Outer, friction: f64) -> Option<Damping> {
         let (q, error) = self.damped_period(outer, friction)?;
         damping(&q, error, Radius::of(&q, error))
     }
 
-    /// What friction of the rate γ per unit time does, and how much of it masks what grows without: all of it proven.
+    /// The effect of friction of the rate γ per unit time, and the friction that masks the growth without it: both proven.
     pub fn friction(&self, outer: &Outer, rate: &Rational) -> Friction {
         let period = self.damped_period(outer, to_f64(rate));
         let own = period.map(|(q, error)| {

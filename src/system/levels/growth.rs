@@ -16,7 +16,7 @@ pub struct Growing {
     pub lower: f64,
     /// and the last step of those sampled that grows, none between being still; `None` up to 1.3 times the first.
     pub upper: Option<f64>,
-    /// The first step above it that is proven stable, as near as doubles tell.
+    /// The first step above it that is proven stable, as near as doubles can decide.
     pub stable_again: Option<f64>,
     /// The outer step at which growth is fastest of those sampled, and ln |λ| per unit time there.
     pub worst: (f64, f64),
@@ -53,7 +53,7 @@ impl Kernel {
     }
 
     /// Stretches from an unstable outer step `from` on, as many inner ones in it, the first samples `width` apart, relative: up to the first
-    /// one that is not thin, as a thin one tells little of what comes next.
+    /// one that is not thin, as a thin one shows little of those that follow.
     ///
     /// # Errors
     /// As [`Outer::new`].
@@ -131,7 +131,7 @@ pub(super) trait Grows {
         }
         let ends = still.map(|still| self.end((last, still), true));
         let worst = self.fastest_between(from, ends.map_or(last, |(upper, _)| upper))?;
-        // At the end itself multipliers are double, and doubles tell nothing.
+        // At the end itself multipliers are double, and doubles cannot decide.
         let proven = |still: f64| (0..12).map(move |k| still * (1.0 + 1e-7 * f64::from(4u32.pow(k))));
         let stable_again = ends.and_then(|(_, still)| proven(still).find(|step| self.is_stable(*step)));
         Ok(Growing { lower: from, upper: ends.map(|(upper, _)| upper), stable_again, worst })

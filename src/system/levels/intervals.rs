@@ -17,10 +17,10 @@ impl Kernel {
         Some(spectrum.mu.iter().map(|&mu| exponent(mu).re).fold(0.0, f64::max) / outer.step)
     }
 
-    /// What is proven of all stiffnesses within `accuracy` of their norms on all outer steps of `inner_steps` inner ones from `lo` to `hi`, as
-    /// stretches that cover them. No interval wider than `width` times the larger end is missed of which the data tell.
+    /// The verdicts that are proven for all stiffnesses within `accuracy` of their norms on all outer steps of `inner_steps` inner ones from `lo`
+    /// to `hi`, as stretches that cover them. No interval wider than `width` times the larger end is missed that the accuracy resolves.
     ///
-    /// Cost: the first stable region is one bisection; beyond it two factorizations and, where these tell nothing, the eigenvalues for each
+    /// Cost: the first stable region is one bisection; beyond it two factorizations and, where these cannot decide, the eigenvalues for each
     /// cell (file `cell`), more cells where intervals are thin.
     ///
     /// # Errors
@@ -70,7 +70,7 @@ impl Kernel {
         Ok(at.min(last))
     }
 
-    /// What is proven of all stiffnesses within `epsilon` of their norms.
+    /// The verdict that is proven for all stiffnesses within `epsilon` of their norms.
     pub fn verdict_within(&self, outer: &Outer, epsilon: f64) -> Holds {
         if self.is_in_first_region(outer, epsilon) {
             return Holds::Stable;

@@ -38,7 +38,7 @@ pub struct Kernel {
     /// The modes as columns in the mass-weighted coordinates given, rounded.
     pub(super) modes: Mat<f64>,
     pub(super) method: Method,
-    /// What was projected out before.
+    /// The motions that were projected out before.
     pub removed: Option<Removed>,
 }
 
@@ -146,7 +146,7 @@ impl Kernel {
         })
     }
 
-    /// The same modes under another integrator.
+    /// These modes under another integrator.
     #[must_use]
     pub fn with_method(self, method: Method) -> Kernel {
         Kernel { method, ..self }

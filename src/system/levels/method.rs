@@ -12,7 +12,7 @@
 //! | x₊ − 2 cos(x) x + x₋ = −H² ψ S φ x | cos² y, 1/2, −2 sin² y, 1 | γ, γ² = ψ φ: sinc y (Gautschi), sinc x (Hairer, Lubich) |
 //!
 //! The last is similar to −H² γ S γ where ψ φ is a square, whose trace is 2 + 4 b (c − d M) as that of any method is. Source: THEORY section 16.
-//! What these are as functions of matrices, and by how much they move with F, is in `proofs/REGION.md`, section 8.
+//! `proofs/REGION.md`, section 8, has these as functions of matrices, and bounds on how they move with F.
 
 use super::half::Half;
 use super::interval::Interval;
@@ -132,7 +132,7 @@ impl Method {
             (_, false) => [0.125, 1.0 / 48.0, 0.5, 0.125],
             (_, true) => [0.25, 0.0, 0.5, 0.0],
         };
-        // Of s/p², in the time unit of the inner step.
+        // Bounds in s/p², in the time unit of the inner step.
         [a, b * p, c / p, d, filter].map(|x| 1.01 * room * square * x)
     }
 
@@ -212,12 +212,12 @@ fn turn(s: Interval) -> [Interval; 2] {
     let ball = |x: f64| Ball::from_rational(&from_f64_exact(x).expect("finite"), BITS);
     let square = ball(s.lo).union(&ball(s.hi), BITS).scale2(-2);
     let Some(y) = square.sqrt(BITS) else { return [nothing; 2] };
-    let told = |x: Ball| {
+    let interval = |x: Ball| {
         let (lo, hi) = x.to_f64_enclosure();
         Interval { lo, hi }
     };
     let sinc = y.sin(BITS).div(&y, BITS);
-    [told(y.cos(BITS)), sinc.map_or(nothing, told)]
+    [interval(y.cos(BITS)), sinc.map_or(nothing, interval)]
 }
 
 /// Σ (−s/4)^n/(2n + first)!, the rest of which is less than its last term: terms fall by more than two from the tenth on.

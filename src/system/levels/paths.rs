@@ -11,7 +11,7 @@ use crate::system::signs::inertia::{is_definite, proven};
 /// The most rows of an action: its eigenvalues take seconds from there on.
 const MOST_ROWS: usize = 1200;
 
-/// What multiplies both stiffnesses, and by how much (2-norm) they may be off.
+/// The factors of both stiffnesses, and bounds (2-norm) on their errors.
 #[derive(Clone, Copy, Debug)]
 pub struct Near {
     pub factors: [f64; 2],

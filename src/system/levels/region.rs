@@ -21,7 +21,7 @@ pub(super) struct Shifted<'a> {
     pub slow_slack: f64,
 }
 
-/// The largest ε up to 1 for which what `holds` tells of 0 holds, rounded down within a factor; `None` where it does not for 0.
+/// The largest ε in \[0, 1\] with `holds(ε)`, rounded down within a factor; `None` where not even `holds(0)`.
 pub(super) fn largest(width: f64, holds: impl Fn(f64) -> bool) -> Option<f64> {
     // By halves of the exponent: below 10^-15 the errors of the eigenbasis are larger than the margin.
     let (mut lo, mut hi) = (1e-15_f64, 1.0_f64);
@@ -88,7 +88,7 @@ impl Kernel {
     /// known to be one interval ([`Method::first_region_ends`](super::method::Method)).
     pub fn first_unstable(&self, inner_steps: u64) -> Option<(f64, f64)> {
         let (lo, hi) = self.first_region_end(inner_steps, 0.0)?;
-        // Where the forms are near 0 doubles tell nothing: a little farther they do.
+        // Where the forms are near 0 doubles cannot decide; a little farther they can.
         let unstable =
             |step: f64| Outer::new(step, inner_steps).is_ok_and(|outer| self.is_unstable(&outer, 0.0));
         let mut steps = (0..16).map(|k| hi + lo * 1e-8 * f64::from(1 << k));

@@ -77,7 +77,7 @@ impl Hessians {
         self.fast.nrows()
     }
 
-    /// The same orthogonal to the columns of `rigid`, which are orthonormal.
+    /// These Hessians on the motions orthogonal to the columns of `rigid`, which are orthonormal.
     #[must_use]
     pub fn without(self, rigid: &Mat<f64>, found_by: &'static str) -> Hessians {
         let (n, r) = (rigid.nrows(), rigid.ncols());
@@ -99,14 +99,14 @@ impl Hessians {
     /// Another mass-weighted stiffness in the coordinates kept, what asymmetry there is split evenly, and how far (2-norm) it is from the exact restriction.
     pub(super) fn restricted(&self, k: &DMatrix<f64>) -> (Mat<f64>, f64) {
         let whole = halved(MatRef::from_column_major_slice(k.as_slice(), k.nrows(), k.ncols()));
-        // Of two roots, their product, the quotient and the mean of both triangles.
+        // The rounding of two roots, their product, the quotient and the mean of both triangles.
         let weights = 5.1 * U * norm::frobenius(&whole);
         let Some(basis) = &self.basis else { return (whole, weights) };
         let (own, error) = projected(&whole, basis, orthogonality(basis).unwrap_or(f64::INFINITY));
         (own, weights + error)
     }
 
-    /// The same where one level, 0 the fast one, is a sum of mass-weighted stiffnesses: each of these is known to its own norm, though
+    /// These Hessians where one level, 0 the fast one, is a sum of mass-weighted stiffnesses: each of these is known to its own norm, though
     /// they may cancel.
     #[must_use]
     pub fn of_shares(mut self, level: usize, shares: &[DMatrix<f64>]) -> Hessians {
@@ -124,7 +124,7 @@ impl Hessians {
         self
     }
 
-    /// The same without the null space of F + S within `accuracy`: the eigenvectors whose eigenvalues are at most
+    /// These Hessians without the null space of F + S within `accuracy`: the eigenvectors whose eigenvalues are at most
     /// `accuracy` (‖F‖ + ‖S‖), at most `most` of them for each part that no entry joins to the others.
     ///
     /// # Errors
@@ -157,7 +157,7 @@ impl Hessians {
         self.basis.as_ref()
     }
 
-    /// What was projected out.
+    /// The motions that were projected out.
     pub fn removed(&self) -> Option<&Removed> {
         self.removed.as_ref()
     }

@@ -20,7 +20,7 @@ use crate::number::rational::{from_f64_exact, to_f64};
 use crate::system::linear::sparse::{Symmetric, dot};
 use crate::system::linear::system::{Potential, System};
 
-/// What the elements are made of.
+/// The material of the elements.
 #[derive(Clone, Debug)]
 pub struct Material {
     /// E, force/length².

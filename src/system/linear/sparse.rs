@@ -30,7 +30,7 @@ struct Entries {
     rows: OnceLock<Vec<BTreeMap<usize, Rational>>>,
     /// The matrix that it is a multiple of, and the factor, not 0: products are computed once someone asks for them.
     multiple: Option<(Symmetric, Rational)>,
-    /// The same in two doubles, once they are asked for: rounding them costs more than a small system's verdict.
+    /// The rows in two doubles, once they are asked for: rounding them costs more than a small system's verdict.
     doubles: OnceLock<Vec<Vec<(usize, Twofold)>>>,
 }
 
@@ -359,8 +359,8 @@ pub(in crate::system) fn is_sum_semidefinite(parts: &[&Symmetric], sum: impl FnO
     }
 }
 
-/// What doubles prove of the signs of the eigenvalues of Σ X_k; nothing where it is large and nearly a chain (three entries
-/// a row): there exact elimination fills in little and costs less.
+/// The signs of the eigenvalues of Σ X_k, as far as doubles prove them; nothing where it is large and nearly a chain (three
+/// entries a row): there exact elimination fills in little and costs less.
 pub(in crate::system) fn inertia_of_sum(parts: &[&Symmetric]) -> Inertia {
     const SMALL: usize = 64;
     let n = parts.first().map_or(0, |own| own.size());
@@ -412,7 +412,7 @@ impl TryFrom<&DMatrix<f64>> for Symmetric {
 
 /// A basis of {x : rows x = 0}: (free coordinate, vector) pairs, each vector 1 there and 0 at the other free ones.
 ///
-/// Of rows with many entries it is empty where they are independent modulo a prime: elimination over ℚ makes numbers of n times their length.
+/// For rows with many entries it is empty where they are independent modulo a prime: elimination over ℚ makes numbers of n times their length.
 pub(in crate::system) fn null_space(
     mut rows: Vec<BTreeMap<usize, Rational>>,
     n: usize,

@@ -108,7 +108,7 @@ impl System {
         self.potentials.iter().map(|own| own.step.clone()).collect()
     }
 
-    /// The same with all stiffnesses times a factor, and all steps times another one.
+    /// This system with all stiffnesses times a factor, and all steps times another one.
     ///
     /// # Errors
     /// As [`System::new`].
@@ -126,7 +126,7 @@ impl System {
         System::on(self.clocks.iter().map(changed).collect(), mass, potentials)
     }
 
-    /// The same with every clock, also those whose sum vanishes: with friction a kick of strength 0 parts a drift in two.
+    /// This system with every clock, also those whose sum vanishes: with friction a kick of strength 0 parts a drift in two.
     pub(in crate::system) fn with_silent_clocks(&self) -> System {
         let (mass, potentials) = (self.mass.clone(), self.potentials.clone());
         System::on(merged(&potentials), mass, potentials).expect("the clocks of a checked system")
@@ -205,7 +205,7 @@ impl System {
         reduced(common, self.size())
     }
 
-    /// The same dynamics in the coordinates y, x = Z y, where the columns of Z span an invariant subspace.
+    /// The dynamics in the coordinates y, x = Z y, where the columns of Z span an invariant subspace.
     pub(in crate::system) fn restricted(&self, columns: &[Vec<Rational>]) -> System {
         self.mapped(self.mass.congruent(columns), |k| k.congruent(columns))
     }

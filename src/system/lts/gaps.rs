@@ -49,7 +49,7 @@ struct Place {
 }
 
 impl Block {
-    /// How many eigenvalues may be in \[lo, hi\], none more; `None` where counts do not tell.
+    /// An upper bound on the number of eigenvalues in \[lo, hi\]; `None` where counts cannot decide.
     fn within(&self, lo: f64, hi: f64) -> Option<usize> {
         let terms = [(1.0, self.values.as_slice())];
         let below = |c: f64, up: f64| {
@@ -182,7 +182,7 @@ impl SparseSteps {
             return;
         }
         if hi - lo <= floor {
-            // Counts reach a little beyond both ends: two neighbours may hold the same resonance, or two, which both together tell.
+            // Counts reach a little beyond both ends: two neighbours may hold the same resonance, or two, which only both together decide.
             let last = found.pop_if(|last| last.hi == lo);
             let lo = last.map_or(lo, |last| last.lo);
             let own = if last.is_some() { self.resonances(lo, hi) } else { own };
@@ -195,7 +195,7 @@ impl SparseSteps {
         self.places((middle, hi), floor, found);
     }
 
-    /// What is proven of the steps about resonances, between what is proven beside them: of one odd resonance alone between unstable steps all are.
+    /// The verdict that is proven for the steps about resonances, given those beside them: one odd resonance between unstable steps is unstable.
     fn at_place(&self, place: &Place, before: Option<&Stretch>, after: Option<&Stretch>) -> Stretch {
         let is_unstable = |own: Option<&Stretch>| own.is_some_and(|own| own.verdict == Holds::Unstable);
         let is_one = place.odd == 1 && place.even == 0 && is_unstable(before) && is_unstable(after);

@@ -1,7 +1,7 @@
 //! Subcycling with held velocities of many thousands of degrees of freedom, one level of p substeps: its first stable region, by factorizations of a plain
 //! leapfrog's matrices (proofs/SUBCYCLING.md).
 //!
-//! With C and F the coarse and the fine part of K, B what couples them, and θ of the substep, 4 sin²(θ/2) = (dt/p)² F, the step from rest in the positions has
+//! With C and F the coarse and the fine part of K, B their coupling, and θ the angle of the substep, 4 sin²(θ/2) = (dt/p)² F, the step from rest in the positions has
 //!
 //! ```text
 //!     1 − Q11 = (dt²/2) N,     N H = G symmetric,     H = diag((C − B F⁻¹ Bᵀ)⁻¹, F⁻¹ V),     V = sin(p θ)/(p sin θ).
@@ -15,7 +15,7 @@
 //! ```
 //!
 //! m_j = 2, of the last one of odd p 1; Σ w_j = 1. With two substeps: K below 4/dt² times masses of which the fine ones count twice. Beyond p θ = π
-//! H is indefinite, and nothing is told.
+//! H is indefinite, and no verdict is proven.
 
 use super::scheme::{Level, Scheme, SchemeSummary};
 use super::sparse::SparseSteps;
@@ -51,7 +51,7 @@ pub struct SparseSubcycles {
     end: Option<(f64, f64)>,
 }
 
-/// What w_j times an entry may be off by, relative to it: of the angle, its sine twice, its square, three products and two quotients.
+/// The error of w_j times an entry, relative to it: of the angle, its sine twice, its square, three products and two quotients.
 const ROUNDED: f64 = 16.0 * U;
 
 impl SparseSubcycles {
@@ -129,7 +129,7 @@ impl SparseSubcycles {
         Some((beside(lo.min(end.next_down()), -1.0, Holds::Stable)?, beside(hi, 1.0, Holds::Unstable)))
     }
 
-    /// The verdicts on all steps from `lo` to `hi`, as stretches that cover them: nothing is told from where the fastest fine motion takes half a turn.
+    /// The verdicts on all steps from `lo` to `hi`, as stretches that cover them: they are open from where the fastest fine motion takes half a turn.
     ///
     /// # Errors
     /// An empty range.
@@ -156,7 +156,7 @@ impl SparseSubcycles {
         Ok(merged(within.filter(|own| own.lo < own.hi)))
     }
 
-    /// What answers tell of the scheme.
+    /// The summary of the scheme in answers.
     pub fn summary(&self) -> SchemeSummary {
         SchemeSummary {
             scheme: Scheme::Newmark,

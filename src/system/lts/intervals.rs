@@ -45,7 +45,7 @@ impl LocalSteps {
         between(range, &self.gaps(range, limits)?, &verdict, &within)
     }
 
-    /// What these cost, in products of machine words.
+    /// The cost of these, in products of machine words.
     pub fn cost(&self) -> f64 {
         let part = |dofs: &Vec<usize>| {
             let own = self.part(dofs);

@@ -1,4 +1,4 @@
-//! What a scheme of local time steps does in one step: the stiffness that Verlet's would have.
+//! One step of a scheme of local time steps, written as a step of Verlet's with another stiffness.
 
 use std::collections::BTreeSet;
 
@@ -18,7 +18,7 @@ pub struct Level {
     pub substeps: u32,
 }
 
-/// What levels of steps mean.
+/// The meaning of levels of steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scheme {
     /// Leapfrog with local time steps: forces on what is not fine stand still (Diaz and Grote 2009).
@@ -40,7 +40,7 @@ impl Scheme {
     }
 }
 
-/// What answers tell of a scheme.
+/// The summary of a scheme in answers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SchemeSummary {
     pub scheme: Scheme,
@@ -95,7 +95,7 @@ impl Level {
         levels.iter().filter(|own| own.fine.contains(&i)).map(|own| own.substeps).product()
     }
 
-    /// The same of a system of one clock without a phase and with lumped masses.
+    /// As above, for a system of one clock without a phase and with lumped masses.
     ///
     /// # Errors
     /// A mass matrix that is not diagonal, several clocks, a phase; as [`Level::check`].
@@ -179,7 +179,7 @@ impl LocalSteps {
         &self.system
     }
 
-    /// The same system without local steps.
+    /// This system without local steps.
     pub fn plain(&self) -> &System {
         &self.plain
     }
@@ -199,7 +199,7 @@ impl LocalSteps {
         self.levels.iter().map(|level| level.substeps).product()
     }
 
-    /// The same with another step.
+    /// This system with another step.
     ///
     /// # Errors
     /// A step that is not positive.
@@ -211,7 +211,7 @@ impl LocalSteps {
     }
 
     /// Where plain leapfrog, all with the step of the whole, becomes unstable: \[lo, hi\] holds 2/√λ of the largest λ of K x = λ M x, within
-    /// 10^-9 of itself or as near as doubles tell; `None` where no λ is positive.
+    /// 10^-9 of itself or as near as doubles can decide; `None` where no λ is positive.
     pub fn plain_limit(&self) -> Option<(f64, f64)> {
         plain_limit(&self.plain)
     }
@@ -242,7 +242,7 @@ pub(super) fn plain_limit(plain: &System) -> Option<(f64, f64)> {
     let entries: Vec<_> =
         (0..mass.size()).flat_map(row).map(|(i, j, x)| (i, j, to_f64(x) / (root[i] * root[j]))).collect();
     let (pattern, [values]) = Pattern::of(mass.size(), [&entries]).ok()?;
-    // Of each entry: its own rounding, two masses' and two roots', their product, the quotient.
+    // The error of each entry: its own rounding, two masses' and two roots', their product, the quotient.
     let slack = 8.0 * U * pattern.size_of(&values).0;
     let (lo, hi) = pattern.largest(&values, slack, WITHIN)?;
     Some((2.0 / hi.sqrt() * (1.0 - 4.0 * U), 2.0 / lo.sqrt() * (1.0 + 4.0 * U)))

@@ -37,7 +37,7 @@ pub struct SparseSteps {
     plain: Block,
     /// and its rows and columns that are fine at the first level, where there are any.
     pub(super) fine: Option<Block>,
-    /// Of length 1 and mass-weighted, where all may move together.
+    /// The common motion, of length 1 and mass-weighted, where all may move together.
     rigid: Mat<f64>,
     roots: Vec<f64>,
 }
@@ -64,7 +64,7 @@ impl Block {
         self.pattern.is_definite(0.0, &[(1.0, &self.values)], self.error)
     }
 
-    /// Its largest eigenvalue, enclosed to `within` of itself or as near as doubles tell; `None` where it is not positive.
+    /// Its largest eigenvalue, enclosed to `within` of itself or as near as doubles can decide; `None` where it is not positive.
     pub fn largest(&self, within: f64) -> Option<(f64, f64)> {
         self.pattern.largest(&self.values, self.error, within)
     }
@@ -92,7 +92,7 @@ impl SparseSteps {
         SparseSteps::within(masses, stiffness, levels, 0.0)
     }
 
-    /// The same of entries that are each off by so much, relative to it.
+    /// As above, for entries that are each off by so much, relative to their size.
     pub(super) fn within(
         masses: &[f64],
         stiffness: &Triplets,
@@ -300,13 +300,13 @@ impl SparseSteps {
         self.plain_limit_within(1e-6)
     }
 
-    /// The same as sharp as that.
+    /// The limit of plain leapfrog, enclosed as sharply as given.
     pub(super) fn plain_limit_within(&self, within: f64) -> Option<(f64, f64)> {
         let (lo, hi) = self.plain.largest(within)?;
         Some((2.0 / hi.sqrt() * (1.0 - 4.0 * U), 2.0 / lo.sqrt() * (1.0 + 4.0 * U)))
     }
 
-    /// What answers tell of the scheme.
+    /// The summary of the scheme in answers.
     pub fn summary(&self) -> SchemeSummary {
         SchemeSummary {
             scheme: Scheme::Lts,
@@ -318,7 +318,7 @@ impl SparseSteps {
     }
 }
 
-/// What grows fastest.
+/// The motion that grows fastest.
 #[derive(Clone, Debug)]
 pub struct Growth {
     /// How far the largest eigenvalue of f is above 4, or the least one below 0.
@@ -510,7 +510,7 @@ impl Sparse {
             own.ends.push(own.rows.len());
         }
         own.size = own.sums();
-        // What the parts are off by, and the roundings: of each product two, of the sums as many as terms.
+        // The errors of the parts, and the roundings: two for each product, for the sums as many as terms.
         let carried: f64 = sums.iter().map(|(a, m)| a.abs() * m.error).sum::<f64>()
             + products
                 .iter()
@@ -524,7 +524,7 @@ impl Sparse {
 }
 
 impl LocalSteps {
-    /// What answers tell of the scheme.
+    /// The summary of the scheme in answers.
     pub fn summary(&self) -> SchemeSummary {
         SchemeSummary {
             scheme: Scheme::Lts,

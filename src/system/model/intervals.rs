@@ -16,7 +16,7 @@ use crate::system::verdict::decide::decide_by;
 use crate::system::verdict::limits::{Limits, Route};
 use crate::system::verdict::measured::Holds;
 
-/// What is open at an accuracy and decided at one so many times as good is left open by the accuracy.
+/// A stretch that is open at an accuracy and decided at one so many times as good is left open by the accuracy.
 const BETTER: f64 = 1e3;
 
 /// A number that is varied.
@@ -124,7 +124,7 @@ impl Model {
         self.cost_of_stretches(&Number::Outer, range, width, limits)
     }
 
-    /// What `ask` finds of the systems of all outer steps.
+    /// The result of `ask` on the systems of all outer steps.
     fn over_outer_steps<T>(&self, ask: impl Fn(&Family) -> Result<T>) -> Result<T> {
         if let Model::Implicit(own) = self {
             return ask(&Family { linear: Linear::Square, at: &|square| own.at_square(square) });

@@ -19,12 +19,12 @@ use crate::system::verdict::analysis::Analysis;
 use crate::system::verdict::limits::{Limits, Route};
 use crate::system::verdict::measured::{Holds, check_accuracy};
 
-/// What moves, and what of it is held.
+/// The masses that move, and the motions that are held.
 #[derive(Clone, Debug, Default)]
 pub struct Body {
-    /// Of each degree of freedom; `None`: the stiffnesses are mass-weighted and no masses are known.
+    /// The mass of each degree of freedom; `None`: the stiffnesses are mass-weighted and no masses are known.
     pub masses: Option<Vec<f64>>,
-    /// Of each particle in space.
+    /// The place of each particle in space.
     pub positions: Option<Vec<[f64; 3]>>,
     /// Whether the stiffnesses are M^-½ K M^-½ instead of K.
     pub is_weighted: bool,
@@ -69,7 +69,7 @@ pub struct ManyLevels<'a> {
     pub accuracy: f64,
 }
 
-/// What rational stiffnesses are known to in doubles, relative to their norms: more than (√n + 4) 2⁻⁵³ of n = 4096 rows, from half a unit in the last place
+/// The accuracy of rational stiffnesses in doubles, relative to their norms: more than (√n + 4) 2⁻⁵³ of n = 4096 rows, from half a unit in the last place
 /// of each entry and each mass, and enough for rigid motions to be found.
 const ROUNDED: f64 = 1e-12;
 
@@ -135,7 +135,7 @@ impl MeasuredSystem {
         MeasuredSystem::new(body, clocks, ROUNDED)
     }
 
-    /// The same with every stiffness known to this times its norm.
+    /// This system with every stiffness known to this times its norm.
     ///
     /// # Errors
     /// An accuracy that is not in (0, 1/10).
@@ -145,14 +145,14 @@ impl MeasuredSystem {
         Ok(self)
     }
 
-    /// The same with its rigid motions left in.
+    /// This system with its rigid motions left in.
     #[must_use]
     pub fn keeping_rigid(mut self) -> MeasuredSystem {
         (self.keeps_rigid, self.kernel) = (true, Arc::default());
         self
     }
 
-    /// The same under another integrator of two levels.
+    /// This system under another integrator of two levels.
     ///
     /// # Errors
     /// Where there are not two levels.
@@ -199,7 +199,7 @@ impl MeasuredSystem {
         self.potentials[0].1.nrows()
     }
 
-    /// The same doubles as a rational system: in mass-weighted coordinates with unit masses where they are.
+    /// These doubles as a rational system: in mass-weighted coordinates with unit masses where they are.
     pub(super) fn system(&self) -> &System {
         self.system.get_or_init(|| {
             let masses = self.body.masses.as_ref().filter(|_| !self.body.is_weighted);
@@ -238,7 +238,8 @@ impl MeasuredSystem {
         Ok(self.kernel()?.decide(&outer, &period, self.accuracy))
     }
 
-    /// What is proven of the doubles given: of two levels in the eigenbasis, where it is known, else at the least cost for this one verdict.
+    /// The verdict that is proven for the doubles given: of two levels in the eigenbasis, where it is known, else at the least cost for this one
+    /// verdict.
     pub(super) fn verdict(&self, limits: &Limits) -> Result<Holds> {
         let Some((outer, _)) = self.outer() else {
             return Ok(self.decide_projected(Route::Cheapest, limits)?.holds());
@@ -270,7 +271,7 @@ impl MeasuredSystem {
         Ok(self.kernel()?.decide(&at, outer, self.accuracy))
     }
 
-    /// What friction of this rate per unit time does.
+    /// The effect of friction of this rate per unit time.
     pub(super) fn friction(&self, rate: &Rational, limits: &Limits) -> Result<Friction> {
         self.refuse_method("friction")?;
         let Some((outer, _)) = self.outer() else { return self.friction_projected(rate, limits) };
@@ -316,7 +317,7 @@ impl MeasuredSystem {
         ask(&many.levels, &self.steps())
     }
 
-    /// The same on a range of factors of one level, 0 the fast one, of the present value `factor`, all else as it is.
+    /// The verdicts on a range of factors of one level, 0 the fast one, of the present value `factor`, all else as it is.
     pub(super) fn stretches_of_scale(
         &self,
         level: usize,

@@ -35,7 +35,7 @@ pub use measured::{Body, ManyLevels, MeasuredSystem, TwoLevels};
 pub use oscillator::Oscillator;
 pub use sparse::SparseSystem;
 
-/// What a system is.
+/// The kinds of systems.
 #[derive(Clone, Debug)]
 pub enum Model {
     /// Rational masses, stiffnesses and steps, few entries or many.
@@ -133,7 +133,7 @@ impl Model {
         }
     }
 
-    /// What is proven, and nothing else: of two measured levels without an eigenbasis where that proves it.
+    /// The proven verdict and nothing else: for two measured levels without an eigenbasis, where it is proven without one.
     ///
     /// # Errors
     /// As [`Model::decide`].
@@ -186,7 +186,7 @@ impl Model {
         }
     }
 
-    /// What friction of a rate per unit time does, O in the middle of every drift.
+    /// The effect of friction of a rate per unit time, O in the middle of every drift.
     ///
     /// # Errors
     /// As [`damped_system`]; π in the stiffnesses of several degrees of freedom, irrational steps.
@@ -213,7 +213,7 @@ impl Model {
         }
     }
 
-    /// What forces that are no gradient have not, and what is not done for sparse stiffnesses.
+    /// The error for questions without an answer: about forces that are no gradient, or about sparse stiffnesses.
     fn refused(&self, what: &str) -> Error {
         match self {
             Model::Sparse(_) => {
@@ -232,8 +232,8 @@ impl Model {
         }
     }
 
-    /// The same under another integrator of two levels: measured ones as they are; rational ones exactly where the fast force is solved for, else in
-    /// doubles, their entries known within the rounding of these.
+    /// This system under another integrator of two levels: measured ones as they are; rational ones exactly where the fast force is solved for, else
+    /// in doubles, their entries known within the rounding of these.
     ///
     /// # Errors
     /// Where there are not two levels; π, irrational steps, and what is no gradient, sparse or of local steps.
@@ -273,7 +273,7 @@ impl Model {
         }
     }
 
-    /// What sets it apart from a system about its equilibrium under kicks of all its forces, in a sentence.
+    /// A sentence on how it differs from a system about its equilibrium under kicks of all its forces.
     pub fn remark(&self) -> Option<&'static str> {
         match self {
             Model::Implicit(_) => Some(
@@ -301,7 +301,7 @@ impl Model {
         if let Model::Along(own) = self { Some(own) } else { None }
     }
 
-    /// What verdicts tell of local time steps, where some degrees of freedom take substeps: computed when it is asked for, of sparse ones by some
+    /// The summary of local time steps, where some degrees of freedom take substeps: computed when it is asked for, for sparse systems by some
     /// dozen factorizations.
     pub fn local_steps_summary(&self) -> Option<SchemeSummary> {
         match self {
@@ -389,7 +389,7 @@ impl Model {
         self.measured().map_or(Ok(None), |own| own.growth_of_period(limits))
     }
 
-    /// The same as two clocks on one oscillator, where it is that, without phases.
+    /// The system as two clocks on one oscillator, where it is that, without phases.
     pub fn two_clocks(&self) -> Option<propagator::Oscillator> {
         let system = match self {
             Model::Oscillator(own) => return own.as_two_clocks(),

@@ -23,7 +23,7 @@ pub struct Oscillator {
     pub clocks: ManyClocks<Laurent>,
     /// h_1.
     pub unit: Laurent,
-    /// The same with every stiffness/mass rounded to a rational of some 60 bits; in the unit of time h_1 where
+    /// The oscillator with every stiffness/mass rounded to a rational of some 60 bits; in the unit of time h_1 where
     /// steps are irrational.
     pub rounded: System,
     pub has_rational_steps: bool,
@@ -73,7 +73,7 @@ impl Oscillator {
         decide_oscillator(&self.clocks, &self.rounded, &self.unit, limits)
     }
 
-    /// What friction of a rate per unit time does.
+    /// The effect of friction of a rate per unit time.
     pub(super) fn friction(&self, rate: &Rational, limits: &Limits) -> Result<Friction> {
         limits.allow(self.clocks.schedule().strikes().saturating_mul(1000), || {
             "friction on one oscillator".into()
@@ -88,7 +88,7 @@ impl Oscillator {
         Ok(self.clocks.half_signs().verdict().kind())
     }
 
-    /// The same as two clocks, where it has these, without phases.
+    /// The oscillator under two clocks, where it has two, without phases.
     pub(super) fn as_two_clocks(&self) -> Option<propagator::Oscillator> {
         let (two, h1) = (self.clocks.as_two_clocks()?, &self.unit);
         let h2 = h1 * &Laurent::from_rational(two.ratio().into());

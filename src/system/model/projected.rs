@@ -32,7 +32,7 @@ impl MeasuredSystem {
         Ok(analysis)
     }
 
-    /// What friction does to these doubles as a rational system.
+    /// The effect of friction on these doubles as a rational system.
     pub(super) fn friction_projected(&self, rate: &Rational, limits: &Limits) -> Result<Friction> {
         damped_system(self.moving()?.as_ref(), rate, limits)
     }

@@ -40,24 +40,24 @@ enum Of {
     Subcycles(Box<SparseSubcycles>),
 }
 
-/// What is left out of the answer: of a verdict in the first region, or of none,
+/// The note on a verdict in the first region, or on none: which results are left out of the answer.
 const FIRST: &str = "of sparse stiffnesses the first stable region is decided, and what grows above it while no fast mode alone takes half a turn in an \
                      outer step";
 
-/// and of one that is unstable, where no mode was found.
+/// The note on an unstable one, where no mode was found.
 const NO_MODE: &str =
     "no growing mode is enclosed, and none looked at beside the one that proves the verdict";
 
-/// The same of local time steps.
+/// The note on local time steps.
 const FASTEST: &str = "of sparse stiffnesses only the motion that grows fastest is computed";
 
-/// And of subcycles.
+/// The note on subcycles.
 const NO_RATE: &str = "of sparse subcycling the verdict is computed, the growth rate is not; steps in which the fastest fine motion takes half a turn \
                        or more are not decided";
 
 const TOGETHER: &str = "all may move together: that motion is set apart";
 
-/// Of one resonance: to find it, and both edges of its unstable steps.
+/// The cost of one resonance: to find it, and both edges of its unstable steps.
 const A_RESONANCE: f64 = 60.0;
 
 /// Factorizations that an answer takes, roughly, with all else; a product of theirs, in dense blocks, takes a hundredth of the time that one of an eigenvalue
@@ -66,8 +66,8 @@ const FACTORIZATIONS: f64 = 6.0;
 const FASTER: f64 = 100.0;
 
 impl SparseSystem {
-    /// From two levels with an inner step and a multiple of it, each stiffness known to `accuracy` times its norm; the motions that were set
-    /// apart are told in answers.
+    /// From two levels with an inner step and a multiple of it, each stiffness known to `accuracy` times its norm; answers name the motions
+    /// that were set apart.
     ///
     /// # Errors
     /// An outer step that is no multiple of the inner one, an accuracy that is not in (0, 1/10).
@@ -150,7 +150,7 @@ impl SparseSystem {
         }
     }
 
-    /// What answers tell of its scheme, where it has one.
+    /// The summary of its scheme in answers, where it has one.
     pub(super) fn summary(&self) -> Option<SchemeSummary> {
         match &self.of {
             Of::Levels { .. } => None,
@@ -168,7 +168,7 @@ impl SparseSystem {
         }
     }
 
-    /// What these cost, as [`SparseSystem::cost`].
+    /// The cost of these, as [`SparseSystem::cost`].
     pub(super) fn cost_of_stretches(&self, range: (f64, f64)) -> Option<f64> {
         if let Of::Subcycles(own) = &self.of {
             return Some(A_RESONANCE / FASTER * own.products());
@@ -189,7 +189,7 @@ impl SparseSystem {
         Some(SparseSystem::of_one(self.clocks.size(), of, step))
     }
 
-    /// The same with another accuracy.
+    /// This system with another accuracy.
     ///
     /// # Errors
     /// One that is not in (0, 1/10).
@@ -261,7 +261,7 @@ impl SparseSystem {
         let largest = growing.as_ref().and_then(|own| own.fastest);
         let note = growing
             .as_ref()
-            .map(told)
+            .map(listed)
             .unwrap_or(if verdict == Holds::Unstable { NO_MODE } else { FIRST }.into());
         let modes = growing.into_iter().flat_map(|own| own.modes).map(|own| explained(own, &period)).unzip();
         let part = Part { largest, ..Part::new(levels.size(), period, decided(verdict), modes) };
@@ -291,7 +291,7 @@ impl SparseSystem {
         Ok(Analysis { measured, ..Analysis::of_part(part, 2, notes) })
     }
 
-    /// What is proven, and nothing else.
+    /// The proven verdict and nothing else.
     pub(super) fn verdict(&self, limits: &Limits) -> Result<Holds> {
         self.allow(limits)?;
         Ok(match &self.of {
@@ -346,8 +346,8 @@ impl SparseSystem {
     }
 }
 
-/// How many of the modes that grow are told.
-fn told(own: &Growing) -> String {
+/// The number of growing modes in the answer, in words.
+fn listed(own: &Growing) -> String {
     let shown = own.modes.len();
     let found = if shown == 1 { "1 mode is".into() } else { format!("{shown} modes are") };
     match own.at_most {

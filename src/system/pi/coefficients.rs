@@ -73,7 +73,7 @@ impl PiSystem {
         PiSystem::of(system, self.terms.clone())
     }
 
-    /// The same with all steps times a positive factor.
+    /// This system with all steps times a positive factor.
     ///
     /// # Errors
     /// As [`System::new`].
@@ -102,7 +102,7 @@ impl PiSystem {
         many_clocks(&self.near, |clock| self.entry(clock, 0, 0))
     }
 
-    /// The same without its rigid modes.
+    /// This system without its rigid modes.
     fn vibrating(&self, frame: &Frame) -> Result<Cow<'_, PiSystem>> {
         if frame.rigid.is_empty() {
             return Ok(Cow::Borrowed(self));
@@ -156,7 +156,7 @@ impl PiSystem {
     pub(in crate::system) fn decide_exact(&self, frame: &Frame, limits: &Limits) -> Result<(Kind, MuCount)> {
         let vibrating = self.vibrating(frame)?;
         let n = vibrating.near.size() as f64;
-        // Of power sums up to the (2n + 1)-th, two more factors n in length and degree. The 10 was 4 to 16 on chains of 3 to 6.
+        // Power sums up to the (2n + 1)-th, two more factors n in length and degree. The 10 was 4 to 16 on chains of 3 to 6.
         vibrating.allow(10.0 * n.powi(7), limits)?;
         Ok(moments::judge(&vibrating.half_period()))
     }
@@ -332,8 +332,8 @@ mod tests {
             assert_eq!(kind, truth, "{own:?}");
             assert_eq!(roots.complex, 0);
             seen[usize::from(severity(&kind))] += 1;
-            // The same with the rational ϖ in the place of π, over characteristic polynomials: what vanishes at π does there, too. (A
-            // mode at rest is set apart there.)
+            // The rational ϖ in the place of π, over characteristic polynomials: a polynomial that vanishes at π vanishes there, too. (A mode at rest
+            // is set apart there.)
             let near = own.near();
             if near.rigid_modes().is_empty() {
                 let exact = decide_exact(near, &limits).unwrap();

@@ -10,7 +10,7 @@
 //! where J is positive definite on paths held at x = 0 at either end, the other end free; and where it is so for one of the
 //! ends, and for the other it has a negative eigenvalue, the period is hyperbolic. An entry of J is a few roundings from the data: no
 //! product of kicks, no norm of a propagator enters the proof. Where some mode makes more than half a turn in
-//! a period, J is negative whatever end is held; then the numbers of negative eigenvalues tell of real multipliers off the circle.
+//! a period, J is negative whatever end is held; then the numbers of negative eigenvalues prove real multipliers off the circle.
 
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
@@ -62,7 +62,7 @@ pub(in crate::system) fn is_stable(system: &System, frame: &Frame) -> Option<boo
 
 /// Whether counts of negative eigenvalues prove a real multiplier off the circle.
 fn has_real_unstable_mode(system: &System, frame: &Frame) -> bool {
-    // J_hh and J_hf must be regular: all their eigenvalues told.
+    // J_hh and J_hf must be regular: the signs of all their eigenvalues are known.
     let are_regular = |own: &Counts| {
         let is_sharp =
             |held| own.count(held, Bound::Least).is_some_and(|a| own.count(held, Bound::Most) == Some(a));
@@ -96,7 +96,7 @@ impl Counts {
         })
     }
 
-    /// `None` where nothing is told.
+    /// `None` where nothing is proven.
     fn count(&self, held: Held, bound: Bound) -> Option<usize> {
         let (terms, is_least) = (self.terms, matches!(bound, Bound::Least));
         let found = &self.known[held as usize][bound as usize];
@@ -149,7 +149,7 @@ fn positions(order: &[usize]) -> Vec<usize> {
     place
 }
 
-/// What the action is made of, degrees of freedom in an order in which neighbours stand close together.
+/// The parts of the action, degrees of freedom in an order in which neighbours stand close together.
 struct Action {
     /// The kicks in ticks, for rows in the new order: (column, coefficient).
     kicks: Vec<Vec<(usize, Row<f64>)>>,

@@ -22,7 +22,7 @@ pub(in crate::system) struct Envelope {
     sizes: Vec<f64>,
 }
 
-/// What is proven of a symmetric matrix.
+/// A proven property of a symmetric matrix.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::system) enum Sign {
     /// It is positive definite.
@@ -48,12 +48,12 @@ impl Envelope {
         }
     }
 
-    /// What is proven of the true matrix, whose entries are sums of at most `terms` terms, each added here within `roundings` u.
+    /// The sign of the true matrix, as far as it is proven. Its entries are sums of at most `terms` terms, each added here within `roundings` u.
     ///
     /// Definite: Rump's criterion (BIT 46, 2006). Where L Lᵀ of m − c I runs to its end, it differs from it by at most
     /// γ (m_ii m_jj)^½ at each place of the envelope, γ for w + 1 roundings: in norm by γ tr m, and by γ max m_ii times the most
     /// entries of a row. Not: where a pivot is not positive, the elimination itself gives a z with zᵀ (m − c I) z no greater;
-    /// the number zᵀ m z, computed with a bound, proves what it proves whatever z is.
+    /// the number zᵀ m z, computed with a bound, is a proof for any z.
     pub fn sign(&self, terms: usize, roundings: usize) -> Option<Sign> {
         let slack = self.slack(terms, roundings);
         match self.stopped(self.shift(slack)) {
@@ -113,7 +113,7 @@ impl Envelope {
     /// more than the other one negative or 0; `None` where elimination without exchanges is too far from the matrix.
     ///
     /// L D Lᵀ of m ± c I that runs to its end differs from it by at most γ |L| |D| |Lᵀ|, γ for two roundings more than a row has entries
-    /// (Higham, Accuracy and Stability, section 10.1): where that and the errors of m are within c, Sylvester's law tells.
+    /// (Higham, Accuracy and Stability, section 10.1): where that and the errors of m are within c, Sylvester's law gives the count.
     pub fn negatives(&self, terms: usize, roundings: usize, is_least: bool) -> Option<usize> {
         self.pivots(self.slack(terms, roundings), if is_least { 1.0 } else { -1.0 })
     }

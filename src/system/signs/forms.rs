@@ -16,10 +16,10 @@ pub(in crate::system) trait Inertias {
     fn z(&mut self) -> Inertia;
 }
 
-/// What the signs of the forms prove, if anything.
+/// The kind that the signs of the forms prove, if any.
 pub(in crate::system) fn judge(forms: &mut impl Inertias) -> Option<Kind> {
     let (p, r) = (forms.p(), forms.r());
-    // What is outside [−1, 0], what is on its ends, and what could be either.
+    // The numbers of μ outside [−1, 0], on its ends, and undecided.
     let outside = match (p.definite(), r.definite()) {
         (sign, _) if sign != 0 => r.times(sign),
         (_, sign) if sign != 0 => p.times(sign),
@@ -48,12 +48,12 @@ pub(in crate::system) fn judge(forms: &mut impl Inertias) -> Option<Kind> {
     }
 }
 
-/// Whether the number of negative eigenvalues of P or R is told and differs from that of W or Z: as many μ are real and outside
+/// Whether the number of negative eigenvalues of P or R is known and differs from that of W or Z: as many μ are real and outside
 /// \[−1, 0\].
 fn counts_differ(ends: [Inertia; 2], others: [Option<Inertia>; 2]) -> bool {
-    let told = |own: Inertia| (own.unknown + own.zero == 0).then_some(own.negative);
-    let others: Vec<usize> = others.into_iter().flatten().filter_map(told).collect();
-    ends.into_iter().filter_map(told).any(|count| others.iter().any(|other| *other != count))
+    let known = |own: Inertia| (own.unknown + own.zero == 0).then_some(own.negative);
+    let others: Vec<usize> = others.into_iter().flatten().filter_map(known).collect();
+    ends.into_iter().filter_map(known).any(|count| others.iter().any(|other| *other != count))
 }
 
 /// The kind, where a definite form of the half period in doubles proves it within their error.

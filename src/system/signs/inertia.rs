@@ -16,7 +16,7 @@ pub(in crate::system) struct Inertia {
     pub positive: usize,
     pub negative: usize,
     pub zero: usize,
-    /// Those whose sign was not told; 0 in exact arithmetic.
+    /// Those whose sign is not known; 0 in exact arithmetic.
     pub unknown: usize,
 }
 
@@ -59,7 +59,7 @@ pub(in crate::system) fn is_definite(mut m: Mat<f64>, slack: f64) -> bool {
 }
 
 /// The inertia that every symmetric matrix within `slack` (2-norm) of the symmetric m has: of a definite one by Cholesky, else by
-/// L B Lᵀ, or, where that does not tell all signs, by eigenvalues.
+/// L B Lᵀ, or, where that does not decide all signs, by eigenvalues.
 pub(in crate::system) fn proven(m: &Mat<f64>, slack: f64) -> Inertia {
     let n = m.nrows();
     if is_definite(m.clone(), slack) {
@@ -76,7 +76,7 @@ pub(in crate::system) fn proven(m: &Mat<f64>, slack: f64) -> Inertia {
     }
 }
 
-/// The same with the computed eigenvectors V and eigenvalues Λ, ‖Vᵀ V − I‖ ≤ η: for the
+/// The inertia by the computed eigenvectors V and eigenvalues Λ, ‖Vᵀ V − I‖ ≤ η: for the
 /// orthogonal factor Q of V, ‖Q − V‖ ≤ η, Qᵀ m Q = Λ + E with ‖E‖ ≤ ‖m V − V Λ‖ + η (‖m‖ + ‖Λ‖), and no eigenvalue is
 /// farther than ‖E‖ + slack from its place in Λ (Weyl).
 fn by_eigenvalues(m: &Mat<f64>, slack: f64) -> Inertia {
@@ -91,8 +91,8 @@ fn by_eigenvalues(m: &Mat<f64>, slack: f64) -> Inertia {
     Inertia { positive, negative, zero: 0, unknown: n - positive - negative }
 }
 
-/// Of every symmetric matrix within `slack` (2-norm) of one between `low` ≤ `high` in Loewner's order: no fewer negative eigenvalues than
-/// the first number, no more that are negative or 0 than the second.
+/// Bounds for every symmetric matrix within `slack` (2-norm) of one between `low` ≤ `high` in Loewner's order: at least the first number of
+/// its eigenvalues are negative, at most the second number are negative or 0.
 pub(in crate::system) fn negative_bounds(low: &Mat<f64>, high: &Mat<f64>, slack: f64) -> (usize, usize) {
     let (least, most) = by_factors(low, high, slack);
     (
@@ -101,7 +101,7 @@ pub(in crate::system) fn negative_bounds(low: &Mat<f64>, high: &Mat<f64>, slack:
     )
 }
 
-/// These numbers, each where a factorization tells it.
+/// These numbers, each where a factorization gives it.
 ///
 /// L B Lᵀ (Bunch and Kaufman 1977) of a matrix moved by c I has the inertia of B (Sylvester), and where it is within c − `slack` of that it
 /// lies above, or below, all of them. No eigenvector and no gap between eigenvalues is asked for.
@@ -115,7 +115,7 @@ fn by_factors(low: &Mat<f64>, high: &Mat<f64>, slack: f64) -> (Option<usize>, Op
 fn moved(m: &Mat<f64>, slack: f64, sign: f64) -> Option<Inertia> {
     let (n, size) = (m.nrows(), norm::frobenius(m));
     let mut shift = 1.02 * slack + 8.0 * (n as f64 + 16.0) * U * size + f64::MIN_POSITIVE;
-    // What the check usually asks for; once more with twice as much for roundings as it did ask for.
+    // The room that the check usually needs; once more with twice the room for roundings that it asked for.
     for _ in 0..2 {
         let at = |i: usize, j: usize| m[(i.max(j), i.min(j))] + if i == j { sign * shift } else { 0.0 };
         let own = Mat::from_fn(n, n, at);
@@ -298,7 +298,7 @@ mod tests {
             let values = m.self_adjoint_eigenvalues(Side::Lower).unwrap();
             let below = |bound: f64| values.iter().filter(|&&x| x < bound).count();
             assert_eq!(negative_bounds(&m, &m, 0.0), (below(0.0), below(0.0)));
-            // With a slack as wide as the k-th eigenvalue it alone is not told.
+            // With a slack as wide as the k-th eigenvalue only its sign is unknown.
             for &x in values.iter().filter(|x| x.abs() > 1e-3) {
                 let slack = x.abs() * 1.01;
                 let (least, most) = negative_bounds(&m, &m, slack);

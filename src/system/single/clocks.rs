@@ -72,7 +72,7 @@ impl<S: Ring> ManyClocks<S> {
         Rational::new(self.schedule.period().into(), self.schedule.clocks()[0].step().into()) * &self.steps[0]
     }
 
-    /// The same as one or two clocks of phase 0, for the scalar kernels; `None` for any other.
+    /// These clocks as one or two of phase 0, for the scalar kernels; `None` for any other.
     pub fn as_two_clocks(&self) -> Option<TwoClocks<S>> {
         if self.phases.iter().any(|phase| !phase.is_zero()) || !self.steps[0].is_one() {
             return None;
@@ -119,7 +119,7 @@ impl<S: ExactSign> ManyClocks<S> {
 
     /// m, the half turns of the growing solution in one period; `None` unless hyperbolic.
     ///
-    /// The even solution's sign changes n over the half period (x is straight between kicks) tell: m = 2n where
+    /// The sign changes n of the even solution over the half period (x is straight between kicks) give it: m = 2n where
     /// Tr > 2; where Tr < −2, m = 2n ± 1, + if x and v differ in sign at T/2, that is if it is past its n-th zero by
     /// less than a quarter turn.
     pub fn label(&self) -> Option<u64> {

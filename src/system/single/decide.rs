@@ -19,7 +19,7 @@ use crate::system::verdict::analysis::{Analysis, Clocked, Evidence, Instability,
 use crate::system::verdict::limits::Limits;
 use crate::verdict::{self, Decidable, Kind, PartialSigns, Tier, Verdict};
 
-/// A trace, a label: what the kernels tell of one oscillator.
+/// The results of the kernels for one oscillator: a trace, a label.
 struct Scalar {
     verdict: Verdict,
     tier: Tier,
@@ -72,7 +72,7 @@ pub(in crate::system) fn decide(system: &System, limits: &Limits) -> Result<Part
 /// unit of time of `clocks`.
 ///
 /// # Errors
-/// A budget error where what would tell exceeds the limits.
+/// A budget error where the decision would exceed the limits.
 ///
 /// # Panics
 /// Where `rounded` has not the clocks of `clocks`.
@@ -121,7 +121,7 @@ pub(in crate::system) fn allow_signs<S: Ring>(
     limits.allow(cost(kicks as f64) as u64, || format!("exact signs of {kicks} kicks"))
 }
 
-/// By the ladder, by doubles, by balls, or by exact signs, of which `exact` tells the cost by the number of kicks.
+/// By the ladder, by doubles, by balls, or by exact signs, whose cost `exact` gives by the number of kicks.
 fn decide_clocks<S: Decidable>(
     clocks: &ManyClocks<S>,
     rounded: &System,
@@ -180,7 +180,7 @@ fn by_doubles<S: Decidable>(rounded: &System, clocks: &ManyClocks<S>) -> Option<
     let [a, b, c, d] = [around(y[0])?, around(y[1])?, around(p[0])?, around(p[1])?];
     let (mu, label) = (b.mul(&c, BITS), labelled(clocks, verdict));
     let growth = growth(verdict, &mu, &a.mul(&d, BITS));
-    // Beside an edge balls tell more digits.
+    // Beside an edge balls give more digits.
     let is_sharp = growth.as_ref().is_none_or(|own| own.relative_accuracy_bits() > SHARP);
     is_sharp.then_some(Scalar { verdict, tier: Tier::Filter, mu, growth, label })
 }
@@ -204,7 +204,7 @@ fn precisions<S: Decidable>(clocks: &ManyClocks<S>) -> impl Iterator<Item = u32>
     (7..=16).map(|log2| 1u32 << log2).take_while(move |&bits| kicks.saturating_mul(bits.into()) < BALL_WORK)
 }
 
-/// Any clocks: the signs that balls tell.
+/// Any clocks: the signs that balls decide.
 fn by_balls<S: Decidable>(clocks: &ManyClocks<S>) -> Option<Scalar> {
     precisions(clocks).find_map(|bits| {
         let half = enclose::run(clocks, bits);

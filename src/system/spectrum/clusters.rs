@@ -95,7 +95,7 @@ fn bases(mu: &[c64], vectors: &Mat<c64>, order: &[usize], clusters: &[Cluster]) 
     for cluster in clusters {
         for place in cluster.first..cluster.first + cluster.size {
             let i = order[place];
-            // Of a pair Re v stands for one, Im v for the other.
+            // Re v stands for one of a pair, Im v for the other.
             let part = |z: c64| if mu[i].im < 0.0 { z.im } else { z.re };
             let mut column: Vec<f64> = (0..m).map(|k| part(vectors[(k, i)])).collect();
             let length = |c: &[f64]| c.iter().map(|x| x * x).sum::<f64>().sqrt();

@@ -68,7 +68,7 @@ impl Spectrum {
         Spectrum::with(s, s_error, mu, vectors)
     }
 
-    /// The same where eigenvalues and vectors are known, rounded.
+    /// The discs where eigenvalues and vectors are known, rounded.
     pub fn with(s: Mat<f64>, s_error: Option<f64>, mu: Vec<c64>, vectors: Mat<c64>) -> Option<Spectrum> {
         let finite = mu.iter().all(|z| z.re.is_finite() && z.im.is_finite());
         let residual = s_error.filter(|_| finite).and_then(|delta| residual(&s, delta, &mu, &vectors));
@@ -78,14 +78,14 @@ impl Spectrum {
         finite.then_some(Spectrum { mu, radius, rows, inverse, vectors, s, s_error })
     }
 
-    /// The same for matrices within another distance of S.
+    /// The discs for matrices within another distance of S.
     pub fn with_error(&self, s_error: f64) -> Option<Spectrum> {
         let own = residual(&self.s, s_error, &self.mu, &self.vectors)?;
         Some(Spectrum { radius: Some(own.norm), rows: own.rows, s_error: Some(s_error), ..self.clone() })
     }
 
-    /// The same where the half period is known as well as these blocks are, which differ from its own in their error alone.
-    /// Where nothing is known of these there are no discs.
+    /// The discs where the half period is known as well as these blocks, which differ from its own in their error alone. There are none
+    /// where the error of the blocks is unbounded.
     pub fn known_to(&self, blocks: &FloatBlocks) -> Spectrum {
         let b = Mat::from_fn(blocks.m, blocks.m, |i, j| blocks.y[i][blocks.m + j]);
         let found = times_c(blocks, &b).1.and_then(|error| self.with_error(error));
@@ -116,14 +116,14 @@ impl Spectrum {
         self.mu.iter().zip(&self.rows).map(of).fold(0.0, f64::max)
     }
 
-    /// What the discs of all S' with |S' − S| ≤ `off`, entry by entry, prove, if anything.
+    /// The kind that the discs of all S' with |S' − S| ≤ `off`, entry by entry, prove, if any.
     pub fn certified_around(&self, off: &Mat<f64>) -> Option<Kind> {
         let residual = Residual { norm: self.radius?, rows: self.rows.clone(), inverse: self.inverse? };
         let residual = residual.widened(&real_form(&self.mu, &self.vectors)?.0, off)?;
         Spectrum { radius: Some(residual.norm), rows: residual.rows, ..self.clone() }.by_discs()
     }
 
-    /// What the discs prove, or the clusters, if anything.
+    /// The kind that the discs or the clusters prove, if any.
     pub fn certified(&self, blocks: &FloatBlocks) -> Option<Kind> {
         let form = || {
             let a = Mat::from_fn(blocks.m, blocks.m, |i, j| blocks.y[i][j]);
@@ -132,7 +132,7 @@ impl Spectrum {
         self.certified_with(form)
     }
 
-    /// The same with Y = Aᵀ C and a bound on its error (2-norm), which only clusters ask for.
+    /// As [`Spectrum::certified`], with Y = Aᵀ C and a bound on its error (2-norm), which only clusters ask for.
     pub fn certified_with(&self, form: impl FnOnce() -> (Mat<f64>, Option<f64>)) -> Option<Kind> {
         self.by_discs().or_else(|| self.by_clusters(form()).then_some(Kind::Elliptic))
     }
@@ -142,7 +142,7 @@ impl Spectrum {
         clusters::are_stable(&Pencil { s: &self.s, s_error, y: &y, y_error }, &self.mu, &self.vectors)
     }
 
-    /// What the discs prove, if anything.
+    /// The kind that the discs prove, if any.
     pub fn by_discs(&self) -> Option<Kind> {
         let radius = 1.01 * self.radius?;
         let components = components(&self.mu, radius);
@@ -230,7 +230,7 @@ fn times_c(blocks: &FloatBlocks, z: &Mat<f64>) -> (Mat<f64>, Option<f64>) {
     // In the 2-norm that of |Z| and |C|, too.
     let [size_z, size_c] = [z, &c].map(norm::absolute);
     let error = blocks.error.map(|e| {
-        // What rounding the product adds: (m + 2) u |Z|ᵀ |C|.
+        // The rounding of the product: (m + 2) u |Z|ᵀ |C|.
         let rounding = 1.01 * (m as f64 + 2.0) * U * size_z * size_c;
         e * (size_z.min(blocks.norm) + size_c.min(blocks.norm) + e) + rounding
     });

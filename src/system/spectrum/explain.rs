@@ -38,7 +38,7 @@ pub(in crate::system) fn explained(
     if kind != Some(Kind::Hyperbolic) {
         return (multipliers, Vec::new());
     }
-    // Conjugates tell the same; the one that grows fastest is there even if no disc is clear of stability.
+    // Conjugates grow alike; the fastest one is listed even if no disc is clear of stability.
     let upper = |i: &&usize| found[**i].mu.im >= 0.0;
     let (distance, growth) = (|i: &usize| from_segment(found[*i].mu), |i: &usize| found[*i].size());
     let fastest = order.iter().filter(upper).max_by(|a, b| growth(a).total_cmp(&growth(b)));

@@ -100,7 +100,7 @@ impl NormalModes {
         Some(NormalModes { frequencies, inverse: eigen.U().transpose() * inverse_g })
     }
 
-    /// The resonance of the multiplier exp(z), |amplitude| of `shape` telling the modes.
+    /// The resonance of the multiplier exp(z), the modes being those of the largest |amplitude| in `shape`.
     pub fn resonance(&self, system: &System, shape: &[c64], origin: Origin, z: c64) -> Resonance {
         let m = shape.len();
         let amplitude = |i: usize| (0..m).map(|j| shape[j] * self.inverse[(i, j)]).sum::<c64>().norm();

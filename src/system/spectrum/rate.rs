@@ -47,7 +47,7 @@ pub(in crate::system) fn exponent(mu: Complex64) -> Complex64 {
     if z.re < 0.0 { -z } else { z }
 }
 
-/// Of an excess of 2^-100, say of a pair 10^-15 beside the segment \[−1, 0\], these leave a double's digits.
+/// With an excess of 2^-100, say for a pair 10^-15 beside the segment \[−1, 0\], these leave the digits of a double.
 const BITS: u32 = 256;
 
 /// An enclosure of ln |λ| over a period, or of a growth rate.

@@ -6,7 +6,7 @@
 //!     F e_i = V⁻¹ (S v_i − μ_i v_i),      |F e_i| ≤ c_i = |V⁻¹| |S v_i − μ_i v_i|,
 //! ```
 //!
-//! and S v_i = (Q v_i − v_i)/2 in positions is one run of a full period in balls. Let J be the real μ_i that are not told, c² = Σ c_i² over them, and T = 1/τ
+//! and S v_i = (Q v_i − v_i)/2 in positions is one run of a full period in balls. Let J be the real μ_i that are undecided, c² = Σ c_i² over them, and T = 1/τ
 //! at these and 1 elsewhere: T D = D T, and the rows of T⁻¹ F T are ρ_i' ≤ τ ρ_i + c in J and ρ_j' ≤ ρ_j + c/τ elsewhere. So **a small τ narrows the discs
 //! of J to about c**, and widens the others by c/τ.
 
@@ -31,8 +31,8 @@ type Fixed = Enclosed<BITS>;
 const WEIGHTS: [f64; 6] = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6];
 
 impl Spectrum {
-    /// What the discs prove where those that tell nothing are narrowed, if anything; `scales` are those of the half period's positions, of a system without
-    /// rigid modes.
+    /// The kind that the discs prove once the undecided ones are narrowed, if any; `scales` are those of the half period's positions, of a system
+    /// without rigid modes.
     pub fn sharper(&self, system: &System, scales: &[f64]) -> Option<Kind> {
         let open = self.untold()?;
         if open.len() > MOST || open.iter().any(|&i| self.mu[i].im != 0.0) {
@@ -91,7 +91,7 @@ mod tests {
 
     #[test]
     fn what_wide_discs_leave_open_is_told_as_exact_arithmetic_does() {
-        let mut told = [0, 0];
+        let mut proven = [0, 0];
         for n in 2..7 {
             for k in 1..24 {
                 let steps = [&ratio(k, 40), &ratio(k, 20)];
@@ -106,10 +106,10 @@ mod tests {
                     }
                     let Some(kind) = wide.sharper(&system, &blocks.scales) else { continue };
                     assert_eq!(kind, decide_exact(&system, &Limits::default()).unwrap().kind, "{n} {k}");
-                    told[usize::from(kind == Kind::Elliptic)] += 1;
+                    proven[usize::from(kind == Kind::Elliptic)] += 1;
                 }
             }
         }
-        assert!(told[0] > 0 && told[1] > 20, "{told:?}");
+        assert!(proven[0] > 0 && proven[1] > 20, "{proven:?}");
     }
 }

@@ -64,7 +64,7 @@ pub(in crate::system) struct Cells<'a> {
     at: &'a (dyn Fn(f64) -> Result<System> + Sync),
     /// Whether they differ by a positive factor of all stiffnesses alone, growing with the number, which needs no check then.
     is_scaled: bool,
-    /// Of such, the rigid modes, and whether Σ K_k is proven positive definite but for these.
+    /// The rigid modes of such systems, and whether Σ K_k is proven positive definite but for these.
     frame: OnceLock<Frame>,
     is_definite: OnceLock<bool>,
     /// Counts at ends of cells, which neighbours share, by the bits of the number.
@@ -83,8 +83,8 @@ impl<'a> Cells<'a> {
         Cells { at, is_scaled, frame, is_definite, counts: Mutex::default() }
     }
 
-    /// What is proven of all systems of numbers between two: those of both ends and their mean are given, masses and stiffnesses
-    /// being linear in the place between.
+    /// The verdict that is proven for all systems between two: those of both ends and their mean are given, and masses and stiffnesses
+    /// are linear in between.
     ///
     /// # Errors
     /// Where the second system is not the mean, or steps differ.
@@ -108,7 +108,7 @@ impl<'a> Cells<'a> {
         let cell = Cell { ends, systems, frame, courses, cells: self };
         Ok(match cell.by_action()? {
             Holds::NotTold => cell.by_half_period()?,
-            told => told,
+            known => known,
         })
     }
 
@@ -290,8 +290,8 @@ impl Cell<'_> {
         Ok(Some([System::new(masses(|a, b| a.max(b)), less)?, System::new(masses(|a, b| a.min(b)), more)?]))
     }
 
-    /// What is proven where all kicks lie between those of two systems, the softer one first; these are the cell's ends where the kicks
-    /// are known to rise or fall.
+    /// The verdict that is proven where all kicks lie between those of two systems, the softer one first; these are the ends of the cell where
+    /// the kicks are known to rise or fall.
     fn between_kicks(&self, [less, more]: [&System; 2], rises: Option<bool>) -> Result<Holds> {
         // Where a kick vanishes the schedule is another, and nothing can be compared.
         if self.clocks() != more.clocks().len() || self.clocks() != less.clocks().len() {

@@ -17,7 +17,7 @@ use crate::system::verdict::decide::decide_system;
 use crate::system::verdict::limits::Limits;
 use crate::system::verdict::measured::Holds;
 
-/// What masses or stiffnesses are linear in.
+/// The function in which masses or stiffnesses are linear.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Linear {
     /// The number x itself.
@@ -100,13 +100,13 @@ impl Family<'_> {
         Ok(most_cells((lo, hi), width) * own)
     }
 
-    /// What `ask` finds of the cells of these systems.
+    /// The result of `ask` on the cells of these systems.
     fn over_cells<T>(&self, ask: impl FnOnce(&Cells) -> Result<T>) -> Result<T> {
         let at = |x: f64| (self.at)(&self.linear.of(&exact(x)));
         ask(&Cells::new(&at, self.linear == Linear::Square))
     }
 
-    /// What a cell proves of all between.
+    /// The verdict that a cell proves for all systems in it.
     fn cell(&self, cells: &Cells, lo: f64, hi: f64) -> Result<Holds> {
         let three = self.three(lo, hi)?;
         cells.verdict((lo, hi), three.each_ref().map(|(_, own)| own))
@@ -121,7 +121,7 @@ impl Family<'_> {
     }
 }
 
-/// What lies between gaps, each decided at one number; `within` is asked of a gap between two of one verdict.
+/// The stretches between gaps, each decided at one number; `within` is asked about a gap between two stretches of one verdict.
 pub(in crate::system) fn between(
     (lo, hi): (f64, f64),
     gaps: &[Gap],

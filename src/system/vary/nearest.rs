@@ -77,9 +77,9 @@ impl Nearest {
         let ends = |run: &[Stretch]| (run[0].lo, run[run.len() - 1].hi);
         let searched = (all.first().map_or(number, |own| own.lo), all.last().map_or(number, |own| own.hi));
         let unstable = |run: &[Stretch]| {
-            let told = || run.iter().filter(|own| own.verdict == Holds::Unstable);
+            let proven = || run.iter().filter(|own| own.verdict == Holds::Unstable);
             let (lo, hi) = ends(run);
-            let proven = (told().next()?.lo, told().next_back()?.hi);
+            let proven = (proven().next()?.lo, proven().next_back()?.hi);
             let stable = || all.iter().filter(|own| own.verdict == Holds::Stable);
             let below = stable().rfind(|own| own.hi <= lo).map(|own| own.hi);
             let above = stable().find(|own| own.lo >= hi).map(|own| own.lo);

@@ -11,7 +11,7 @@ pub struct Stretch {
     pub lo: f64,
     /// to this one.
     pub hi: f64,
-    /// What is proven of all between, [`Holds::NotTold`] where nothing is.
+    /// The verdict that is proven for all numbers in between, [`Holds::NotTold`] where none is.
     pub verdict: Holds,
 }
 
@@ -42,7 +42,7 @@ pub fn cover(
     let parts: Vec<_> = (0..PARTS).map(|k| (place(k), place(k + 1))).collect();
     let found = try_map(&parts, |&ends| cells(ends, floor, &verdict))?;
     let coarse = merged(found.into_iter().flatten());
-    // Each that is not told gives to its neighbours what smaller cells prove.
+    // An open stretch gives its neighbours the parts that smaller cells prove.
     let shrink = |own: &Stretch| match own.verdict {
         Holds::NotTold => shrunk(own, FINER * floor, &verdict),
         _ => Ok(vec![*own]),
@@ -51,7 +51,7 @@ pub fn cover(
 }
 
 /// The most cells that [`cover`] asks about, roughly: each as narrow as they get, and a wider one tried before it. Those that sharpen the
-/// ends of what is not told come on top.
+/// ends of open stretches come on top.
 pub fn most_cells((lo, hi): (f64, f64), width: f64) -> f64 {
     2.0 * (hi - lo) / (width * lo.abs().max(hi.abs())) + f64::from(PARTS)
 }
@@ -71,8 +71,8 @@ fn cells(
         match verdict(at, end)? {
             // Half as much again: at + floor may be a rounding farther than floor.
             Holds::NotTold if end - at > 1.5 * floor => step = ((end - at) / 4.0).max(floor),
-            told => {
-                found.push(Stretch { lo: at, hi: end, verdict: told });
+            decided => {
+                found.push(Stretch { lo: at, hi: end, verdict: decided });
                 at = end;
                 step *= 2.0;
             }
@@ -81,7 +81,7 @@ fn cells(
     Ok(found)
 }
 
-/// What is not told without what cells down to `floor` prove at its ends: near an edge they are as wide as they are far from it.
+/// An open stretch without the parts that cells down to `floor` prove at its ends: near an edge cells are as wide as they are far from it.
 fn shrunk(own: &Stretch, floor: f64, verdict: &impl Fn(f64, f64) -> Result<Holds>) -> Result<Vec<Stretch>> {
     let (mut lo, mut hi) = (own.lo, own.hi);
     let mut ends = [Vec::new(), Vec::new()];
@@ -94,8 +94,8 @@ fn shrunk(own: &Stretch, floor: f64, verdict: &impl Fn(f64, f64) -> Result<Holds
             let cell = if k == 0 { (lo, (lo + step).min(hi)) } else { ((hi - step).max(lo), hi) };
             match verdict(cell.0, cell.1)? {
                 Holds::NotTold => step /= 2.0,
-                told => {
-                    found.push(Stretch { lo: cell.0, hi: cell.1, verdict: told });
+                decided => {
+                    found.push(Stretch { lo: cell.0, hi: cell.1, verdict: decided });
                     *(if k == 0 { &mut lo } else { &mut hi }) = if k == 0 { cell.1 } else { cell.0 };
                 }
             }

@@ -1,4 +1,4 @@
-//! What is said of a system: its kind, part by part, every multiplier, and what grows.
+//! The answer about a system: its kind, part by part, every multiplier, and the modes that grow.
 
 use num_complex::Complex64;
 
@@ -9,7 +9,7 @@ use crate::system::spectrum::rate::{self, Multiplier};
 use crate::system::verdict::measured::{Holds, Measured};
 use crate::verdict::{Kind, Tier};
 
-/// What a verdict rests on.
+/// The proof behind a verdict.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Evidence {
     /// The scalar ladder.
@@ -94,7 +94,7 @@ pub struct Part {
     pub instabilities: Vec<Instability>,
     /// The exact count of the μ, where exact arithmetic decided.
     pub roots: Option<MuCount>,
-    /// What is known of one oscillator beside its multiplier.
+    /// The results for one oscillator beside its multiplier.
     pub oscillator: Option<Clocked>,
     /// An enclosure of the largest ln |λ| over the period, where it is known though not every multiplier is.
     pub largest: Option<(f64, f64)>,
@@ -139,7 +139,7 @@ impl Part {
     }
 }
 
-/// One oscillator under its clocks: what the paper tells of two of them.
+/// One oscillator under its clocks: the results of the paper for two of them.
 #[derive(Clone, Debug)]
 pub struct Clocked {
     /// Tr Q.
@@ -167,7 +167,7 @@ pub struct Analysis {
     /// The common null vectors of all potentials: they drift freely and are set apart.
     pub rigid_modes: Vec<Vec<Rational>>,
     pub parts: Vec<Part>,
-    /// What a person should know beside the verdict.
+    /// Warnings beside the verdict.
     pub warnings: Vec<String>,
     /// How far the verdict stands, where stiffnesses were measured.
     pub measured: Option<Measured>,
@@ -203,12 +203,12 @@ impl Analysis {
         self.holds() == Holds::Unstable
     }
 
-    /// Whether it is decided: nothing is told that is not proven.
+    /// Whether the kind is decided: every decision is proven.
     pub fn is_proof(&self) -> bool {
         self.kind.is_some()
     }
 
-    /// What is proven.
+    /// The verdict, as far as it is proven.
     pub fn holds(&self) -> Holds {
         self.kind.into()
     }

@@ -9,7 +9,7 @@
 //! 4. Where exact arithmetic exceeds the budget and doubles prove nothing, the kind is not decided.
 //!
 //! The cost for n degrees of freedom: the half period ([`compose`](crate::system::half::compose)) and some twenty products of n x n
-//! matrices for the eigenvalues and their bound; exact arithmetic as its budget error tells.
+//! matrices for the eigenvalues and their bound; the budget error of exact arithmetic names its cost.
 
 use crate::error::Result;
 use crate::number::{Laurent, Rational};
@@ -102,7 +102,7 @@ pub fn exact_kind(system: &System, limits: &Limits) -> Result<Kind> {
     exact_kind_of((system, System::stiffnesses), Ok, limits)
 }
 
-/// The same where parts are those of `structure`, as for [`decided`].
+/// The exact kind where the parts are those of `structure`, as for [`decided`].
 pub(in crate::system) fn exact_kind_of(
     structure: Structure,
     prepared: impl Fn(Piece) -> Result<Piece>,

@@ -1,4 +1,4 @@
-//! Large sparse systems: the signs of the action decide, and a Krylov space of the period tells the mode that grows.
+//! Large sparse systems: the signs of the action decide, and a Krylov space of the period finds the mode that grows.
 //!
 //! All eigenvalues of n degrees of freedom cost 25 n³ and are asked for by nobody where n is in the thousands. Where the signs
 //! prove instability all μ are real (one end's action is definite, so that one of the forms is), and a few thousand sparse periods
@@ -22,7 +22,7 @@ use crate::verdict::Kind;
 /// From so many degrees of freedom on.
 pub(in crate::system) const LARGE: usize = 600;
 
-/// What is left out of the answer.
+/// The note on results left out of the answer.
 pub(in crate::system) const NOTE: &str = "of so many degrees of freedom only the multiplier that grows fastest is computed, if any does, rounded: no growth rate is enclosed";
 
 /// Periods of one power iteration, dimensions of a Krylov space, rounds of both.
@@ -30,10 +30,10 @@ const POWER: usize = 400;
 const KRYLOV: usize = 24;
 const ROUNDS: usize = 12;
 
-/// A residual |Q z − λ z|/|z| at which a mode is found: its growth is told to six digits.
+/// A residual |Q z − λ z|/|z| at which a mode is found: its growth has six digits then.
 const FOUND: f64 = 1e-9;
 
-/// The verdict on a large system, where two signs tell; `None` where they do not.
+/// The verdict on a large system, where two signs decide; `None` where they do not.
 pub(in crate::system) fn decide(system: &System, frame: &Frame) -> Option<Part> {
     if system.size() < LARGE {
         return None;

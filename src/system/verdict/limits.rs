@@ -8,7 +8,7 @@ use crate::verdict;
 pub enum Route {
     /// The cheapest that proves the verdict; where none does within the budget, an estimate.
     Cheapest,
-    /// Exact arithmetic, or an error that tells its cost.
+    /// Exact arithmetic, or an error that names its cost.
     Exact,
 }
 
@@ -17,7 +17,7 @@ pub enum Route {
 pub struct Limits {
     /// Products of doubles or of 64-bit words.
     pub products: u64,
-    /// Of these, for the digits of a growth rate that doubles do not give.
+    /// The part of these for the digits of a growth rate that doubles do not give.
     pub refining: u64,
 }
 
@@ -48,7 +48,7 @@ impl Limits {
         Err(Error::budget(work, cost).or("choose steps with simpler ratios"))
     }
 
-    /// The same limit in kicks of the scalar ladder, whose refine tier spends some thousand products on each.
+    /// This limit in kicks of the scalar ladder, whose refine tier spends some thousand products on each.
     pub(in crate::system) fn of_ladder(&self) -> verdict::Limits {
         verdict::Limits { kicks: self.products / 1000 }
     }

@@ -12,7 +12,7 @@ pub struct Removed {
     pub found_by: &'static str,
     /// ‖F r‖₂/‖F‖₂ for the orthonormal rigid motions r, rounded: what of the fast stiffness was removed.
     pub fast: f64,
-    /// The same of the slow one.
+    /// The slow one's.
     pub slow: f64,
 }
 
@@ -34,7 +34,7 @@ pub enum Holds {
     Stable,
     /// Unstable for all of them.
     Unstable,
-    /// The data do not tell: some are stable and some are not, or nothing was proven of all.
+    /// The data cannot decide: some matrices are stable and some are not, or no verdict was proven for all.
     NotTold,
 }
 

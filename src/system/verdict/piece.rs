@@ -99,7 +99,7 @@ impl Piece {
     }
 
     fn decide_many(&self, how: (Route, &Limits), warnings: &mut Vec<String>) -> Result<Part> {
-        // What may be refused is asked for before anything else is computed.
+        // A part that may be refused is asked for before anything else is computed.
         let asked = (how.0 == Route::Exact).then(|| self.exact(how.1)).transpose()?;
         check_length(&self.system, how.1)?;
         if let Some(part) = asked.is_none().then(|| large::decide(&self.system, &self.frame)).flatten() {

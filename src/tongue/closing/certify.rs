@@ -35,7 +35,7 @@ const MOST_BITS: u32 = 1 << 14;
 /// The box's half width for each [`BITS`] bits: 2^-100 of its centre, while the centre is good to about 2^-400.
 const BOX: i64 = -100;
 
-/// Digits of an edge that doubles do not tell from its neighbour.
+/// Digits of an edge that doubles cannot separate from its neighbour.
 const DIGITS: u32 = 60;
 
 /// A bracket of ρ is halved so often before more bits are tried: balls may lose more of them over a period than there are.
@@ -214,7 +214,7 @@ impl Start {
     }
 }
 
-/// Whether an edge lies on its own side of a box: as doubles tell it, else by more digits.
+/// Whether an edge lies on its own side of a box: by doubles, where they decide, else by more digits.
 fn is_away(tongues: &Tongues, entry: Entry, index: usize, is: impl Fn(&Enclosure) -> bool) -> Result<bool> {
     let edge = &tongues.edges(entry, index, index)?[0];
     Ok(is(&Enclosure::from(edge)) || is(&tongues.refine(edge, DIGITS)?))

@@ -30,7 +30,7 @@ use crate::tongue::string::Entry;
 /// Up to this p + q the resultant brackets all closings.
 pub const COMPLETE_UP_TO: u64 = 24;
 
-/// What to search.
+/// The range of a search.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Search {
     /// One tongue only.
@@ -78,7 +78,7 @@ pub fn closings(ratio: Ratio, search: &Search) -> Result<Found> {
 /// Tongue m closes once, or an odd number of times, for ρ in a closed range.
 type Bracket = (u64, Rational, Rational);
 
-/// Of each zero of the resultants the tongues that close there: whether one and only one does tells whether that is all.
+/// The tongues that close at each zero of the resultants, and whether exactly one closes at each zero: then these are all.
 fn by_elimination(ratio: Ratio, search: &Search) -> Result<(Vec<Bracket>, bool)> {
     let (mut found, mut complete) = (Vec::new(), true);
     for odd in [true, false].into_iter().filter(|&odd| search.m.is_none_or(|m| (m % 2 == 1) == odd)) {
@@ -98,7 +98,7 @@ fn by_elimination(ratio: Ratio, search: &Search) -> Result<(Vec<Bracket>, bool)>
     Ok((found, complete))
 }
 
-/// What the samples of ρ bracket.
+/// The closings that samples of ρ bracket.
 fn by_samples(ratio: Ratio, rhos: Vec<Rational>, m: Option<u64>) -> Result<Vec<Bracket>> {
     let mut found = Vec::new();
     let mut before: Option<(Rational, Vec<Order>)> = None;
@@ -121,7 +121,7 @@ fn by_samples(ratio: Ratio, rhos: Vec<Rational>, m: Option<u64>) -> Result<Vec<B
     Ok(found)
 }
 
-/// The same for the tongues of a list of closed ranges of labels alone: a search for one costs two edges a sample.
+/// As [`closings`], for the labels in a list of closed ranges alone: each label costs two edges a sample.
 ///
 /// # Errors
 /// As [`closings`], and a label beyond the last finite tongue, p + q − 2.

@@ -181,7 +181,7 @@ impl Edges {
         Edge { entry, index: index as u32, lo, hi }
     }
 
-    /// An edge of a long period, where return maps tell it.
+    /// An edge of a long period, where return maps can find it.
     fn lone(&self, entry: Entry, index: usize) -> Result<Option<Edge>> {
         let function = EntryFunction::new(self.ratio, &self.rho, entry, By::Returns)?;
         let narrow = Rational::new(1.into(), BigInt::from(1u64 << DIGITS_OF_DOUBLES));
@@ -202,8 +202,8 @@ impl Edges {
         self.sharpened(edge, &Enclosure::from(edge), digits)
     }
 
-    /// The same from an enclosure that may hold more digits than the edge. Where it holds another zero, or one on its
-    /// end, proven counts find out which is which.
+    /// As above, from an enclosure that may hold more digits than the edge. Where it holds another zero, or one on its
+    /// end, proven counts identify the edge.
     pub fn sharpened(&self, edge: &Edge, start: &Enclosure, digits: u32) -> Result<Enclosure> {
         self.precise.fetch_add(1, Ordering::Relaxed);
         let (entry, index, around) = (edge.entry, edge.index as usize, Some((edge.lo, edge.hi)));

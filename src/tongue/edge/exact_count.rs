@@ -27,7 +27,7 @@ fn count(function: &EntryFunction, s: &Rational) -> (u64, bool) {
     exact_count(function, s)
 }
 
-/// The same by the signs of x along the string in exact integers,
+/// Counts by the signs of x along the string in exact integers,
 /// (x, v) carrying the kicks' common denominator as a positive factor.
 fn exact_count(function: &EntryFunction, s: &Rational) -> (u64, bool) {
     let kappa = s / Rational::from_integer((2 * function.schedule.clocks()[0].step()).into());

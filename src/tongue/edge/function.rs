@@ -26,8 +26,8 @@ pub(crate) struct EntryFunction {
 pub(crate) enum By {
     /// Kick by kick, in as many bits as it takes; exactly in the end.
     Kicks,
-    /// By return maps in doubles or two doubles, and where the kicks are too many to be followed in 256 bits; what they do not tell is
-    /// not known.
+    /// By return maps in doubles or two doubles, where the kicks are too many to be followed in 256 bits. A sign that these maps cannot
+    /// decide stays unknown.
     Returns,
 }
 

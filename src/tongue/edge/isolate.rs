@@ -38,7 +38,7 @@ impl Interval {
         from + 1..=upto
     }
 
-    /// What is inside of what is wanted.
+    /// The wanted eigenvalues inside, by the counts.
     #[inline(always)]
     fn contents(&self, limits: &Limits) -> Contents {
         // Numbers rather than branches: which problems have one is anybody's guess.
@@ -54,7 +54,7 @@ impl Interval {
     }
 }
 
-/// What an interval holds, by the counts, of what is wanted.
+/// The wanted eigenvalues that an interval holds, by its counts.
 #[derive(Clone, Copy)]
 pub(crate) struct Contents {
     /// The most eigenvalues of a problem.
@@ -110,7 +110,7 @@ pub(crate) struct Cutting {
 const POINTS_AT_A_TIME: usize = 64;
 
 impl Cutting {
-    /// Cuts the range of all eigenvalues until those wanted are alone, or counts in doubles cannot tell them apart, and
+    /// Cuts the range of all eigenvalues until those wanted are alone, or counts in doubles cannot separate them, and
     /// shows each interval to `found`.
     pub fn isolate(
         &mut self,

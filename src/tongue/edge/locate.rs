@@ -10,8 +10,8 @@ use crate::tongue::string::{HalfString, KINDS, Step};
 use crate::vector::Vector;
 use crate::vector::instructions::Kernel;
 
-/// Of all nodes with more than this part of the largest product the one nearest to t = 0 is taken: modes that fill the
-/// string are then all followed from T/2 through most of it, and little is done twice.
+/// Among the nodes with more than this part of the largest product, the one nearest to t = 0 is taken: modes that fill
+/// the string are then all followed from T/2 through most of it, and little is done twice.
 const NEARLY_LARGEST: f64 = 1.0 / 16.0;
 
 /// The recurrence from t = 0 at every node, its exponents by block.

@@ -1,7 +1,7 @@
 //! Edges of tongues: the eigenvalues of the four strings, enclosed.
 //!
-//! Sturm counts tell the eigenvalues apart, a mode's Rayleigh quotient encloses each one as a rule between neighbouring
-//! doubles, and signs of the entry by more bits give any number of digits.
+//! Sturm counts separate the eigenvalues. The Rayleigh quotient of a mode encloses each one, as a rule between neighbouring
+//! doubles. Signs of the entry in more bits give any number of digits.
 //!
 //! | file | what is there |
 //! |---|---|
@@ -12,7 +12,7 @@
 //! | `enclosure` | an edge in doubles, and by rational ends |
 //! | `function` | an entry of the half period at rational points |
 //! | `fine_count` | 25 digits by counts in two doubles |
-//! | `precise`, `exact_count` | any number of digits; counts where two doubles tell no two apart |
+//! | `precise`, `exact_count` | any number of digits; counts where two doubles cannot separate |
 //! | `long` | edges of long periods, one by one |
 //! | `edges` | the edges of one ratio, by whichever way is needed |
 

@@ -60,10 +60,10 @@ const PASSES: u32 = 6;
 /// units of the distance. So is one whose product with the step before is: what is left is about the product's square.
 const LAST_STEP: f64 = 1e-4;
 
-/// What part of the way to an end of the bracket is made where a step would lead beyond it.
+/// A step that would lead beyond an end of the bracket goes this part of the way to it.
 const NEARLY: f64 = 0.875;
 
-/// What the modes prove.
+/// The results of the modes, proven.
 #[repr(align(64))]
 pub(crate) struct Proofs {
     /// The eigenvalue's enclosure, times the ticks: an edge in s.
@@ -134,7 +134,7 @@ fn within<V: Vector>([lo, hi]: &[V; 2], x: V) -> V {
 /// The nodes r.
 struct Nodes<V> {
     mass: V,
-    /// What rounding took from it.
+    /// The part of it lost by rounding.
     lost: V,
     inverse_mass: V,
     /// (1/ℓ + 1/ℓ')²/m.
@@ -265,7 +265,7 @@ impl<V: Vector> Mode<V> {
     #[inline(always)]
     fn prove(&self, ticks: f64, others: &[V; 2]) -> Proofs {
         let (mu, infinity) = (self.hi, V::splat(f64::INFINITY));
-        // What the quotient's own uncertainty takes from the distances.
+        // The uncertainty of the quotient itself, subtracted from the distances.
         let own = V::splat(2.0).mul(V::splat(f64::EPSILON).mul_add(mu, self.error));
         let least = within(others, mu).sub(own);
         let radius = V::splat(1.01).mul(self.residual.mul(self.residual.div(least)).add(self.error));
@@ -274,7 +274,7 @@ impl<V: Vector> Mode<V> {
         let mut proofs = Proofs { edge: [[0.0; LANES]; 2], radius: [0.0; LANES], quotient: [0.0; LANES] };
         proven.store(&mut proofs.radius);
         mu.store(&mut proofs.quotient);
-        // What follows rounds by less than 10 u², a hundredth of the least radius.
+        // The operations below round by less than 10 u², a hundredth of the least radius.
         let ticks = V::splat(ticks);
         let (product, rest) = mu.two_product(ticks);
         let (nearest, rest) = product.two_sum(ticks.mul_add(self.lo, rest));

@@ -22,8 +22,8 @@ use crate::number::{Ball, Rational, Sign};
 const STRAIGHT: u32 = 12;
 
 /// Shrinks an interval with one zero, simple and inside, until it is narrower than `relative` times itself. `None`
-/// where that there is one is neither known nor shown by the sign changes along the two ends' orbits, and where return maps do
-/// not tell a sign.
+/// where a zero is neither known nor shown by the sign changes along the orbits of the two ends, and where return maps cannot
+/// decide a sign.
 pub(crate) fn shrink(
     function: &EntryFunction,
     start: &Enclosure,
@@ -123,7 +123,7 @@ impl Interval {
         Enclosure { lo: point.clone(), hi: point }
     }
 
-    /// The same in units of 2^cells in what was one.
+    /// This interval with each unit cut into 2^cells.
     fn cut(&self, cells: u32) -> Interval {
         Interval {
             lo: &self.lo << cells,

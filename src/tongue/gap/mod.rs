@@ -1,4 +1,4 @@
-//! What lies between two edges: a tongue, proven open or closed.
+//! Tongues, each between two edges: proven open or closed.
 //!
 //! | file | what is there |
 //! |---|---|

@@ -78,7 +78,7 @@ fn all_open(ratio: Ratio, rho: &Rational, odd: bool, degrees: [usize; 2]) -> Res
     Ok(survived && FIELD.gcd(first, second).len() == 1)
 }
 
-/// What is known of all tongues of even and of all of odd m; asked for once each.
+/// Whether all tongues of even m, and all of odd m, are open; each is computed once.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Openness([OnceLock<bool>; 2]);
 

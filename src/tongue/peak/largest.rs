@@ -40,13 +40,13 @@ pub struct Peak {
     pub s: f64,
     /// Growth of ln amplitude per period.
     pub ln_multiplier: f64,
-    /// The same per unit time, in units of √L1.
+    /// The growth per unit time, in units of √L1.
     pub rate: f64,
     /// Slow steps h2 until the amplitude is ten times as large.
     pub slow_steps_to_tenfold: f64,
 }
 
-/// Relative widths up to this are thin: doubles do not tell the edges apart.
+/// Relative widths up to this are thin: doubles cannot separate the edges.
 const THIN: f64 = f64::EPSILON;
 
 /// Relative widths up to this are too narrow for edges in doubles: they are wrong by 1e-10 of the width.
@@ -67,7 +67,7 @@ impl Peak {
     /// # Errors
     /// Where the schedule is too long, or more digits are needed than are tried.
     pub(crate) fn all(edges: &Edges, gaps: &[Gap]) -> Result<Vec<Option<Peak>>> {
-        // Of a long period one point by more bits costs less than the string.
+        // For a long period one point in more bits costs less than the string.
         let by_bits = |gap: &Gap| edges.is_long() && gap.width.1 <= POINT * gap.lower.lo;
         let open = gaps.iter().filter_map(|gap| gap.upper.filter(|_| !gap.closed).map(|upper| (gap, upper)));
         let in_doubles: Vec<_> = open.filter(|(gap, _)| !by_bits(gap)).collect();

@@ -33,7 +33,7 @@ use crate::tongue::string::{HalfString, KINDS, Step};
 use crate::vector::instructions::Kernel;
 use crate::vector::{LANES, Pair, Vector};
 
-/// What one operation on two doubles loses, relative to its terms: the kick's own roundings included.
+/// The error of one operation on two doubles, relative to its terms: the roundings of the kick itself included.
 const LOSS: f64 = f64::from_bits((1023 - 101) << 52);
 
 /// Relative accuracy asked of E: twice what ln of the multiplier then has, which is fifteen digits.
@@ -104,7 +104,7 @@ impl Meeting {
         (number > 0.0 && off <= ACCURACY).then(|| ln_multiplier(number, x.exponent + y.exponent))
     }
 
-    /// The same in the middle of a tongue that is far thinner than its distance to others, nearby; and how far in ln s
+    /// The rate in the middle of a tongue that is far thinner than its distance to others, nearby; and how far in ln s
     /// that is.
     pub fn in_the_middle(&self) -> Option<(f64, f64)> {
         let Value { number, slope, uncertainty, .. } = self.balance;

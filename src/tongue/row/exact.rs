@@ -14,7 +14,7 @@ pub enum ExactEdge {
     Rational(Rational),
     /// p θ = m π exactly: s = 4 sin²(m π/(2p)).
     Resonance,
-    /// The same for the slow clock's angle, q θ' = m π: s ρ (p/q)² = 4 sin²(m π/(2q)).
+    /// As above, for the angle of the slow clock, q θ' = m π: s ρ (p/q)² = 4 sin²(m π/(2q)).
     SlowResonance,
 }
 

@@ -1,4 +1,4 @@
-//! What there is to say about a tongue, column by column; each is computed only where it is wanted.
+//! The properties of a tongue, column by column; each is computed only where it is wanted.
 //!
 //! ```
 //! use kickdrift::number::rational::ratio;

@@ -24,7 +24,7 @@ use crate::number::{Ratio, Rational, Twofold};
 use crate::schedule::Schedule;
 use crate::vector::instructions::Instructions;
 
-/// What strikes at a kick time.
+/// The clocks that strike at a kick time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Node {
     /// Ticks since the node before.
@@ -67,7 +67,7 @@ pub(crate) struct HalfString {
     pub backward: Vec<Step>,
     /// The masses by kind, each within 2u relative of its exact value, u = 2^-53.
     pub masses: [f64; KINDS],
-    /// What rounding took from them, to within 2^-104 of the masses.
+    /// The parts of them lost by rounding, to within 2^-104 of the masses.
     pub rests: [f64; KINDS],
     /// 1/m, rounded; 0 where there is no mass.
     pub inverse_masses: [f64; KINDS],
@@ -81,7 +81,7 @@ pub(crate) struct HalfString {
     pub block: usize,
     /// How many positive eigenvalues each problem has.
     pub dimensions: [usize; 4],
-    /// What the kernels run on.
+    /// The instructions that the kernels run on.
     pub instructions: Instructions,
 }
 

@@ -23,7 +23,7 @@ pub const WORTH: u128 = 1 << 10;
 /// A piece of so few steps is left to its single factors.
 const FEW: i128 = 32;
 
-/// What an attempt to find a normal form costs, in products of functions.
+/// The cost of an attempt to find a normal form, in products of functions.
 const ATTEMPT: u64 = 20;
 
 /// A product that its factors' roundings leave no more digits is not begun.
@@ -39,7 +39,7 @@ enum Form<T> {
 /// A branch and the forms of its pieces.
 pub struct Slow<T> {
     branch: Branch<T>,
-    /// What a piece's product may lack beside roundings, relatively.
+    /// The relative error of the product of a piece allowed beside roundings.
     allowed: f64,
     /// By start and length; `None` is halved.
     forms: HashMap<(i128, i128), Option<Rc<Form<T>>>>,

@@ -22,7 +22,7 @@ use crate::number::{Ball, Rational};
 use num_traits::ToPrimitive;
 use std::f64::consts::PI;
 
-/// What rounding adds to the bound of a product of n factors, about.
+/// The part of rounding in the bound of a product of n factors, about.
 pub fn roundings<T: Coefficient>(n: u128) -> f64 {
     1000.0 * T::UNIT * n as f64
 }
@@ -56,7 +56,7 @@ pub struct Normal<T> {
     exponent: i128,
     /// Hyperbolic, and both multipliers are negative.
     is_negative: bool,
-    /// What a factor turns beside e^L: whole turns, elliptic; half turns, hyperbolic.
+    /// The turns of a factor beside e^L: whole turns, elliptic; half turns, hyperbolic.
     turns: Option<i128>,
     stride: i128,
 }

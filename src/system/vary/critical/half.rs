@@ -56,7 +56,7 @@ pub(super) struct Half {
     pub is_square: bool,
     /// Whether S is self-adjoint in the metric of M, as it is where potentials commute.
     pub is_selfadjoint: bool,
-    /// What commutes with S, and with all that does; its eigenspaces have no μ in common that could couple.
+    /// A matrix that commutes with S and with every matrix that does; its eigenspaces have no μ in common that could couple.
     symmetry: Option<DMatrix<Rational>>,
 }
 
@@ -272,7 +272,7 @@ impl Half {
         sound.then(|| self.program.map(|x| x.each_ref().map(of)))
     }
 
-    /// What S and H are at s modulo the prime; `None` where M is singular.
+    /// S and H at s modulo the prime; `None` where M is singular.
     pub fn at(&self, field: &PrimeField, program: &Program<Linear<u64>>, s: u64) -> Option<At> {
         let at = |x: &Linear<u64>| field.add(x[0], field.mul(s, x[1]));
         let mut program = program.map(at);
@@ -370,7 +370,7 @@ fn generic(line: &Line) -> Result<System> {
     clocks.sort();
     clocks.dedup();
     let masses: BTreeSet<_> = line.ends.iter().flat_map(|own| own.mass().places()).collect();
-    // What is linear in s and not 0 vanishes at one s at most.
+    // A linear function of s that is not 0 vanishes at one s at most.
     let mut k = 2;
     loop {
         let found = line.at(&ratio(1, k))?;
@@ -401,7 +401,7 @@ fn rows(constant: &Symmetric, gained: &Symmetric, factor: &Rational) -> Vec<(usi
 }
 
 impl Masses {
-    /// Of these degrees of freedom, from M₀ and what it gains.
+    /// The masses of these degrees of freedom, from M₀ and its growth along the line.
     fn between(dofs: &[usize], line: [Symmetric; 2]) -> Masses {
         let entries = || line.iter().flat_map(|own| own.places().map(|(i, j)| own.get(i, j)));
         let denominator = entries().fold(BigInt::one(), |lcm, x| lcm.lcm(x.denom()));

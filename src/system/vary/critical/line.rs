@@ -107,7 +107,7 @@ impl Line {
     fn along_symmetries(mut self) -> Vec<Line> {
         let [lo, hi] = &self.ends;
         let stiffnesses = self.ends.iter().flat_map(|own| own.potentials()).map(|own| &own.stiffness);
-        // What leaves M of one end and M⁻¹ of it times M of the other invariant splits the masses in between, too.
+        // A subspace that is invariant under M of one end, and under its inverse times M of the other end, splits the masses in between, too.
         let all: Vec<_> = stiffnesses.chain([hi.mass()]).collect();
         let spaces = match symmetry(lo, &all) {
             Some(Symmetry::Subspaces(spaces)) => spaces,

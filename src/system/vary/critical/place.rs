@@ -79,7 +79,7 @@ pub(super) fn united(mut gaps: Vec<Gap>) -> Vec<Gap> {
     for own in gaps {
         match all.last_mut() {
             Some(last) if own.lo < last.hi => {
-                // The same double twice is still alone.
+                // A double found twice is still alone.
                 let exact = last.exact.take().filter(|x| own.exact.as_ref() == Some(x));
                 let mut parts = std::mem::take(&mut last.parts);
                 for (part, is_simple) in own.parts {

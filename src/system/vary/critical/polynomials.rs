@@ -17,7 +17,7 @@ use crate::system::verdict::limits::Limits;
 /// Products of machine words beyond which cells are cheaper, whatever the limit: some ten seconds.
 const MOST_WORK: f64 = 5e9;
 
-/// What almost all systems of the line have in common.
+/// Properties that almost all systems of the line have in common.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Kind {
     /// The number of distinct μ, or of all where they are known to be real and semisimple.
@@ -26,12 +26,12 @@ struct Kind {
     ends: [bool; 2],
 }
 
-/// What is to be found, and how large.
+/// The polynomials to be found, and their size.
 pub(super) struct Shape {
     kind: Kind,
     /// Whether no multiplier has a Jordan block.
     is_semisimple: bool,
-    /// Of g(0, s), g(−1, s) and disc g; of two sums of entries that vanish together where no multiplier has a Jordan block.
+    /// The degrees of g(0, s), g(−1, s) and disc g, and of two sums of entries that vanish together where no multiplier has a Jordan block.
     degrees: Vec<usize>,
     /// Places from which kind and semisimplicity follow.
     places: usize,
@@ -63,7 +63,7 @@ impl Residues {
     }
 }
 
-/// What is to be found of a half period; `None` where it costs too much.
+/// The polynomials to be found for a half period; `None` where it costs too much.
 pub(super) fn shape(half: &Half, limits: &Limits) -> Option<Shape> {
     let Residues { field, program, .. } = Residues::of(half).next().expect("primes enough");
     // Any three places: one has the most distinct μ and none at an end that is not always there, if not all.
@@ -148,7 +148,7 @@ impl Shape {
             bits = bits.max(pairs(m as f64));
         }
         if !is_plain {
-            // Of n² entries of at most four matrices, times weights of 16 bits.
+            // n² entries of at most four matrices, times weights of 16 bits.
             let sum = 18.0 + 2.0 * (count + 1.0).log2();
             let cleared = (half.degree_of_masses() * m) as f64;
             bits = bits.max((2 * m + 1) as f64 * length + eigenvalue + more + sum + cleared);
