@@ -4,7 +4,9 @@ modes that grow.
 Weak springs hold each atom where it is, as in an equilibration: so the place is a minimum, and the verdict has a
 margin.
 
-Run, from python/, with a release build installed:  python tests/bench/droplets.py 500 2000 [10000]
+Run, from python/, with a release build installed:  python tests/bench/droplets.py 500 2000 [10000] [droplets.svg]
+
+The name of a picture, last, has the seconds of processors drawn over the degrees of freedom.
 """
 
 from __future__ import annotations
@@ -14,6 +16,7 @@ import sys
 import time
 from fractions import Fraction
 
+import matplotlib.pyplot as plt
 import numpy as np
 import openmm as mm
 from openmm import app, unit
@@ -58,9 +61,23 @@ def droplet(count: int) -> tuple[mm.System, np.ndarray]:
     return system, np.array(context.getState(getPositions=True).getPositions(asNumpy=True)._value)
 
 
+def draw(path: str, sizes: list[int], seconds: list[float]) -> None:
+    """The cost of a verdict over n, both by their logarithms, beside powers of n."""
+    figure, axes = plt.subplots(figsize=(4.6, 3.4), layout="constrained")
+    axes.loglog(sizes, seconds, "o-", color="black", label="verdict, margin, first unstable step")
+    for power, style in ((1.5, "--"), (2, ":")):
+        line = [seconds[0] * (n / sizes[0]) ** power for n in sizes]
+        axes.loglog(sizes, line, style, color="grey", label=f"$n^{{{power}}}$")
+    axes.set(xlabel="degrees of freedom n", ylabel="time of processors (s)", title="Droplets of flexible water")
+    axes.legend(frameon=False)
+    figure.savefig(path, metadata={"Date": None} if path.endswith(".svg") else None)
+
+
 def main() -> None:
     """Print a line for each number of waters."""
-    for count in map(int, sys.argv[1:]):
+    counts = [int(own) for own in sys.argv[1:] if own.isdigit()]
+    seconds = []
+    for count in counts:
         system, positions = droplet(count)
         held = mm.CustomExternalForce(f"{SPRING / 2}*((x-x0)^2+(y-y0)^2+(z-z0)^2)")
         for name in ("x0", "y0", "z0"):
@@ -78,9 +95,13 @@ def main() -> None:
             times.append((time.perf_counter(), time.process_time()))
             (made, _), (decided, processor) = np.diff(times, axis=0)
             peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6
+            if outer == STEPS[0]:
+                seconds.append(processor)
             print(f"{count} waters, {outer} ps: Hessians {made:.1f} s, answer {decided:.1f} s", end=" ")
             print(f"({processor:.1f} s of processors), at most {peak:.1f} GB")
             print("\n".join(f"  {line}" for line in str(found).splitlines()), flush=True)
+    if not sys.argv[-1].isdigit():
+        draw(sys.argv[-1], [9 * count for count in counts], seconds)
 
 
 if __name__ == "__main__":

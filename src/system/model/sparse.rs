@@ -60,9 +60,10 @@ const TOGETHER: &str = "all may move together: that motion is set apart";
 /// The cost of one resonance: to find it, and both edges of its unstable steps.
 const A_RESONANCE: f64 = 60.0;
 
-/// Factorizations that an answer takes, roughly, with all else; a product of theirs, in dense blocks, takes a hundredth of the time that one of an eigenvalue
+/// Factorizations that an answer takes, roughly, with all else, and those of two levels; a product of theirs, in dense blocks, takes a hundredth of the time that one of an eigenvalue
 /// iteration does, as measured on droplets of 500 and 2,000 waters.
 const FACTORIZATIONS: f64 = 6.0;
+const OF_LEVELS: f64 = 3.0;
 const FASTER: f64 = 100.0;
 
 impl SparseSystem {
@@ -226,11 +227,11 @@ impl SparseSystem {
     /// Products, at the pace of eigenvalue iterations.
     pub(super) fn cost(&self) -> u64 {
         let products = match &self.of {
-            Of::Levels { levels, .. } => levels.products(),
-            Of::Steps(own) => own.products(),
-            Of::Subcycles(own) => own.products(),
+            Of::Levels { levels, .. } => OF_LEVELS * levels.products(),
+            Of::Steps(own) => FACTORIZATIONS * own.products(),
+            Of::Subcycles(own) => FACTORIZATIONS * own.products(),
         };
-        (FACTORIZATIONS / FASTER * products).min(1e19) as u64
+        (products / FASTER).min(1e19) as u64
     }
 
     fn allow(&self, limits: &Limits) -> Result<()> {

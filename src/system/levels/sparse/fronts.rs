@@ -52,8 +52,11 @@ struct Left {
     update: Vec<f64>,
 }
 
-/// The part of all products from which on a supernode's descendants are eliminated side by side.
+/// The part of all products from which on what is below a supernode is eliminated side by side,
 const HEAVY: f64 = 1.0 / 64.0;
+
+/// and from which on it is eliminated one after the other again, by all threads each: two large fronts at once would take twice the memory.
+const LARGE: f64 = 1.0 / 3.0;
 
 impl<'a> Fronts<'a> {
     /// Of the lower triangle with these rows and values of each column, row i being the `place[i]`-th that is eliminated; `None` where it has
@@ -123,20 +126,22 @@ impl<'a> Fronts<'a> {
                 _ => break own,
             }
         };
-        let mut left = self.side_by_side(next, heavy)?;
+        let mut left = self.all_of(next, heavy)?;
         while let Some(k) = path.pop() {
             let own = self.front(k, left)?;
             let Some(&above) = path.last() else { return Some(own) };
             let others: Vec<usize> =
                 self.children[above].iter().copied().filter(|&other| other != k).collect();
-            left = self.side_by_side(&others, heavy)?;
+            left = self.all_of(&others, heavy)?;
             left.push((k, own));
         }
         None
     }
 
-    fn side_by_side(&self, all: &[usize], heavy: f64) -> Option<Vec<(usize, Left)>> {
-        map(all, |&k| Some((k, self.subtree(k, heavy)?))).into_iter().collect()
+    fn all_of(&self, all: &[usize], heavy: f64) -> Option<Vec<(usize, Left)>> {
+        let own = |&k: &usize| Some((k, self.subtree(k, heavy)?));
+        let are_large = all.iter().any(|&k| self.products[k] > heavy / HEAVY * LARGE);
+        if are_large { all.iter().map(own).collect() } else { map(all, own).into_iter().collect() }
     }
 
     /// The same one supernode after the other, each after those below it.
@@ -277,10 +282,18 @@ fn below(own: &SymbolicSupernodalCholesky<usize>, k: usize) -> &[usize] {
     &own.row_idx()[own.col_ptr_for_row_idx()[k]..own.col_ptr_for_row_idx()[k + 1]]
 }
 
+/// From so many numbers on that is worth the time that the system takes to hand out each page when it is first written to.
+const FRESH: usize = 1 << 26;
+
 /// So many zeros; `None` where memory runs out.
 pub(super) fn zeros<T: Clone>(n: usize, zero: T) -> Option<Vec<T>> {
     let mut own = Vec::new();
     own.try_reserve_exact(n).ok()?;
+    if n > FRESH {
+        // Given back: the system hands out zeros, and pages that nobody writes to, as of upper triangles, take no memory.
+        drop(std::hint::black_box(own));
+        return Some(vec![zero; n]);
+    }
     own.resize(n, zero);
     Some(own)
 }

@@ -438,8 +438,10 @@ impl SparseLevels {
         if self.rigid.ncols() > 0 || !self.is_large() {
             return None;
         }
-        let total: Vec<f64> = self.fast.iter().zip(&self.slow).map(|(f, s)| f + s).collect();
-        let least = lowest(self.size(), LOWEST, NEAR / 3.0, |x| self.both.times(&total, x))?;
+        let least = {
+            let total: Vec<f64> = self.fast.iter().zip(&self.slow).map(|(f, s)| f + s).collect();
+            lowest(self.size(), LOWEST, NEAR / 3.0, |x| self.both.times(&total, x))?
+        };
         let off = self.errors[0] + self.errors[1];
         let above = off + (least - off) / (1.0 + 0.9 * NEAR);
         let is_held = least > off && self.both.is_definite(0.0, &self.total(), self.total_slack(above));
