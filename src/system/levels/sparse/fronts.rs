@@ -25,7 +25,7 @@ pub(super) enum Elimination {
     Signed,
 }
 
-/// What L D Lᵀ is known by.
+/// What is kept of L D Lᵀ.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Pivots {
     pub negative: usize,
@@ -52,10 +52,10 @@ struct Left {
     update: Vec<f64>,
 }
 
-/// The part of all products from which on what is below a supernode is eliminated side by side,
+/// Supernodes with so large a part of all products, theirs and those below, are eliminated side by side.
 const HEAVY: f64 = 1.0 / 64.0;
 
-/// and from which on it is eliminated one after the other again, by all threads each: two large fronts at once would take twice the memory.
+/// With so large a part they are eliminated one after the other, each by all threads: two large fronts at once would take twice the memory.
 const LARGE: f64 = 1.0 / 3.0;
 
 impl<'a> Fronts<'a> {
@@ -144,7 +144,7 @@ impl<'a> Fronts<'a> {
         if are_large { all.iter().map(own).collect() } else { map(all, own).into_iter().collect() }
     }
 
-    /// The same one supernode after the other, each after those below it.
+    /// What is left of a supernode, all below it eliminated first, on this thread.
     fn in_turn(&self, root: usize) -> Option<Left> {
         let (mut all, mut seen) = (vec![root], 0);
         while seen < all.len() {

@@ -9,7 +9,8 @@
 //! ```
 //!
 //! The first is two sparse Cholesky factorizations that run to their end, the second one vector, from a Krylov space of the form. In between
-//! nothing is said: that gap is as wide as the line lies below E where x has its share.
+//! nothing is said: that gap is as wide as the line lies below E where x has its share. Factors are kept only where something is solved with
+//! them; the rest asks for signs, and goes front by front.
 //!
 //! | file | what |
 //! |---|---|

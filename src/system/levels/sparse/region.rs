@@ -75,7 +75,7 @@ struct Held {
     not_proven: Option<usize>,
     /// Where there are none, the least xᵀ(F + S)x that a Krylov space finds, rounded; `None` where it finds none.
     least: Option<f64>,
-    /// By how much F + S is proven above 0 (2-norm of what may be added to it); 0 where that was not sought.
+    /// F + S + E is proven positive definite for all E of a 2-norm up to this; 0 where that was not sought.
     above: f64,
 }
 
@@ -429,6 +429,7 @@ impl SparseLevels {
         })
     }
 
+    /// Whether a factorization costs so much that one is saved by a recursion, and that two at once take too much memory.
     fn is_large(&self) -> bool {
         self.products() > WORTH_A_RECURSION * self.both.entries() as f64
     }
