@@ -294,15 +294,15 @@ pub(super) fn count(field: &str, text: &str) -> Result<u64> {
 
 /// What is to be known of forces that are predicted directly, where there are any.
 pub(super) fn no_gradient(names: &[&str]) -> Option<String> {
-    let (is, them) = match names {
+    let are = match names {
         [] => return None,
-        [_] => ("is", "it"),
-        _ => ("are", "they"),
+        [_] => "is",
+        _ => "are",
     };
     let names = names.join(", ");
     Some(format!(
-        "{names} {is} predicted directly (non_conservative): {them} {is} no gradient and may grow without any step; periods describe a \
-         potential, so give the Jacobians too: kickdrift.ase.system(..., symmetric=False)"
+        "{names} {are} predicted directly (non_conservative), as no gradient of an energy: a motion may grow whatever the steps are. Periods describe an \
+         energy, so give the Jacobians too: kickdrift.ase.system(..., symmetric=False)"
     ))
 }
 

@@ -60,10 +60,13 @@ const TOGETHER: &str = "all may move together: that motion is set apart";
 /// The cost of one resonance: to find it, and both edges of its unstable steps.
 const A_RESONANCE: f64 = 60.0;
 
-/// Factorizations that an answer takes, roughly, with all else, and those of two levels; a product of theirs, in dense blocks, takes a hundredth of the time that one of an eigenvalue
-/// iteration does, as measured on droplets of 500 and 2,000 waters.
+/// Factorizations that an answer takes, roughly, with all else.
 const FACTORIZATIONS: f64 = 6.0;
+
+/// Those that one of two levels takes.
 const OF_LEVELS: f64 = 3.0;
+
+/// By so many times a product of theirs, in dense blocks, is faster than one of an eigenvalue iteration, as measured on droplets of 500 and 2,000 waters.
 const FASTER: f64 = 100.0;
 
 impl SparseSystem {

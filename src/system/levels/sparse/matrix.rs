@@ -14,7 +14,7 @@ use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, Mat, Side};
 
 use super::dissect::dissected;
-use super::fronts::{Elimination, Fronts, Pivots, zeros};
+use super::fronts::{Elimination, Fronts, Pivots, products_of, supernodes, zeros};
 use super::krylov::top;
 use crate::error::{Error, Result};
 use crate::number::U;
@@ -364,14 +364,13 @@ const WORTH_AN_ORDER: f64 = 1000.0;
 
 /// Half the squares of the lengths of the factor's columns.
 fn products(symbolic: &SymbolicCholesky<usize>) -> f64 {
-    let of = |length: usize| (length as f64).powi(2) / 2.0;
     match symbolic.raw() {
         SymbolicCholeskyRaw::Simplicial(own) => {
-            own.col_ptr().windows(2).map(|ends| of(ends[1] - ends[0])).sum()
+            own.col_ptr().windows(2).map(|ends| products_of(1, ends[1] - ends[0] - 1)).sum()
         }
-        SymbolicCholeskyRaw::Supernodal(own) => supernodes(own)
-            .flat_map(|(columns, below, _)| (1..=columns.len()).map(move |k| of(k + below.len())))
-            .sum(),
+        SymbolicCholeskyRaw::Supernodal(own) => {
+            supernodes(own).map(|(columns, below)| products_of(columns.len(), below.len())).sum()
+        }
     }
 }
 
@@ -380,23 +379,12 @@ fn longest_row(symbolic: &SymbolicCholesky<usize>) -> usize {
     let mut counts = vec![0; symbolic.nrows()];
     match symbolic.raw() {
         SymbolicCholeskyRaw::Simplicial(own) => own.row_idx().iter().for_each(|&i| counts[i] += 1),
-        SymbolicCholeskyRaw::Supernodal(own) => supernodes(own).for_each(|(columns, below, _)| {
+        SymbolicCholeskyRaw::Supernodal(own) => supernodes(own).for_each(|(columns, below)| {
             let width = columns.len();
             columns.chain(below.iter().copied()).for_each(|i| counts[i] += width);
         }),
     }
     counts.into_iter().max().unwrap_or(0)
-}
-
-/// The columns of each supernode, the rows below them, and where its values begin: column by column, those of its own rows first.
-fn supernodes(
-    own: &SymbolicSupernodalCholesky<usize>,
-) -> impl Iterator<Item = (Range<usize>, &[usize], usize)> {
-    let (rows, ends) = (own.row_idx(), own.col_ptr_for_row_idx());
-    (0..own.n_supernodes()).map(move |k| {
-        let columns = own.supernode_begin()[k]..own.supernode_end()[k];
-        (columns, &rows[ends[k]..ends[k + 1]], own.col_ptr_for_val()[k])
-    })
 }
 
 #[cfg(test)]
