@@ -506,6 +506,31 @@ fn long_periods_are_refused_with_their_cost_and_allowed_by_a_budget() {
     assert!(code == Some(2) && text.contains("1000000 periods of"), "{text}");
 }
 
+/// Bonds, angles and the rest on a clock each, at steps where four pairs and more of multipliers are off the circle and none of them is real.
+#[test]
+fn where_pairs_leave_the_circle_together_stretches_are_proven_for_measured_levels() {
+    let name = "data/scenes/water4-levels.json";
+    let scene =
+        SystemScene::read_in(std::path::Path::new("data/scenes"), &std::fs::read_to_string(name).unwrap());
+    let scene = scene.unwrap();
+    let (lo, hi) = (5.5e-3, 5.6e-3);
+    let asked = format!("outer={lo}..{hi}");
+    let found = scene.intervals(&asked.parse().unwrap(), 1e-4, &Limits::default()).unwrap();
+    let (mut open, mut unstable) = (0.0, 0);
+    for own in &found.stretches {
+        if own.verdict == Holds::NotTold {
+            open += own.hi - own.lo;
+            continue;
+        }
+        let middle = from_f64_exact(own.lo + (own.hi - own.lo) / 2.0).unwrap();
+        let truth = scene.model().decide_at(&middle, &Limits::default()).unwrap();
+        assert!(truth.is_proof() && truth.is_stable() == (own.verdict == Holds::Stable), "{middle}");
+        unstable += usize::from(own.verdict == Holds::Unstable);
+    }
+    // Discs of kicks in one scale left all of it open; what is left are changes of the pairs that grow.
+    assert!(unstable > 0 && open < 0.1 * (hi - lo), "{:?}", found.stretches);
+}
+
 #[test]
 fn intervals_of_any_number_cover_their_range_and_each_point_agrees_with_its_own_verdict() {
     let shipped = shipped("diatomic-tether");

@@ -36,6 +36,22 @@ pub(in crate::system) struct Residual {
 impl Residual {
     /// For all S within `off` of the given one, entry by entry, too: they add V⁻¹ (S' − S) V to F.
     pub fn widened(self, v: &Mat<f64>, off: &Mat<f64>) -> Option<Residual> {
+        let size = |m: &Mat<f64>| Mat::from_fn(m.nrows(), m.ncols(), |i, j| m[(i, j)].abs());
+        self.moved(v, off, |w| size(w) * (off * size(v)))
+    }
+
+    /// For all S + x C, |x| ≤ 1, too: they add x V⁻¹ C V to F, one matrix, where entries cancel.
+    pub fn along(self, v: &Mat<f64>, change: &Mat<f64>) -> Option<Residual> {
+        self.moved(v, change, |w| w * (change * v))
+    }
+
+    /// `moved` of an approximate inverse W of V is W C V, or more than that of every entry.
+    fn moved(
+        self,
+        v: &Mat<f64>,
+        change: &Mat<f64>,
+        moved: impl Fn(&Mat<f64>) -> Mat<f64>,
+    ) -> Option<Residual> {
         let m = v.ncols();
         let w = v.partial_piv_lu().inverse();
         let y = Mat::<f64>::identity(m, m) - &w * v;
@@ -44,9 +60,8 @@ impl Residual {
         if y.is_nan() || y >= 0.5 {
             return None;
         }
-        let size = |m: &Mat<f64>| Mat::from_fn(m.nrows(), m.ncols(), |i, j| m[(i, j)].abs());
-        let moved = size(&w) * (off * size(v));
-        let rest = (y / (1.0 - y) + 2.1 * gamma(m)) * nw * norm::frobenius(off) * nv;
+        let moved = moved(&w);
+        let rest = (y / (1.0 - y) + 2.1 * gamma(m)) * nw * norm::frobenius(change) * nv;
         let row = |i: usize| (0..m).map(|j| moved[(i, j)] * moved[(i, j)]).sum::<f64>().sqrt();
         let norm = self.norm + 1.01 * (norm::spectral(&moved) + rest);
         let rows = self.rows.iter().enumerate().map(|(i, own)| own + 1.01 * (row(i) + rest)).collect();

@@ -45,9 +45,7 @@ pub(in crate::system) struct Spectrum {
 impl Spectrum {
     /// That of the half period; `None` where the eigenvalue iteration fails: never seen, but not excluded.
     pub fn new(blocks: &FloatBlocks) -> Option<Spectrum> {
-        let m = blocks.m;
-        let b = Mat::from_fn(m, m, |i, j| blocks.y[i][m + j]);
-        let (s, s_error) = times_c(blocks, &b);
+        let (s, s_error) = product(blocks);
         Spectrum::of(s, s_error)
     }
 
@@ -87,8 +85,7 @@ impl Spectrum {
     /// The discs where the half period is known as well as these blocks, which differ from its own in their error alone. There are none
     /// where the error of the blocks is unbounded.
     pub fn known_to(&self, blocks: &FloatBlocks) -> Spectrum {
-        let b = Mat::from_fn(blocks.m, blocks.m, |i, j| blocks.y[i][blocks.m + j]);
-        let found = times_c(blocks, &b).1.and_then(|error| self.with_error(error));
+        let found = product(blocks).1.and_then(|error| self.with_error(error));
         found.unwrap_or_else(|| Spectrum { radius: None, rows: Vec::new(), s_error: None, ..self.clone() })
     }
 
@@ -118,9 +115,20 @@ impl Spectrum {
 
     /// The kind that the discs of all S' with |S' − S| ≤ `off`, entry by entry, prove, if any.
     pub fn certified_around(&self, off: &Mat<f64>) -> Option<Kind> {
-        let residual = Residual { norm: self.radius?, rows: self.rows.clone(), inverse: self.inverse? };
-        let residual = residual.widened(&real_form(&self.mu, &self.vectors)?.0, off)?;
-        Spectrum { radius: Some(residual.norm), rows: residual.rows, ..self.clone() }.by_discs()
+        self.with_residual(self.residual()?.widened(&real_form(&self.mu, &self.vectors)?.0, off)?).by_discs()
+    }
+
+    /// The kind that the discs of all S + x C, |x| ≤ 1, prove, if any.
+    pub fn certified_along(&self, change: &Mat<f64>) -> Option<Kind> {
+        self.with_residual(self.residual()?.along(&real_form(&self.mu, &self.vectors)?.0, change)?).by_discs()
+    }
+
+    fn residual(&self) -> Option<Residual> {
+        Some(Residual { norm: self.radius?, rows: self.rows.clone(), inverse: self.inverse? })
+    }
+
+    fn with_residual(&self, own: Residual) -> Spectrum {
+        Spectrum { radius: Some(own.norm), rows: own.rows, ..self.clone() }
     }
 
     /// The kind that the discs or the clusters prove, if any.
@@ -221,6 +229,11 @@ impl Spectrum {
         };
         (0..20).map(|k| largest * 0.8f64.powi(k)).any(escape)
     }
+}
+
+/// S = Bᵀ C of the half period, and a bound on its distance from the true one.
+pub(in crate::system) fn product(blocks: &FloatBlocks) -> (Mat<f64>, Option<f64>) {
+    times_c(blocks, &Mat::from_fn(blocks.m, blocks.m, |i, j| blocks.y[i][blocks.m + j]))
 }
 
 /// Zᵀ C for a block Z of the half period, and a bound on its distance from the true one.

@@ -12,33 +12,34 @@
 //! Positive for one end at the larger of two steps, negative for the other end at the smaller one: unstable at all steps between (section 3).
 //! Elsewhere the half period in doubles decides, each kick off by e_k: its forms, or discs about its eigenvalues. Section 10 has the band and all roundings.
 //!
+//! | file | what is there |
+//! |---|---|
+//! | `action` | the action as a matrix, and what its signs and counts prove |
+//! | `half` | the half period: discs, at a step and between two, growth, friction |
+//!
 //! Cost for n degrees of freedom and N kick times in half a period: N n³/2 products for a sign.
+
+mod action;
+mod half;
 
 use std::sync::OnceLock;
 
+use action::Bounds;
 use faer::Mat;
+use half::Modes;
 use nalgebra::DMatrix;
-use num_complex::Complex64;
 
-use super::counts::between_signs;
-use super::damped::least_masking;
 use super::growth::{Growing, Grows};
 use super::region::largest;
 use super::rigid::Hessians;
 use crate::error::{Error, Result};
-use crate::number::rational::{from_f64_exact, to_f64};
+use crate::number::rational::to_f64;
 use crate::number::{Rational, U, bisected};
-use crate::parallel::both;
-use crate::schedule::{Event, Schedule, Weight};
-use crate::system::friction::{Damping, Radius, damping};
-use crate::system::half::float::FloatBlocks;
+use crate::schedule::{Event, Schedule};
 use crate::system::half::norm;
-use crate::system::half::period::{Drifts, Stiff, Stiffness, follow, follow_proven};
 use crate::system::signs;
-use crate::system::signs::envelope::{Envelope, Sign};
 use crate::system::signs::inertia::{is_definite, spectral_norm};
 use crate::system::spectrum::discs::Spectrum;
-use crate::system::spectrum::rate::exponent;
 use crate::system::vary::stretches::{Stretch, cover, merged, most_cells};
 use crate::system::verdict::measured::{Holds, Removed};
 
@@ -64,6 +65,7 @@ pub struct Nested {
     lack: f64,
     basis: Option<Mat<f64>>,
     is_total_definite: OnceLock<bool>,
+    modes_of_all: OnceLock<Modes>,
     /// What was projected out before.
     pub removed: Option<Removed>,
 }
@@ -117,8 +119,9 @@ impl Nested {
         let lack = lack(&levels[0], &squares);
         let basis = whole.basis().cloned();
         let modes = basis.as_ref().map_or_else(|| eigen.U().to_owned(), |basis| basis * eigen.U());
-        let (is_total_definite, removed) = (OnceLock::new(), whole.removed().cloned());
-        Ok(Nested { levels, squares, modes, lack, basis, is_total_definite, removed })
+        let (is_total_definite, modes_of_all) = (OnceLock::new(), OnceLock::new());
+        let removed = whole.removed().cloned();
+        Ok(Nested { levels, squares, modes, lack, basis, is_total_definite, modes_of_all, removed })
     }
 
     /// The number of degrees of freedom that move.
@@ -217,9 +220,6 @@ pub struct Steps<'a> {
     outer: f64,
 }
 
-/// Stiffnesses that bound others: factor (K + shift I) of each level.
-type Bounds = Vec<[f64; 2]>;
-
 impl Steps<'_> {
     /// The terms of an entry: two drifts meet in it, and each clock once.
     fn terms(&self) -> usize {
@@ -232,145 +232,9 @@ impl Steps<'_> {
         factor * factor
     }
 
-    /// The action of half a period, its positions held at 0 at these ends.
-    fn action(&self, step: f64, bounds: &Bounds, [at_start, at_end]: [bool; 2]) -> Envelope {
-        let free = usize::from(at_start)..self.events.len() - usize::from(at_end);
-        self.chain(step, bounds, &free.map(|node| (node, 1.0)).collect::<Vec<_>>())
-    }
-
-    /// That of a whole period between ends with x(T) = e^(iφ) x(0), s = cos² φ/2, as a real chain (`proofs/REGION.md`, section 10): from t = 0 to T/2, what meets
-    /// there times √s, and back to where 0 is held, what meets times √(1 − s).
-    fn twisted(&self, step: f64, bounds: &Bounds, s: f64) -> Envelope {
-        let last = self.events.len() - 1;
-        let there = (0..=last).map(|node| (node, if node == last { s.sqrt() } else { 1.0 }));
-        let back = (1..last).rev().map(|node| (node, if node + 1 == last { (1.0 - s).sqrt() } else { 1.0 }));
-        self.chain(step, bounds, &there.chain(back).collect::<Vec<_>>())
-    }
-
-    /// Nodes in a row, each with the factor of what it has to do with the one before.
-    fn chain(&self, step: f64, bounds: &Bounds, path: &[(usize, f64)]) -> Envelope {
-        let (n, square) = (self.nested.size(), self.square(step));
-        let row = |place: usize, i: usize| place * n + i;
-        // A block reaches back to the same degree of freedom at the node before.
-        let rows = (0..path.len()).flat_map(|place| (0..n).map(move |i| (place, i)));
-        let first = rows.map(|(place, i)| if place == 0 { 0 } else { row(place - 1, i) }).collect();
-        let mut matrix = Envelope::new(first);
-        for (place, &(node, factor)) in path.iter().enumerate() {
-            let event = &self.events[node];
-            let before = (node > 0).then(|| 1.0 / event.drift as f64);
-            let after = self.events.get(node + 1).map(|next| 1.0 / next.drift as f64);
-            let link = place.checked_sub(1).map(|k| if path[k].0 < node { before } else { after });
-            for i in 0..n {
-                before.iter().chain(&after).for_each(|x| matrix.add(row(place, i), row(place, i), *x));
-                if let Some(x) = link.flatten() {
-                    matrix.add(row(place, i), row(place - 1, i), -factor * x);
-                }
-            }
-            let weight = if event.weight == Weight::Half { 0.5 } else { 1.0 };
-            for k in event.clocks() {
-                let [factor, shift] = bounds[k];
-                let factor = -(weight * (square * self.kicks[k])) * factor;
-                let stiffness = &self.nested.levels[k].stiffness;
-                for j in 0..n {
-                    for i in j..n {
-                        let own = stiffness[(i, j)] + if i == j { shift } else { 0.0 };
-                        matrix.add(row(place, i), row(place, j), factor * own);
-                    }
-                }
-            }
-        }
-        matrix
-    }
-
-    /// K_k + sign e_k, all stiffnesses within ε of their sizes.
-    fn within(&self, epsilon: f64, sign: f64) -> Bounds {
-        (0..self.kicks.len()).map(|k| [1.0, sign * self.nested.error_within(k, epsilon)]).collect()
-    }
-
     /// Whether all stiffnesses within ε of their sizes are proven stable at this outer step, and at every smaller one.
     pub fn is_in_first_region(&self, step: f64, epsilon: f64) -> bool {
         self.nested.is_definite_within(epsilon) && self.is_positive(step, &self.within(epsilon, 1.0))
-    }
-
-    fn is_positive(&self, step: f64, bounds: &Bounds) -> bool {
-        let is = |held: [bool; 2]| self.is_positive_held(step, bounds, held);
-        let (start, end) = both(true, || is([true, false]), || is([false, true]));
-        start && end
-    }
-
-    fn is_positive_held(&self, step: f64, bounds: &Bounds, held: [bool; 2]) -> bool {
-        self.action(step, bounds, held).is_positive_in_blocks(self.nested.size(), self.terms(), ROUNDINGS)
-    }
-
-    /// Whether the signs prove all stiffnesses within ε unstable at all outer steps between.
-    fn is_unstable_between(&self, [lo, hi]: [f64; 2], epsilon: f64) -> bool {
-        let [softer, stiffer] = self.softer_and_stiffer(epsilon);
-        let ends = [[true, false], [false, true]];
-        let Some(k) = (0..2).find(|&k| self.is_positive_held(hi, &stiffer, ends[k])) else { return false };
-        let other = self.action(lo, &softer, ends[1 - k]);
-        other.sign(self.terms(), ROUNDINGS) == Some(Sign::Negative)
-    }
-
-    /// Whether counts of negative eigenvalues, least at the smaller step and most at the larger one, prove a real multiplier off the circle at all
-    /// outer steps between: neg J_fh and neg J_hf differ, or n + neg J_hh and neg J_ff (`proofs/REGION.md`, section 3).
-    fn has_real_unstable_mode(&self, [lo, hi]: [f64; 2], epsilon: f64) -> bool {
-        let [softer, stiffer] = self.softer_and_stiffer(epsilon);
-        let exceeds = |low: [bool; 2], high: [bool; 2], [more, other]: [usize; 2]| {
-            let least = || self.negatives(&self.action(lo, &softer, low), true);
-            let (least, most) = both(true, least, || self.negatives(&self.action(hi, &stiffer, high), false));
-            least.zip(most).is_some_and(|(least, most)| least + more > most + other)
-        };
-        let (start, end, n) = ([true, false], [false, true], self.nested.size());
-        let (neither, all) = ([false; 2], [true; 2]);
-        exceeds(end, start, [0, 0])
-            || exceeds(start, end, [0, 0])
-            || self.nested.is_definite_within(epsilon)
-                && (exceeds(neither, all, [0, n]) || exceeds(all, neither, [n, 0]))
-    }
-
-    fn softer_and_stiffer(&self, epsilon: f64) -> [Bounds; 2] {
-        [-1.0, 1.0].map(|sign| self.within(epsilon, sign))
-    }
-
-    fn negatives(&self, action: &Envelope, is_least: bool) -> Option<usize> {
-        action.negatives(self.terms(), ROUNDINGS, is_least)
-    }
-
-    /// Whether the index proves all stiffnesses within ε stable at all outer steps between: the counts are one for all of them, held at both ends, at one, and
-    /// twisted by each of 1 = s_0 > s_1 > ... > s_K = 0, and the last ones change by n in all.
-    fn is_stable_by_index(&self, [lo, hi]: [f64; 2], epsilon: f64) -> bool {
-        let Some(twists) = self.twists(lo / 2.0 + hi / 2.0) else { return false };
-        let [softer, stiffer] = self.softer_and_stiffer(epsilon);
-        let one = |of: &(dyn Fn(f64, &Bounds) -> Envelope + Sync)| {
-            let least = || self.negatives(&of(lo, &softer), true);
-            let (least, most) = both(true, least, || self.negatives(&of(hi, &stiffer), false));
-            least.filter(|own| Some(*own) == most)
-        };
-        let held =
-            |held: [bool; 2]| one(&move |step, bounds: &Bounds| self.action(step, bounds, held)).is_some();
-        if !held([true, true]) || !held([true, false]) {
-            return false;
-        }
-        let at = [1.0].into_iter().chain(twists).chain([0.0]);
-        let counts: Option<Vec<usize>> =
-            at.map(|s| one(&move |step, bounds: &Bounds| self.twisted(step, bounds, s))).collect();
-        let change = |own: Vec<usize>| own.windows(2).map(|pair| pair[0].abs_diff(pair[1])).sum::<usize>();
-        counts.map(change) == Some(self.nested.size())
-    }
-
-    /// Values of s = 1 + μ between modes of one of Krein's signs and of the other, the sign that of vᵀ Aᵀ C v; `None` where some μ are off \[−1, 0\], or where
-    /// signs change too often. Rounded: whatever they are, counts at them prove what they prove.
-    fn twists(&self, step: f64) -> Option<Vec<f64>> {
-        let n = self.nested.size();
-        let [x, p] = self.rounded_half(step);
-        let spectrum = Spectrum::of(x.subcols(n, n).transpose() * p.subcols(0, n), None)?;
-        if spectrum.mu.iter().any(|mu| mu.im != 0.0 || !(-1.0..=0.0).contains(&mu.re)) {
-            return None;
-        }
-        let v = Mat::from_fn(n, n, |i, k| spectrum.vectors[(i, k)].re);
-        let (av, cv) = (x.subcols(0, n) * &v, p.subcols(0, n) * &v);
-        let sign = |k: usize| (0..n).map(|i| av[(i, k)] * cv[(i, k)]).sum::<f64>() > 0.0;
-        between_signs(spectrum.mu.iter().enumerate().map(|(k, mu)| (1.0 + mu.re, sign(k))).collect())
     }
 
     /// What is proven of all stiffnesses within ε of their sizes.
@@ -388,7 +252,10 @@ impl Steps<'_> {
         if self.is_unstable_between(ends, epsilon) || self.has_real_unstable_mode(ends, epsilon) {
             return Holds::Unstable;
         }
-        let Some(blocks) = self.half_period(ends, epsilon) else { return Holds::NotTold };
+        if ends[0] < ends[1] {
+            return self.by_discs_between(ends, epsilon).into();
+        }
+        let Some(blocks) = self.half_period(ends[0], epsilon) else { return Holds::NotTold };
         signs::proven(&blocks).or_else(|| Spectrum::new(&blocks)?.certified(&blocks)).into()
     }
 
@@ -509,121 +376,8 @@ impl Steps<'_> {
     /// Growth from an unstable outer step on, as of two levels.
     ///
     /// # Errors
-    /// None: as of two levels.
+    /// Those of two levels; here there are none.
     pub fn growing(&self, from: f64, width: f64) -> Result<Vec<Growing>> {
         Grows::growing(self, from, width)
-    }
-
-    /// The period with friction γ per unit time, v → exp(−γ t) v in the middle of every drift, and a bound on its error.
-    fn damped_period(&self, step: f64, friction: f64) -> Option<(Mat<f64>, f64)> {
-        let ticks = step / self.outer * to_f64(self.schedule.tick());
-        let decay = from_f64_exact(friction * ticks).filter(|own| *own >= Rational::default())?;
-        let (kicks, mass) = self.kicks_at([step; 2], 0.0);
-        let drifts = Drifts { inverse_mass: &mass, decay: &decay, off: 0.0 };
-        let found = follow(&drifts, self.schedule.symmetric_period(), |_, clock| &kicks[clock]);
-        found.error.map(|error| (found.matrix(), error))
-    }
-
-    /// Where the spectral radius of a period with friction γ per unit time lies; `None`: doubles do not tell.
-    pub fn damping(&self, step: f64, friction: f64) -> Option<Damping> {
-        let (q, error) = self.damped_period(step, friction)?;
-        damping(&q, error, Radius::of(&q, error))
-    }
-
-    /// A friction that is proven to mask, where something grows without one: about the least. `None` where none was found.
-    pub fn masking_friction(&self, step: f64) -> Option<f64> {
-        let radius = |friction: f64| {
-            let values = self.damped_period(step, friction).and_then(|(q, _)| q.eigenvalues().ok());
-            values.map_or(f64::NAN, |all| all.into_iter().map(Complex64::norm).fold(0.0, f64::max))
-        };
-        let proven = |friction: f64| self.damping(step, friction) == Some(Damping::Damped);
-        least_masking(self.rate(step).ok()?, step, radius, proven)
-    }
-
-    /// The kicks in ticks, p ← p − F x, and the drifts, x ← x + a p for each tick: positions times √a, so that both are about as large; a is a power of 2.
-    /// Between two steps the kicks are those of the mean of their squares, off by up to r times themselves.
-    fn kicks_at(&self, ends: [f64; 2], epsilon: f64) -> (Vec<Stiff>, Vec<Vec<(usize, f64)>>) {
-        let [least, most] = ends.map(|step| self.square(step));
-        let (n, square) = (self.nested.size(), least / 2.0 + most / 2.0);
-        let r = (most - least) / (most + least);
-        let total = self.nested.total();
-        let middle = ((0..n).map(|i| total[(i, i)].abs()).sum::<f64>() / n as f64).sqrt();
-        let turn = middle * to_f64(self.schedule.tick()) * square.sqrt();
-        let a = if turn.is_normal() { turn.log2().round().exp2() } else { 1.0 };
-        let kick = |(k, own): (usize, &Level)| {
-            let factor = square * self.kicks[k] / a;
-            let stiffness = Stiffness::Whole(Mat::from_fn(n, n, |i, j| factor * own.stiffness[(i, j)]));
-            let rounding = ROUNDINGS as f64 * U * own.frobenius;
-            let error = (1.0 + r) * self.nested.error_within(k, epsilon) + r * own.size;
-            let off = 1.01 * factor * (error + rounding);
-            Stiff { stiffness, off, known: 0.0 }
-        };
-        let kicks = self.nested.levels.iter().enumerate().map(kick).collect();
-        (kicks, (0..n).map(|i| vec![(i, a)]).collect())
-    }
-
-    /// The half period with a bound for all stiffnesses within ε and all outer steps between two.
-    fn half_period(&self, ends: [f64; 2], epsilon: f64) -> Option<FloatBlocks> {
-        let (kicks, mass) = self.kicks_at(ends, epsilon);
-        let drifts = Drifts { inverse_mass: &mass, decay: &Rational::default(), off: 0.0 };
-        let state = follow_proven(&drifts, self.events.iter().copied(), |_, clock| &kicks[clock])?;
-        Some(state.blocks(vec![1.0; self.nested.size()]))
-    }
-
-    /// (A B) and (C D) of the half period, rounded, by products of whole matrices.
-    fn rounded_half(&self, step: f64) -> [Mat<f64>; 2] {
-        let (n, square) = (self.nested.size(), self.square(step));
-        let one = |first: usize| Mat::from_fn(n, 2 * n, |i, j| f64::from(u8::from(j == first + i)));
-        let (mut x, mut p) = (one(0), one(n));
-        for event in &self.events {
-            x += faer::Scale(event.drift as f64) * &p;
-            let weight = if event.weight == Weight::Half { 0.5 } else { 1.0 };
-            let kick = event.clocks().fold(Mat::<f64>::zeros(n, n), |sum, k| {
-                sum + faer::Scale(weight * square * self.kicks[k]) * &self.nested.levels[k].stiffness
-            });
-            p -= kick * &x;
-        }
-        [x, p]
-    }
-
-    /// Bᵀ C of that.
-    fn rounded_product(&self, step: f64) -> Mat<f64> {
-        let (n, [x, p]) = (self.nested.size(), self.rounded_half(step));
-        x.subcols(n, n).transpose() * p.subcols(0, n)
-    }
-
-    fn period(&self, step: f64) -> f64 {
-        step / self.outer * to_f64(self.schedule.tick()) * self.schedule.period() as f64
-    }
-
-    /// What grows fastest, and how fast per unit time: rounded.
-    fn fastest(&self, step: f64) -> Option<(f64, [Vec<f64>; 2])> {
-        let spectrum = Spectrum::of(self.rounded_product(step), None)?;
-        let rates = spectrum.mu.iter().map(|&mu| exponent(mu).re / self.period(step)).enumerate();
-        let (fastest, rate) = rates.max_by(|a, b| a.1.total_cmp(&b.1))?;
-        let own = spectrum.shape(fastest, &vec![1.0; self.nested.size()]);
-        let lifted = |part: fn(&Complex64) -> f64| -> Vec<f64> {
-            let own: Vec<f64> = own.iter().map(part).collect();
-            match &self.nested.basis {
-                Some(basis) => {
-                    let row = |i: usize| own.iter().enumerate().map(|(k, y)| basis[(i, k)] * y).sum();
-                    (0..basis.nrows()).map(row).collect()
-                }
-                None => own,
-            }
-        };
-        Some((rate, [lifted(|z| z.re), lifted(|z| z.im)]))
-    }
-}
-
-impl Grows for Steps<'_> {
-    fn rate(&self, step: f64) -> Result<f64> {
-        let values = self.rounded_product(step).eigenvalues();
-        let largest = |mu: Vec<Complex64>| mu.into_iter().map(|mu| exponent(mu).re).fold(0.0, f64::max);
-        Ok(values.map_or(f64::NAN, largest) / self.period(step))
-    }
-
-    fn is_stable(&self, step: f64) -> bool {
-        self.verdict_within(step, 0.0) == Holds::Stable
     }
 }
