@@ -873,6 +873,7 @@ def monodromy(
     time_unit: str = "",
     is_boxed: bool = False,
     has_field: bool = False,
+    has_mesh: bool = False,
 ) -> Monodromy:
     """The monodromy about a minimum ``at``, or about the periodic orbit that Newton's method finds from there.
 
@@ -883,7 +884,8 @@ def monodromy(
     holds them; what they take up of a force counts as none. Where neither finds it, it is followed from shorter steps,
     and where it ends is told in the unit of the steps; ``unit=None`` leaves that out. ``progress`` is called with the
     Hessians of half a period that are done and all of them, at each of Newton's steps. ``time_unit`` is that of the
-    steps. In a box translations are rigid motions, where a field holds the atoms none.
+    steps. In a box translations are rigid motions, where a field holds the atoms none. That is seen in the Hessians but
+    of a mesh, which pulls a little at the whole.
 
     Raises
     ------
@@ -937,7 +939,7 @@ def monodromy(
         why = "held bonds turn along an orbit, which no proof follows yet"
         return Monodromy(*measured, None, why, time_unit)
     moved = rigid_motions(start, held.masses, rotations=False)
-    keep = has_field or (not is_boxed and is_held(total, moved, error))
+    keep = has_field or (not has_mesh and is_held(total, moved, error))
     try:
         ahead = found.residual * (float(np.ptp(start, axis=0).max()) or 1.0)
         potentials, accuracy = along(half.struck, dict(zip(forces, steps, strict=True)), held.root, ahead)

@@ -630,6 +630,7 @@ def _oscillations(
         time_unit="ps",
         is_boxed=engine.is_boxed,
         has_field=field,
+        has_mesh=engine.is_boxed,
     )
 
 

@@ -208,54 +208,6 @@ def tethered_chain() -> tuple[mm.System, np.ndarray]:
     return system, where
 
 
-def test_a_chain_grows_as_the_scheme_of_lammps_has_it() -> None:
-    """``run_style respa 2 N`` as LAMMPS writes it, in NumPy: FENE bonds inside, repulsion and tethers outside, each
-    level kicking by half before and after the level within."""
-    system, where = tethered_chain()
-    beads, pairs = len(where), [(i, j) for i in range(len(where)) for j in range(i)]
-
-    def bonds(x: np.ndarray) -> np.ndarray:
-        apart = np.diff(x, axis=0)
-        r2 = np.sum(apart**2, axis=1, keepdims=True)
-        pull = 30 * apart / (1 - r2 / 1.5**2)
-        return np.vstack([pull, np.zeros(3)]) - np.vstack([np.zeros(3), pull])
-
-    def repulsion(x: np.ndarray) -> np.ndarray:
-        force = -TETHER * (x - where)
-        for i, j in pairs:
-            apart = x[i] - x[j]
-            r = np.linalg.norm(apart)
-            if r < 1.1224620483:
-                force[i] += (48 / r**14 - 24 / r**8) * apart
-                force[j] -= (48 / r**14 - 24 / r**8) * apart
-        return force
-
-    levels = [repulsion, bonds]
-
-    def respa(level: int, x: np.ndarray, v: np.ndarray, step: float, loops: int) -> None:
-        v += step / 2 * levels[level](x)
-        if level == len(levels) - 1:
-            x += step * v
-        else:
-            for _ in range(loops):
-                respa(level + 1, x, v, step / loops, loops)
-        v += step / 2 * levels[level](x)
-
-    kinds = set()
-    for outer, loops in [("0.02", 4), ("0.05", 4), ("0.08", 6), ("0.09", 8), ("0.095", 8)]:
-        step = Fraction(outer)
-        found = ko.oscillations(system, where, steps={0: step / loops, 1: step})
-
-        def after(state: np.ndarray, found: Any = found, step: Fraction = step, loops: int = loops) -> np.ndarray:
-            x, v = found.positions + state[: 3 * beads].reshape(-1, 3), state[3 * beads :].reshape(-1, 3).copy()
-            respa(0, x, v, float(step), loops)
-            return np.concatenate([(x - found.positions).ravel(), v.ravel()])
-
-        agrees(found, multipliers(after, 3 * beads, 1e-6, closed=1e-7))
-        kinds.add(found.stable)
-    assert kinds == {True, False}
-
-
 def test_a_chain_on_three_clocks_grows_as_the_engine_has_it() -> None:
     """FENE bonds, repulsion and tethers, from the inside out."""
     system, where = tethered_chain()
