@@ -18,7 +18,7 @@ pub(in crate::system) const DENSE: u64 = 10;
 /// The most work that one verdict may cost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
-    /// Products of doubles or of 64-bit words; of dense doubles [ten](DENSE) count as one.
+    /// Products of doubles or of 64-bit words; of dense doubles ten count as one.
     pub products: u64,
     /// The part of these for the digits of a growth rate that doubles do not give.
     pub refining: u64,
