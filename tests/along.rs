@@ -197,8 +197,16 @@ fn a_molecule_at_rest_is_decided_along_its_orbit_as_at_its_minimum() {
             strikes(&steps).iter().zip(&pair).map(|(count, k)| vec![k.clone(); *count]).collect();
         let of_dofs: Vec<f64> = masses.iter().flat_map(|m| [*m; 3]).collect();
         let along = Along::new(&of_dofs, &steps, &kicks).unwrap().at_accuracy(1e-9).unwrap();
-        let own = along.turning([&positions, &positions]).unwrap();
+        let own = along.clone().turning([&positions, &positions]).unwrap();
         let found = own.decide(Route::Cheapest, &limits).unwrap();
+        // The same motions as columns, sums of each other.
+        let sums = DMatrix::from_fn(12, 6, |i, k| {
+            found.rigid_modes[..=k].iter().map(|own| to_f64(&own[i])).sum::<f64>()
+        });
+        let named = along.free_of(&[sums.clone(), sums]).unwrap().decide(Route::Cheapest, &limits).unwrap();
+        assert_eq!(named.measured.as_ref().unwrap().holds, found.measured.as_ref().unwrap().holds);
+        let [a, b] = [&named, &found].map(|own| own.growth_rate().map_or(0.0, middle));
+        assert!((a - b).abs() <= 1e-9 * (1.0 + b), "{case}: {a} {b}");
         let body =
             Body { masses: Some(of_dofs.clone()), positions: Some(positions.clone()), ..Body::default() };
         let given = steps.iter().cloned().zip(pair.iter().cloned()).collect();
@@ -238,5 +246,18 @@ fn what_does_not_fit_is_named() {
     assert_eq!(field(&[1.0, 1.0], &[ratio(1, 1), ratio(1, 1)], &kicks([2, 1])), "potentials");
     let own = Along::new(&[1.0, 1.0], &steps, &kicks([2, 1])).unwrap();
     assert_eq!(own.clone().at_accuracy(0.2).unwrap_err().field(), "accuracy");
-    assert_eq!(own.turning([&[[0.0; 3]], &[[0.0; 3]]]).unwrap_err().field(), "masses");
+    assert_eq!(own.clone().turning([&[[0.0; 3]], &[[0.0; 3]]]).unwrap_err().field(), "masses");
+    let columns = |rows: usize, columns: usize| DMatrix::from_element(rows, columns, 1.0);
+    for ends in [
+        vec![],
+        vec![columns(2, 1)],
+        vec![columns(3, 1); 2],
+        vec![columns(2, 0); 2],
+        vec![columns(2, 1), columns(2, 2)],
+        vec![columns(2, 2); 2],
+        vec![columns(2, 1), columns(2, 1) * 0.0],
+    ] {
+        assert_eq!(own.clone().free_of(&ends).unwrap_err().field(), "rigid", "{ends:?}");
+    }
+    assert!(own.free_of(&[columns(2, 1), columns(2, 1)]).is_ok());
 }

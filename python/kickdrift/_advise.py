@@ -312,7 +312,7 @@ def advise(
         A mapping of str to Time, or a sequence of Time: the periods of the forces, fs, wavenumbers as ``"3700/cm"``, or
         ``"water"``, ``"protein"`` (in water), ``"peptide"`` (in vacuum) for what nonbonded forces have there; the last
         ones are on the slower clocks. Or a molecule: a :class:`System`, the path of a system file, OpenMM's
-        ``Simulation`` or ``System``, ASE's ``Atoms``, which is asked for :meth:`System.advise`.
+        ``Simulation`` or ``System``, ASE's ``Atoms``, an instance of LAMMPS, which is asked for :meth:`System.advise`.
     steps : sequence of Time, or a sequence of such
         A scheme, from the innermost to the outermost step, fs; or several schemes. Of OpenMM's ``System`` also a
         mapping of force groups to steps.
@@ -338,8 +338,9 @@ def advise(
     all_modes : bool
         The periods are the shortest of all motions on their clocks, so that it is known whether a faster one exists.
     **made
-        What else makes the system of OpenMM's or ASE's: the keywords of :func:`kickdrift.openmm.system` (``positions``,
-        ``topology``, ``integrator`` and so on) or :func:`kickdrift.ase.system` (``groups``).
+        What else makes the system of OpenMM's, ASE's or LAMMPS's: the keywords of :func:`kickdrift.openmm.system`
+        (``positions``, ``topology``, ``integrator`` and so on), :func:`kickdrift.ase.system` (``groups``) or
+        :func:`kickdrift.lammps.system` (``respa``).
         Of OpenMM's with more than 1,200 degrees of freedom the answer is that of :func:`kickdrift.openmm.bands`, which
         takes seconds, unless ``longest`` gives the seconds that Hessians may take.
 
@@ -377,7 +378,9 @@ def advise(
         )
         return told
     if made:
-        raise KickdriftError(next(iter(made)), shown(next(iter(made.values()))), "is for a system of OpenMM or ASE")
+        raise KickdriftError(
+            next(iter(made)), shown(next(iter(made.values()))), "is for a system of OpenMM, ASE or LAMMPS"
+        )
     given_alone = [periods] if isinstance(periods, str) else periods
     alone = items("periods", given_alone, "give a list of periods in fs, or texts as '10fs'; or periods by name")
     named = periods.items() if isinstance(periods, Mapping) else ((None, value) for value in alone)
@@ -407,6 +410,10 @@ def molecule(
         from kickdrift import ase
 
         return ase.system(given, **made), _no_groups(steps)
+    if home == "lammps":
+        from kickdrift import lammps
+
+        return lammps.system(given, **made), _no_groups(steps)
     if home == "openmm":
         from kickdrift import openmm
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from pathlib import Path
@@ -449,7 +449,7 @@ def _common(steps: Sequence[Fraction]) -> Fraction:
 class Monodromy(Frozen):
     """What small deviations from a state do over one period of the clocks: measured in doubles, and what is proven.
 
-    About an orbit without held bonds :attr:`verdict` is proven for all Hessians within the accuracy of those measured.
+    About an orbit :attr:`verdict` is proven for all Hessians within the accuracy of those measured.
     Rates, multipliers and doubts are estimates, :attr:`growth_bounds` proven.
 
     Attributes
@@ -660,7 +660,8 @@ def _multipliers(mu: npt.NDArray[np.complex128]) -> npt.NDArray[np.complex128]:
 @dataclass(frozen=True)
 class Struck:
     """A kick that was made: how long its group acted, the rows of the propagator that say where the atoms were, the
-    error of its Hessian, which the differences leave, and its norm; the group, the positions, and the Hessian."""
+    error of its Hessian, which the differences leave, and its norm; the group, the positions, the Hessian, and what the
+    turning of held distances adds to that."""
 
     duration: float
     rows: Doubles
@@ -669,6 +670,7 @@ class Struck:
     group: int
     positions: Doubles
     stiffness: Doubles
+    shape: Doubles | float = 0.0
 
 
 def _eigenvalues(
@@ -705,13 +707,16 @@ _ROUNDING = 1e-13
 @dataclass(frozen=True, eq=False)
 class Half:
     """Half a period from rest: the propagator of deviations in the frames at its ends, the mass-weighted velocity at
-    its end and that frame, and the kicks."""
+    its end and that frame, the kicks, the time and factors of each drift along held distances, and the factors of their
+    gradients in the last velocity."""
 
     matrix: Doubles
     speed: Doubles
     first: Doubles
     last: Doubles
     struck: list[Struck]
+    drifts: list[tuple[float, Doubles]]
+    taken: Doubles
 
 
 def compose(
@@ -733,7 +738,7 @@ def compose(
     position, speed = start.copy(), np.zeros(start.size)
     at, going = np.hstack([first, np.zeros_like(first)]), np.hstack([np.zeros_like(first), first])
     known: dict[int, tuple[Doubles, float, float]] = {}
-    struck = []
+    struck, drifts = [], []
     last, kicks = Fraction(0), schedule(steps)
     strikes = sum(len(kick.groups) for kick in kicks)
     for kick in kicks:
@@ -743,6 +748,7 @@ def compose(
         elif drift:
             reached, speed, factors = held.drift(position, speed, drift)
             at, going = held.led(position, reached, factors, drift, at, going)
+            drifts.append((drift, factors))
             position, allowed = reached, held.frame(reached)
         for group, duration in kick.groups:
             if not (still and group in known):
@@ -763,8 +769,11 @@ def compose(
                 speed = speed + float(duration) * forces[group](position).ravel() / held.root
         last = kick.time
     # Deviations turn the gradients, along which the velocity does not vanish.
-    going = going - held.bent(held.along(speed, position)) @ at
-    return Half(np.vstack([allowed.T @ at, allowed.T @ going]), allowed.T @ speed, first, allowed, struck)
+    taken = held.along(speed, position)
+    going = going - held.bent(taken) @ at
+    return Half(
+        np.vstack([allowed.T @ at, allowed.T @ going]), allowed.T @ speed, first, allowed, struck, drifts, taken
+    )
 
 
 def _swing(forces: Sequence[Force], steps: Sequence[Fraction], start: Doubles, held: Held) -> Doubles:
@@ -873,6 +882,7 @@ def monodromy(
     time_unit: str = "",
     is_boxed: bool = False,
     has_field: bool = False,
+    has_mesh: bool = False,
 ) -> Monodromy:
     """The monodromy about a minimum ``at``, or about the periodic orbit that Newton's method finds from there.
 
@@ -883,7 +893,8 @@ def monodromy(
     holds them; what they take up of a force counts as none. Where neither finds it, it is followed from shorter steps,
     and where it ends is told in the unit of the steps; ``unit=None`` leaves that out. ``progress`` is called with the
     Hessians of half a period that are done and all of them, at each of Newton's steps. ``time_unit`` is that of the
-    steps. In a box translations are rigid motions, where a field holds the atoms none.
+    steps. In a box translations are rigid motions, where a field holds the atoms none. That is seen in the Hessians but
+    of a mesh, which pulls a little at the whole.
 
     Raises
     ------
@@ -933,27 +944,75 @@ def monodromy(
     away = float(np.linalg.norm(start - at, axis=1).max())
     values = _eigenvalues(half.matrix, half.struck, found.residual)
     measured = (about, frozen(start.copy()), away, period, frozen(half.matrix), found.residual, *values)
-    if held.distances:
-        why = "held bonds turn along an orbit, which no proof follows yet"
-        return Monodromy(*measured, None, why, time_unit)
     moved = rigid_motions(start, held.masses, rotations=False)
-    keep = has_field or (not is_boxed and is_held(total, moved, error))
+    keep = has_field or (not has_mesh and is_held(total, moved, error))
+    sides: dict[str, Any] = {"positions": start, "turned": half.struck[-1].positions, "periodic": is_boxed}
+    masses, root, struck = held.masses, held.root, half.struck
+    ahead = found.residual * (float(np.ptp(start, axis=0).max()) or 1.0)
     try:
-        ahead = found.residual * (float(np.ptp(start, axis=0).max()) or 1.0)
-        potentials, accuracy = along(half.struck, dict(zip(forces, steps, strict=True)), held.root, ahead)
+        if held.distances:
+            struck, frames = plain(half, steps, held, ahead)
+            motions = [rigid_motions(sides[end], masses, rotations=not is_boxed) for end in ("positions", "turned")]
+            rigid = [np.linalg.lstsq(own, motion, rcond=None)[0] for own, motion in zip(frames, motions, strict=True)]
+            sides = {} if keep else {"rigid": np.array(rigid)}
+            masses = root = np.ones(half.first.shape[1])
+        potentials, accuracy = along(struck, dict(zip(forces, steps, strict=True)), root, ahead)
     except KickdriftError as refused:
         return Monodromy(*measured, None, str(refused), time_unit)
-    made = System.along_orbit(
-        held.masses,
-        potentials,
-        positions=start,
-        turned=half.struck[-1].positions,
-        accuracy=accuracy,
-        time_unit=time_unit,
-        periodic=is_boxed,
-        keep_rigid=keep,
-    )
+    made = System.along_orbit(masses, potentials, accuracy=accuracy, time_unit=time_unit, keep_rigid=keep, **sides)
     return Monodromy(*measured, made, "", time_unit)
+
+
+def plain(
+    half: Half, steps: Sequence[Fraction], held: Held, ahead: float
+) -> tuple[list[Struck], tuple[Doubles, Doubles]]:
+    """The kicks of half a period along held distances in coordinates in which drifts between them are plain, and the
+    frames at both ends.
+
+    Deviations are y = F_k a at the k-th kick, p = F_kᵀ v, for a basis F_k of what is free. RATTLE's drift with the
+    factors l is a kick by -F_kᵀ (sum of l_c grad grad g_c) F_k/t and then F_{k+1} a' = F_k a + t v, but for what the
+    gradients at the k-th kick take up. Times F_kᵀ, where F_{k+1} is chosen so that F_kᵀ F_{k+1} = 1, this is
+    a' = M_k a + t p with M_k = F_kᵀ F_k; and p' = F_{k+1}ᵀ (F_{k+1} a' - F_k a)/t = (M_{k+1} a' - a)/t. That is a kick
+    by (1 - M_k)/t, the drift a' = a + t p, and a kick by (1 - M_{k+1})/t. All these are symmetric, and are added to the
+    Hessians of the fastest clock. Where Newton's next step would move the atoms by ``ahead``, frames turn by that over
+    a held distance, and tensions change by the Hessians times it.
+
+    Raises
+    ------
+    KickdriftError
+        Where some kick is none of the fastest clock's.
+    """
+    fastest, frame, strikes = min(range(len(steps)), key=lambda k: steps[k]), half.first, iter(half.struck)
+    kicks, struck, nearest = schedule(steps), [], min(distance for _, _, distance in held.distances)
+    for place, kick in enumerate(kicks):
+        own = [next(strikes) for _ in kick.groups]
+        if fastest not in [strike.group for strike in own]:
+            raise KickdriftError("steps", "no multiples of the fastest", "choose such, for a proof along held bonds")
+        if place:
+            here = held.frame(own[0].positions)
+            frame = here @ np.linalg.inv(frame.T @ here)
+        apart = np.eye(frame.shape[1]) - frame.T @ frame
+        times = [half.drifts[k][0] for k in (place - 1, place) if 0 <= k < len(half.drifts)]
+        shape = np.asarray(sum(apart / time for time in times))
+        if place < len(half.drifts):
+            time, factors = half.drifts[place]
+            shape = shape - frame.T @ held.bent(factors) @ frame / time
+        else:
+            # Where it turns, the velocity does not vanish along the gradients, which deviations turn.
+            shape = shape + frame.T @ held.bent(half.taken) @ frame
+        for strike in own:
+            made = replace(strike, stiffness=frame.T @ strike.stiffness @ frame, error=strike.error * norm(frame) ** 2)
+            if strike.group == fastest:
+                pulls = sum(other.duration * other.size for other in own)
+                off = _SHAPED * sum(1 / time for time in times) + (norm(shape) + pulls) * ahead / nearest
+                added, error = (shape + shape.T) / 2 / strike.duration, made.error + off / strike.duration
+                made = replace(made, shape=added, error=error)
+            struck.append(made)
+    return struck, (half.first, frame)
+
+
+#: Frames and factors are rounded by this part of 1: some digits are lost where positions are large over what is held.
+_SHAPED = 1e-13
 
 
 #: What is proven is so for Hessians ten times farther from those measured than these are seen to be off. Of a power law
@@ -982,7 +1041,9 @@ def along(
         own = [[kick for kick in struck if kick.group == place] for place in groups]
         matrices = [np.sum([kick.stiffness for kick in kicks], axis=0) for kicks in zip(*own, strict=True)]
         errors = [sum(kick.error for kick in kicks) for kicks in zip(*own, strict=True)]
-        sizes = [max(norm(matrix), 1e-300) for matrix in matrices]
+        added = [sum(kick.shape for kick in kicks) for kicks in zip(*own, strict=True)]
+        whole = [matrix + shape for matrix, shape in zip(matrices, added, strict=True)]
+        sizes = [max(norm(matrix), 1e-300) for matrix in whole]
         where = [kick.positions for kick in own[0]]
         changes = 0.0
         for k in range(len(where) - 1):
@@ -992,7 +1053,7 @@ def along(
         for error, size in zip(errors, sizes, strict=True):
             worst = max(worst, _FARTHER * (error + changes * ahead) / size)
         name = ", ".join(kinds[place] for place in groups)
-        potentials[name] = (step, np.array(matrices) * np.outer(root, root))
+        potentials[name] = (step, np.array(whole) * np.outer(root, root))
     return potentials, usable(worst, "a kick along the orbit", "the one that was taken", SMOOTHER)
 
 

@@ -220,6 +220,7 @@ class System(Frozen):
         *,
         positions: npt.ArrayLike | None = None,
         turned: npt.ArrayLike | None = None,
+        rigid: npt.ArrayLike | None = None,
         accuracy: float = 1e-6,
         title: str = "",
         time_unit: str = "",
@@ -242,6 +243,9 @@ class System(Frozen):
         positions, turned : array of doubles, shape (n/3, 3), optional
             Where the particles of a free molecule are at t = 0 and half a period later: its rigid motions are set
             apart.
+        rigid : array of doubles, shape (2, n, r), optional
+            These motions themselves, in other coordinates than those of particles: mass-weighted columns at t = 0 and
+            half a period later.
         accuracy : float
             How well each Hessian is known, relative to its norm: what is proven is so for all within it.
         title, time_unit, labels, notes, periodic, keep_rigid
@@ -265,7 +269,7 @@ class System(Frozen):
         if not isinstance(potentials, Mapping):
             raise KickdriftError("potentials", shown(potentials), "give a mapping of names to (step, Hessians)")
         arrays = {"masses": doubles("masses", masses)}
-        ends = {"positions": positions, "turned": turned}
+        ends = {"positions": positions, "turned": turned, "rigid": rigid}
         if not (periodic or keep_rigid):
             arrays |= {name: doubles(name, own) for name, own in ends.items() if own is not None}
         document: dict[str, Any] = {"along_orbit": True, "accuracy": float(doubles("accuracy", accuracy))}

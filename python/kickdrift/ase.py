@@ -5,32 +5,18 @@ Units: lengths in Å, energies in eV, masses in u as ASE has them; steps in fs, 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import replace
+from collections.abc import Mapping
 from fractions import Fraction
 from typing import Any
 
 import numpy as np
 
 from kickdrift._errors import KickdriftError, needs
-from kickdrift._held import Held
-from kickdrift._hessians import (
-    LONGEST,
-    SOUGHT,
-    Followed,
-    Force,
-    Monodromy,
-    Work,
-    hessian,
-    minimum,
-    monodromy,
-    seconds_of,
-    seen,
-    unbalanced,
-)
+from kickdrift._groups import Groups
+from kickdrift._hessians import LONGEST, Force, Monodromy
 from kickdrift._numbers import Exact, doubles, duration
-from kickdrift._progress import Progress, shown
-from kickdrift._rigid import Doubles, is_held, norm, rigid_motions
+from kickdrift._progress import Progress
+from kickdrift._rigid import Doubles
 from kickdrift._system import System
 
 try:
@@ -99,49 +85,7 @@ def system(
     >>> found.decide().stable
     True
     """
-    forces, steps, masses = _forces(atoms, groups)
-    dear, sought = _evaluation(forces, atoms), SOUGHT * len(forces) if minimize else 0
-    Work(3 * len(atoms), len(forces), dear, sought).begin(longest, progress is True, "fewer atoms")
-    where = _start(atoms, forces, masses, minimize, difference, progress)
-    seen_by = shown(progress)
-    measured = {
-        name: hessian(force, where, masses, difference, None, seen_by, symmetric) for name, force in forces.items()
-    }
-    accuracy = max(seen(*own, name, f"{difference:g} Å") for name, own in measured.items())
-    pulls = {name: force(where) / units.fs**2 for name, force in forces.items()}
-    total = np.sum([matrix for matrix, _ in measured.values()], axis=0) / units.fs**2
-    follow = "Ask oscillations(...) for what grows about that orbit, as a run shows it"
-    notes = unbalanced(pulls, norm(total), masses, "eV/Å", follow)
-    moved = rigid_motions(where, masses, rotations=False)
-    held = is_held(total * units.fs**2, moved, sum(error for _, error in measured.values()))
-    root = np.sqrt(np.repeat(masses, 3))
-    potentials: dict[str, tuple[Exact, Doubles]] = {}
-    for (name, (matrix, _)), step in zip(measured.items(), steps, strict=True):
-        own = (matrix + matrix.T) / 2 if symmetric else matrix
-        potentials[name] = (step, own * np.outer(root, root))
-    made = System.from_hessians(
-        masses,
-        potentials,
-        positions=None if held else where,
-        accuracy=accuracy,
-        title=f"{len(atoms)} atoms, fs and Å",
-        time_unit="fs",
-        labels=[f"{symbol}{n}" for n, symbol in enumerate(atoms.get_chemical_symbols())],
-        notes=notes,
-        periodic=bool(atoms.pbc.any()),
-        keep_rigid=held,
-        symmetric=symmetric,
-    )
-    if not symmetric:
-        return made
-
-    def find() -> Monodromy:
-        at = atoms.copy()
-        at.positions = where
-        return _oscillations(at, groups, "orbit", False, difference, unit=None)
-
-    work = Work.of_period(3 * len(atoms), steps, dear, "orbit")
-    return replace(made, _orbit=Followed.beside(work, notes, find, f"{float(max(steps)):g} fs", "Å"))
+    return _groups(atoms, groups).system(minimize, difference, progress, symmetric, longest)
 
 
 def oscillations(
@@ -178,50 +122,34 @@ def oscillations(
     >>> kickdrift.ase.oscillations(ase.Atoms("Cu2", [[0, 0, 0], [2.2, 0, 0]]), {"all": (EMT(), 5)}).stable
     True
     """
-    return _oscillations(atoms, groups, about, minimize, difference, "fs", progress, longest)
+    return _groups(atoms, groups).oscillations(about, minimize, difference, "fs", progress, longest)
 
 
-def _oscillations(
-    atoms: Any,
-    groups: Mapping[str, tuple[Any, Exact]],
-    about: str,
-    minimize: bool,
-    difference: float,
-    unit: str | None,
-    progress: Progress | bool = False,
-    longest: float = LONGEST,
-) -> Monodromy:
-    """:func:`oscillations`; without a ``unit`` an orbit not found at once is not followed from shorter steps."""
-    forces, steps, masses = _forces(atoms, groups)
-    dear, sought = _evaluation(forces, atoms), SOUGHT * len(forces) if minimize else 0
-    Work.of_period(3 * len(atoms), steps, dear, about, sought).begin(longest, progress is True, "fewer atoms")
-    where = _start(atoms, forces, masses, minimize, difference, progress)
-    told = shown(progress, "Hessians of half a period")
-    is_boxed = bool(atoms.pbc.any())
-    return monodromy(
-        forces, steps, where, Held(masses), difference, about, unit, told, time_unit="fs", is_boxed=is_boxed
-    )
-
-
-def _evaluation(forces: Mapping[str, Force], atoms: Any) -> float:
-    """Seconds that a group's force takes, their mean."""
-    return sum(seconds_of(force, atoms.positions) for force in forces.values()) / len(forces)
-
-
-def _forces(atoms: Any, groups: Mapping[str, tuple[Any, Exact]]) -> tuple[dict[str, Force], list[Fraction], Doubles]:
+def _groups(atoms: Any, groups: Mapping[str, tuple[Any, Exact]]) -> Groups:
     if not groups:
         raise KickdriftError("groups", None, "give a calculator and a step for each group of forces")
     if atoms.constraints:
         raise KickdriftError("atoms", f"{len(atoms.constraints)} constraints", "constraints are not handled here")
-    forces, steps = {}, []
+    forces: dict[str, Force] = {}
+    steps: list[Fraction] = []
     for name, (calculator, step) in groups.items():
         forces[name] = _force(atoms, calculator)
         steps.append(duration(f"groups[{name}]", step, "fs"))
-    # From eV to u Å²/fs².
-    return forces, steps, np.asarray(atoms.get_masses(), dtype=np.float64)
+    return Groups(
+        forces,
+        steps,
+        masses=np.asarray(atoms.get_masses(), dtype=np.float64),
+        where=doubles("atoms", atoms.positions),
+        time="fs",
+        length="Å",
+        # A force of u Å/fs² in eV/Å.
+        force=("eV/Å", 1 / units.fs**2),
+        labels=[f"{symbol}{n}" for n, symbol in enumerate(atoms.get_chemical_symbols())],
+        is_boxed=bool(atoms.pbc.any()),
+    )
 
 
-def _force(atoms: Any, calculator: Any) -> Callable[[Doubles], Doubles]:
+def _force(atoms: Any, calculator: Any) -> Force:
     if isinstance(calculator, tuple):
         dear, cheap = (_force(atoms, own) for own in calculator)
         return lambda positions: dear(positions) - cheap(positions)
@@ -232,25 +160,7 @@ def _force(atoms: Any, calculator: Any) -> Callable[[Doubles], Doubles]:
 
     def of(positions: Doubles) -> Doubles:
         own.set_positions(positions)
+        # From eV/Å to u Å/fs².
         return np.asarray(own.get_forces() * units.fs**2, dtype=np.float64)
 
     return of
-
-
-def _start(
-    atoms: Any,
-    forces: Mapping[str, Force],
-    masses: Doubles,
-    minimize: bool,
-    difference: float,
-    progress: Progress | bool,
-) -> Doubles:
-    where = doubles("atoms", atoms.positions)
-    if not minimize:
-        return where
-    every, told = list(forces.values()), shown(progress, "columns on the way to the minimum")
-
-    def whole(at: Doubles) -> Doubles:
-        return np.asarray(np.sum([force(at) for force in every], axis=0))
-
-    return minimum(whole, where, Held(masses), difference, progress=told)[0]

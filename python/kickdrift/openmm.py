@@ -567,8 +567,9 @@ def oscillations(
     Returns
     -------
     Monodromy
-        About the orbit its ``verdict`` is proven for all Hessians within the accuracy of those measured, unless bonds
-        are held; rates are estimates. About the minimum :func:`system` gives what can be proven.
+        About the orbit its ``verdict`` is proven for all Hessians within the accuracy of those measured; with held
+        bonds where every kick is one of the fastest clock's. Rates are estimates. About the minimum :func:`system`
+        gives what can be proven.
 
     Raises
     ------
@@ -630,6 +631,7 @@ def _oscillations(
         time_unit="ps",
         is_boxed=engine.is_boxed,
         has_field=field,
+        has_mesh=engine.is_boxed,
     )
 
 

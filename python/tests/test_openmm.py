@@ -951,8 +951,11 @@ def test_held_bonds_swing_and_grow_as_the_engine_does(make: Any, outer: str, gro
         verdict = ko.system(system, positions, steps=steps).decide()
         assert about.growth_rate == pytest.approx(verdict.growth_rate, rel=1e-3)
         told = str(kd.advise(system, positions=positions, steps=steps, levers=False))
-        assert f"deviations grow at {found.growth_rate:.3g}/ps (an estimate in doubles: held bonds turn" in told
-    assert not found.proven and found.verdict is None and found.growth_bounds is None
+        assert f"deviations grow at {found.growth_rate:.3g}/ps (proven for all Hessians within" in told
+    # What is proven is of other coordinates, of the same half period.
+    assert found.proven and found.along is not None and found.along.accuracy < 1e-7
+    lo, hi = found.growth_bounds
+    assert lo <= found.growth_rate <= hi and (hi > 0) == (grows > 0)
 
 
 def test_drifts_too_long_for_held_distances_are_refused() -> None:

@@ -105,12 +105,6 @@ impl Span {
 /// What is asked of the unstable steps, in words.
 pub const NEAREST: &str = "the unstable steps next to its own";
 
-/// A cost that the limits allow.
-fn allowed(cost: f64, limits: &Limits, what: impl FnOnce() -> String) -> Result<f64> {
-    let remedy = "choose a shorter range or a larger resolution";
-    limits.allow(cost.min(1e19) as u64, what).map_err(|error| error.or(remedy)).map(|()| cost)
-}
-
 impl SystemScene {
     /// The verdicts on all values of a number in a range, no interval wider than `width` times its larger end missed.
     ///
@@ -148,7 +142,14 @@ impl SystemScene {
                 self.model.cost_of_stretches(number, span.ends(), width, limits)
             })?,
         };
-        allowed(cost, limits, || format!("intervals of {span}"))
+        self.allowed(cost, limits, || format!("intervals of {span}"))
+    }
+
+    /// A cost that the limits allow.
+    fn allowed(&self, cost: f64, limits: &Limits, what: impl FnOnce() -> String) -> Result<f64> {
+        let remedy = "choose a shorter range or a larger resolution";
+        let counted = self.model.counted(cost).min(1e19) as u64;
+        limits.allow(counted, what).map_err(|error| error.or(remedy)).map(|()| cost)
     }
 
     /// What `ask` finds of a number that is no step.
@@ -225,7 +226,7 @@ impl SystemScene {
     /// As [`SystemScene::nearest_unstable`].
     pub fn cost_of_nearest(&self, width: f64, limits: &Limits) -> Result<f64> {
         self.allow_intervals("nearest", limits)?;
-        allowed(self.model.cost_of_nearest(width, limits)?, limits, || NEAREST.into())
+        self.allowed(self.model.cost_of_nearest(width, limits)?, limits, || NEAREST.into())
     }
 
     /// What has no intervals is refused, and what costs too much.
@@ -256,7 +257,7 @@ impl SystemScene {
             _ => return refused("of this file", "are for linear systems of rational numbers"),
         }
         let work = || format!("a verdict on {} degrees of freedom", self.model.size());
-        limits.allow(self.model.cost(), work)
+        limits.allow(self.model.counted(self.model.cost() as f64) as u64, work)
     }
 
     /// The multiples of the shortest of the other steps.

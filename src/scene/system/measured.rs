@@ -27,7 +27,8 @@
 //! masses and distances, the motions of a molecule are named.
 //! `"along_orbit": true` says that the Hessians are those along half a period of the integrator's own orbit, which is at rest at t = 0 and at T/2: each
 //! `stiffness` is an array (k, n, n), one matrix for each kick of its clock from t = 0 to T/2, both counted, not mass-weighted. A free molecule has
-//! `positions` at t = 0 and `turned`, those at T/2, by which its rigid motions are set apart.
+//! `positions` at t = 0 and `turned`, those at T/2, by which its rigid motions are set apart. In other coordinates than those of atoms `rigid` has these
+//! motions, an array (2, n, r): mass-weighted columns at both ends.
 //! `"keep_rigid": true` projects no rigid motions out: there are none, as of atoms among others that stand still.
 
 use nalgebra::DMatrix;
@@ -68,6 +69,7 @@ pub(super) struct Document {
     #[serde(default)]
     pub along_orbit: bool,
     pub turned: Option<Reference>,
+    pub rigid: Option<Reference>,
     #[serde(default = "yes")]
     pub symmetric: bool,
     pub method: Option<String>,
@@ -134,8 +136,10 @@ pub(super) fn read(document: &Document, arrays: &Arrays) -> Result<Model> {
     if document.along_orbit {
         return document.along(arrays);
     }
-    if document.turned.is_some() {
-        return Err(Error::input("turned", "given", "is for \"along_orbit\": true: leave it out"));
+    for (field, is_given) in [("turned", document.turned.is_some()), ("rigid", document.rigid.is_some())] {
+        if is_given {
+            return Err(Error::input(field, "given", "is for \"along_orbit\": true: leave it out"));
+        }
     }
     let read = document.potentials.iter().enumerate().map(|(k, own)| own.read(k, arrays));
     let mut read = read.collect::<Result<Vec<_>>>()?;
@@ -203,6 +207,14 @@ impl Document {
         }
         let masses = self.masses(n, arrays)?.ok_or_else(|| Error::missing("masses", "give them"))?;
         let own = Along::new(&masses, &steps, &kicks)?.at_accuracy(self.accuracy()?)?;
+        if let Some(at) = &self.rigid {
+            let ends = at.read("rigid", arrays)?.matrices("rigid")?;
+            if self.keep_rigid || self.periodic || self.positions.is_some() || self.turned.is_some() {
+                let remedy = "stands in place of positions, turned, periodic and keep_rigid: leave these out";
+                return Err(Error::input("rigid", "given", remedy));
+            }
+            return Ok(Model::Along(Box::new(own.free_of(&ends)?)));
+        }
         let turned = self.turned.as_ref().map(|at| at.read("turned", arrays)).transpose()?;
         let turned = turned.map(|own| triples(&own.into_values(), n)).transpose()?;
         Ok(Model::Along(Box::new(match (self.positions(n, arrays)?, turned) {

@@ -81,7 +81,7 @@ impl Along {
     /// A budget error before the work; exact arithmetic beside rigid motions; rigid motions that no Hessians within the accuracy leave free.
     pub fn decide(&self, route: Route, limits: &Limits) -> Result<Analysis> {
         let n = self.size();
-        limits.allow(self.cost(), || {
+        limits.allow_dense(self.cost(), || {
             format!("half a period of dense kicks and the eigenvalues of {}", degrees_of_freedom(n))
         })?;
         let asked = (route == Route::Exact).then(|| self.exact(limits)).transpose()?;

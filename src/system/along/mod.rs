@@ -23,6 +23,9 @@
 //! the Hessians within the accuracy for which C J₀ = 0 and J₁ᵀ C = 0; that there may be such is checked. In a periodic box the translations are
 //! projected out of each Hessian, as of any other.
 //!
+//! **Held distances** turn along an orbit. In coordinates that go with them drifts are plain ones again, between symmetric kicks that are added to the
+//! Hessians (`python/kickdrift/_hessians.py`, `plain`); the rigid motions are given as columns then ([`Along::free_of`]).
+//!
 //! | file | what |
 //! |---|---|
 //! | `model` | the Hessians, their accuracy, the rigid motions |

@@ -129,6 +129,35 @@ impl Along {
         Ok(Along { rigid: Rigid::Turning(motions), ..self })
     }
 
+    /// The same without motions that are free, one a column, mass-weighted, where the orbit starts and where it turns: as those of a molecule with
+    /// held bonds in coordinates of what these leave.
+    ///
+    /// # Errors
+    /// Columns of another length than n, of another number at the two ends, that depend on each other or are all there is.
+    pub fn free_of(self, ends: &[DMatrix<f64>]) -> Result<Along> {
+        let n = self.size();
+        let orthonormal = |own: &DMatrix<f64>| {
+            let columns = Mat::from_fn(own.nrows(), own.ncols(), |i, j| own[(i, j)]);
+            let split = columns.qr();
+            let lengths = || (0..own.ncols()).map(|k| split.R()[(k, k)].abs());
+            let (least, most) = (lengths().fold(f64::INFINITY, f64::min), lengths().fold(0.0, f64::max));
+            // Far above the roundings of the columns.
+            (least > 1e-8 * most).then(|| split.compute_thin_Q())
+        };
+        let fits = |own: &DMatrix<f64>| {
+            own.nrows() == n && (1..n).contains(&own.ncols()) && own.ncols() == ends[0].ncols()
+        };
+        if let [start, turned] = ends
+            && ends.iter().all(fits)
+            && let (Some(start), Some(turned)) = (orthonormal(start), orthonormal(turned))
+        {
+            return Ok(Along { rigid: Rigid::Turning([start, turned]), ..self });
+        }
+        let given: Vec<_> = ends.iter().map(DMatrix::shape).collect();
+        let remedy = format!("give independent columns of {n} numbers, fewer than {n}, as many at both ends");
+        Err(Error::input("rigid", format!("{given:?}"), remedy))
+    }
+
     /// The same without the translations of a periodic box.
     ///
     /// # Errors

@@ -277,7 +277,7 @@ impl MeasuredSystem {
         let Some((outer, _)) = self.outer() else { return self.friction_projected(rate, limits) };
         // Some 20 eigenvalue problems of 2n rows, each 25 (2n)³.
         let cost = (self.size() as u64).saturating_pow(3).saturating_mul(4_000);
-        limits.allow(cost, || format!("the eigenvalues of a period of {} rows", 2 * self.size()))?;
+        limits.allow_dense(cost, || format!("the eigenvalues of a period of {} rows", 2 * self.size()))?;
         Ok(self.kernel()?.friction(&outer, rate))
     }
 
@@ -286,7 +286,7 @@ impl MeasuredSystem {
     }
 
     fn allow(&self, limits: &Limits) -> Result<()> {
-        limits.allow(self.cost(), || format!("eigenvalues and factorizations of {} rows", self.size()))
+        limits.allow_dense(self.cost(), || format!("eigenvalues and factorizations of {} rows", self.size()))
     }
 
     /// The products that a verdict costs, roughly: two eigenvalue problems, changes of basis, some fifty factorizations.
@@ -345,7 +345,8 @@ impl MeasuredSystem {
     pub(super) fn growth_of_period(&self, limits: &Limits) -> Result<Option<f64>> {
         let Some((outer, _)) = self.outer() else { return Ok(None) };
         let (hessians, inner_steps) = (self.hessians()?, outer.inner_steps());
-        limits.allow(hessians.cost_of_period(inner_steps), || "the full period, kick by kick,".into())?;
+        let cost = hessians.cost_of_period(inner_steps);
+        limits.allow_dense(cost, || "the full period, kick by kick,".into())?;
         Ok(Some(hessians.growth_of_step(self.method, outer.step(), inner_steps)))
     }
 

@@ -27,7 +27,7 @@ use crate::system::lts::{LocalSteps, SchemeSummary, Subcycles};
 use crate::system::pi::PiSystem;
 use crate::system::verdict::analysis::Analysis;
 use crate::system::verdict::decide::{decide_by, exact_kind, verdict_cost};
-use crate::system::verdict::limits::{Limits, Route};
+use crate::system::verdict::limits::{DENSE, Limits, Route};
 use crate::system::verdict::measured::Holds;
 use crate::verdict::Kind;
 pub use intervals::Number;
@@ -62,9 +62,8 @@ pub enum Model {
     Sparse(Box<SparseSystem>),
 }
 
-/// Products a second: of rational systems with what goes on around them, and of dense doubles.
+/// Products a second, of rational systems with what goes on around them.
 const PACE: f64 = 1e9;
-const DENSE_PACE: f64 = 1e10;
 
 impl Model {
     /// The rational system that stands for it: itself; with π in the stiffnesses of several degrees of freedom within 2^-150 of every
@@ -111,7 +110,12 @@ impl Model {
 
     /// Those that so many products take.
     pub fn seconds_of(&self, products: f64) -> f64 {
-        products / if self.measured().is_some() || self.along().is_some() { DENSE_PACE } else { PACE }
+        self.counted(products) / PACE
+    }
+
+    /// How many of these products limits count.
+    pub fn counted(&self, products: f64) -> f64 {
+        if self.measured().is_some() || self.along().is_some() { products / DENSE as f64 } else { products }
     }
 
     /// The verdict with everything that is known beside it.
@@ -383,7 +387,7 @@ impl Model {
     /// As [`Model::decide`]; a budget error before the work.
     pub fn growth_of_period(&self, limits: &Limits) -> Result<Option<f64>> {
         if let Some(own) = self.along() {
-            limits.allow(own.cost(), || "the full period, kick by kick,".into())?;
+            limits.allow_dense(own.cost(), || "the full period, kick by kick,".into())?;
             return Ok(Some(own.growth_of_period()));
         }
         self.measured().map_or(Ok(None), |own| own.growth_of_period(limits))

@@ -12,10 +12,13 @@ pub enum Route {
     Exact,
 }
 
+/// Products of dense doubles are so many times as fast as others, which are of words or of few doubles at once, as measured on two machines.
+pub(in crate::system) const DENSE: u64 = 10;
+
 /// The most work that one verdict may cost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
-    /// Products of doubles or of 64-bit words.
+    /// Products of doubles or of 64-bit words; of dense doubles ten count as one.
     pub products: u64,
     /// The part of these for the digits of a growth rate that doubles do not give.
     pub refining: u64,
@@ -46,6 +49,11 @@ impl Limits {
             work()
         );
         Err(Error::budget(work, cost).or("choose steps with simpler ratios"))
+    }
+
+    /// As [`Limits::allow`], of products of dense doubles.
+    pub(in crate::system) fn allow_dense(&self, cost: u64, work: impl FnOnce() -> String) -> Result<()> {
+        self.allow(cost / DENSE, work)
     }
 
     /// This limit in kicks of the scalar ladder, whose refine tier spends some thousand products on each.
