@@ -61,7 +61,7 @@ def system(
 ) -> System:
     """Make a system of LAMMPS's: the Hessian of each level of r-RESPA at the minimum, with its measured error.
 
-    LAMMPS tells the forces of no level but the outermost, by ``fix store/force`` and ``run 0``. So those of level k are
+    LAMMPS shows the forces of no level but the outermost, by ``fix store/force`` and ``run 0``. So those of level k are
     the outermost's of a shorter run style, with the levels from k on in one, less the outermost's with those from k + 1
     on. The input is left as it was: positions and the run style are put back. Make the instance with ``lammps(cmdargs=
     ["-screen", "none", "-log", "none"])``, or it writes of each of these runs. Of Coulomb forces ``pair_modify table

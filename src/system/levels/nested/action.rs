@@ -1,6 +1,6 @@
 //! The action as one matrix, and what its signs and counts prove.
 
-use super::{ROUNDINGS, Steps};
+use super::levels::{ROUNDINGS, Steps};
 use crate::parallel::both;
 use crate::schedule::Weight;
 use crate::system::signs::envelope::{Envelope, Sign};

@@ -3,8 +3,7 @@
 use faer::Mat;
 use num_complex::Complex64;
 
-use super::{Level, Nested, ROUNDINGS, Steps};
-use crate::error::Result;
+use super::levels::{ROUNDINGS, Steps};
 use crate::number::rational::{from_f64_exact, to_f64};
 use crate::number::{Rational, U};
 use crate::schedule::Weight;
@@ -14,23 +13,9 @@ use crate::system::half::norm;
 use crate::system::half::period::{Drifts, Propagated, Stiff, Stiffness, follow, follow_proven};
 use crate::system::levels::counts::between_signs;
 use crate::system::levels::damped::least_masking;
-use crate::system::levels::growth::Grows;
-use crate::system::signs::inertia::orthogonality;
 use crate::system::spectrum::discs::{Spectrum, product};
 use crate::system::spectrum::rate::exponent;
-use crate::system::verdict::measured::Holds;
 use crate::verdict::Kind;
-
-/// The stiffnesses in a basis V of eigenvectors of their sum, rounded.
-#[derive(Clone, Debug)]
-pub(super) struct Modes {
-    /// √|λ| of the sum.
-    frequencies: Vec<f64>,
-    /// Vᵀ K_k V, and more than its rounding (2-norm).
-    stiffnesses: Vec<(Mat<f64>, f64)>,
-    /// More than ‖Vᵀ V − 1‖.
-    defect: f64,
-}
 
 /// Coordinates at a step: x = V D⁻¹ y, p = V⁻ᵀ D q. A drift and a kick turn y by about as much in them, so that products stay near 1. What is soft drifts by one
 /// in a period: less would let errors of stiffnesses move it far.
@@ -43,34 +28,6 @@ struct Turning {
     /// y ← y + D² q a tick, which is known to `off` (2-norm).
     drifts: Vec<Vec<(usize, f64)>>,
     off: f64,
-}
-
-impl Nested {
-    fn modes_of_all(&self) -> &Modes {
-        self.modes_of_all.get_or_init(|| {
-            let (n, total) = (self.size(), self.total());
-            let eigen = total.self_adjoint_eigen(faer::Side::Lower).ok();
-            let found = eigen.and_then(|own| Some((orthogonality(&own.U().to_owned())?, own)));
-            let (defect, v, values) = match &found {
-                Some((defect, own)) => {
-                    (*defect, own.U().to_owned(), own.S().column_vector().iter().copied().collect())
-                }
-                None => (0.0, Mat::identity(n, n), (0..n).map(|i| total[(i, i)]).collect::<Vec<f64>>()),
-            };
-            let rounding = 2.2 * (n as f64 + 4.0) * U * norm::frobenius(&v) * (1.0 + defect);
-            // Symmetric as what they round, so that all between them have a half period that is symplectic.
-            let turned = |own: &Level| {
-                let turned = v.transpose() * &own.stiffness * &v;
-                let mean = |i: usize, j: usize| (turned[(i, j)] + turned[(j, i)]) / 2.0;
-                (Mat::from_fn(n, n, mean), rounding * own.frobenius)
-            };
-            Modes {
-                frequencies: values.iter().map(|own: &f64| own.abs().sqrt()).collect(),
-                stiffnesses: self.levels.iter().map(turned).collect(),
-                defect,
-            }
-        })
-    }
 }
 
 impl Steps<'_> {
@@ -98,7 +55,7 @@ impl Steps<'_> {
             values.map_or(f64::NAN, |all| all.into_iter().map(Complex64::norm).fold(0.0, f64::max))
         };
         let proven = |friction: f64| self.damping(step, friction) == Some(Damping::Damped);
-        least_masking(self.rate(step).ok()?, step, radius, proven)
+        least_masking(self.rounded_rate(step), step, radius, proven)
     }
 
     /// The coordinates at a step.
@@ -261,6 +218,13 @@ impl Steps<'_> {
         x.subcols(n, n).transpose() * p.subcols(0, n)
     }
 
+    /// max ln |λ|/T; no number where the iteration for the eigenvalues fails.
+    pub(super) fn rounded_rate(&self, step: f64) -> f64 {
+        let values = self.rounded_product(step).eigenvalues();
+        let largest = |mu: Vec<Complex64>| mu.into_iter().map(|mu| exponent(mu).re).fold(0.0, f64::max);
+        values.map_or(f64::NAN, largest) / self.period(step)
+    }
+
     fn period(&self, step: f64) -> f64 {
         step / self.outer * to_f64(self.schedule.tick()) * self.schedule.period() as f64
     }
@@ -292,16 +256,4 @@ const NARROW: f64 = 1e-10;
 fn stiff(kick: Mat<f64>, error: f64, known: f64) -> Stiff {
     let off = error + ROUNDINGS as f64 * U * norm::frobenius(&kick);
     Stiff { stiffness: Stiffness::Whole(kick), off, known }
-}
-
-impl Grows for Steps<'_> {
-    fn rate(&self, step: f64) -> Result<f64> {
-        let values = self.rounded_product(step).eigenvalues();
-        let largest = |mu: Vec<Complex64>| mu.into_iter().map(|mu| exponent(mu).re).fold(0.0, f64::max);
-        Ok(values.map_or(f64::NAN, largest) / self.period(step))
-    }
-
-    fn is_stable(&self, step: f64) -> bool {
-        self.verdict_within(step, 0.0) == Holds::Stable
-    }
 }
