@@ -32,7 +32,7 @@ pub fn explained(error: &clap::Error, program: &clap::Command) -> Error {
             if given.starts_with('-') {
                 return Error::input("flag", &given, suggestion(error));
             }
-            Error::input("argument", &given, "is of no use here; see --help for the flags that there are")
+            Error::input("argument", &given, "is of no use here; --help lists all flags")
         }),
         _ => None,
     };
@@ -66,7 +66,7 @@ fn suggestion(error: &clap::Error) -> String {
     let [given, known] = [ContextKind::InvalidArg, ContextKind::SuggestedArg].map(|kind| shown(error, kind));
     match given.zip(known) {
         Some((given, known)) if is_like(&given, &known) => format!("unknown; did you mean {known}?"),
-        _ => "unknown; see --help for those that there are".into(),
+        _ => "unknown; --help lists all flags".into(),
     }
 }
 

@@ -234,8 +234,9 @@ impl Decided {
             lines.push(format!("  growth rate  {} per unit time{tenfold}", shown(rate)));
         }
         if let Some((m, a, b)) = self.resonance() {
+            let turns = if m == 1 { "half turn" } else { "half turns" };
             lines.push(format!(
-                "  resonance    m = {m} half turns a period; dominant family (a, b) = ({a}, {b})"
+                "  resonance    m = {m} {turns} a period; dominant family (a, b) = ({a}, {b})"
             ));
         }
         lines.push(format!("  decided by   {}", self.decision.decided_by.name()));
