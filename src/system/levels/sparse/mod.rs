@@ -21,7 +21,9 @@
 //! | `region` | the verdict, the margin, the first unstable step |
 //! | `period` | the period of positions, with a bound on its roundings |
 //! | `growing` | the modes that grow beyond that step, enclosed |
+//! | `counted` | how many grow at any step, where F falls into small blocks |
 
+mod counted;
 mod dissect;
 mod fronts;
 mod growing;
