@@ -12,12 +12,12 @@
 //! once all of these have passed it, a step is stable again, and four factorizations prove it.
 
 use std::collections::BTreeMap;
-use std::sync::{Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use faer::{Mat, Side};
 use num_complex::Complex64;
 
-use super::matrix::{Pattern, Triplets};
+use super::blocks::Blocks;
 use super::period::Period;
 use super::region::SparseLevels;
 use crate::number::U;
@@ -26,21 +26,6 @@ use crate::system::half::norm;
 use crate::system::levels::kernel::{Outer, STEP_ERROR};
 use crate::system::verdict::large::start;
 use crate::system::verdict::measured::Holds;
-
-/// F and S in the blocks of F.
-#[derive(Debug)]
-pub(super) struct Blocks {
-    /// The rows of each.
-    rows: Vec<Vec<usize>>,
-    fast: Vec<Mat<f64>>,
-    /// S between two of them, the one with the larger number first.
-    slow: Vec<([usize; 2], Mat<f64>)>,
-    /// All of S's blocks, and those on the diagonal.
-    pattern: Pattern,
-    alone: Pattern,
-    /// How far F and S are from themselves without what they do along rigid motions.
-    leaks: [f64; 2],
-}
 
 /// The pencil at an outer step as Xᵀ L(e) X, which has as many negative eigenvalues for every regular X. Here X has the modes of each block, each over
 /// √|V| where that is not small, so that no entry is large beside what L(e) moves by with e.
@@ -67,12 +52,6 @@ pub(super) struct Counted<'a> {
     /// and the largest e of a mode, as if none were joined to another, rounded.
     top: f64,
 }
-
-/// Rows of a block at most.
-const LARGEST: usize = 300;
-
-/// Entries of whole blocks at most, over those of the matrices given.
-const FILLED: usize = 6;
 
 impl SparseLevels {
     /// The pencil at an outer step; `None` where F does not fall into small blocks, or an eigenvalue of V is too near to 0.
@@ -101,61 +80,18 @@ impl SparseLevels {
 
     /// F and S in blocks, as they are asked for first.
     fn blocks(&self) -> Option<&Blocks> {
-        self.blocks.get_or_init(|| self.in_blocks().map(Into::into)).as_deref()
+        let found = || Blocks::new([&self.alone, &self.both], [&self.fast_alone, &self.slow]).map(Arc::new);
+        self.blocks.get_or_init(found).as_deref()
     }
 
-    fn in_blocks(&self) -> Option<Blocks> {
-        let n = self.size();
-        let rows = self.alone.components();
-        let mut place = vec![(0, 0); n];
-        for (k, own) in rows.iter().enumerate() {
-            own.iter().enumerate().for_each(|(at, &i)| place[i] = (k, at));
-        }
-        if rows.iter().any(|own| own.len() > LARGEST) {
-            return None;
-        }
-        let zero = |k: usize, l: usize| Mat::<f64>::zeros(rows[k].len(), rows[l].len());
-        let mut fast: Vec<_> = (0..rows.len()).map(|k| zero(k, k)).collect();
-        for (i, j, x) in self.alone.triplets(&self.fast_alone) {
-            let ((k, a), (_, b)) = (place[i], place[j]);
-            (fast[k][(a, b)], fast[k][(b, a)]) = (x, x);
-        }
-        let mut slow: BTreeMap<[usize; 2], Mat<f64>> =
-            (0..rows.len()).map(|k| ([k, k], zero(k, k))).collect();
-        let mut entries = 0;
-        for (i, j, x) in self.both.triplets(&self.slow) {
-            let ((k, a), (l, b)) = (place[i], place[j]);
-            let own = slow.entry([k.max(l), k.min(l)]).or_insert_with(|| {
-                entries += rows[k].len() * rows[l].len();
-                zero(k.max(l), k.min(l))
-            });
-            if k >= l {
-                own[(a, b)] = x;
-            }
-            if k <= l {
-                own[(b, a)] = x;
-            }
-        }
-        if entries > FILLED * self.both.entries() {
-            return None;
-        }
-        let all = |pairs: &mut dyn Iterator<Item = [usize; 2]>| -> Option<Pattern> {
-            let whole = |[k, l]: [usize; 2]| {
-                let (rows, columns) = (&rows[k], &rows[l]);
-                rows.iter().flat_map(move |&i| columns.iter().map(move |&j| (i.max(j), i.min(j), 0.0)))
-            };
-            let triplets: Vec<_> = pairs.flat_map(whole).collect();
-            Some(Pattern::of(n, [&triplets as &Triplets]).ok()?.0)
-        };
-        let alone = all(&mut (0..rows.len()).map(|k| [k, k]))?;
-        let pattern = all(&mut slow.keys().copied())?;
-        // P K P − K for the projection P on the rest: ‖K R‖ twice and Rᵀ K R once.
-        let leaks = [(&self.fast, self.sizes[0]), (&self.slow, self.sizes[1])].map(|(own, size)| {
-            let rounding =
-                2.0 * (self.both.size_of(own).1 as f64 + 2.0) * U * size * norm::frobenius(&self.rigid);
+    /// How far F and S are from themselves without what they do along rigid motions: P K P − K for the projection P on the rest, ‖K R‖ twice and
+    /// Rᵀ K R once.
+    fn leaks(&self) -> [f64; 2] {
+        [(&self.fast, self.sizes[0]), (&self.slow, self.sizes[1])].map(|(own, size)| {
+            let terms = self.both.size_of(own).1 as f64;
+            let rounding = 2.0 * (terms + 2.0) * U * size * norm::frobenius(&self.rigid);
             3.1 * (norm::frobenius(&self.both.times(own, &self.rigid)) + rounding)
-        });
-        Some(Blocks { rows, fast, slow: slow.into_iter().collect(), pattern, alone, leaks })
+        })
     }
 }
 
@@ -235,7 +171,7 @@ const NOWHERE: (f64, f64) = (f64::INFINITY, f64::NEG_INFINITY);
 
 impl<'a> Counted<'a> {
     fn new(levels: &SparseLevels, blocks: &'a Blocks, period: &Period) -> Option<Counted<'a>> {
-        let outer = &period.outer;
+        let (outer, leaks) = (&period.outer, levels.leaks());
         let diagonal = blocks.slow.iter().filter(|([k, l], _)| k == l);
         let both: Vec<_> = blocks.fast.iter().zip(diagonal.map(|(_, own)| own)).collect();
         let all = map(&both, |(fast, slow)| Turned::new(fast, slow, outer))
@@ -247,7 +183,7 @@ impl<'a> Counted<'a> {
         let fast = blocks.fast.iter().fold(0.0, |size: f64, own| size.max(norm::frobenius(own)));
         // U_k is off by Σ U_(k−1−i) f_i (file `period`): h² and F, a product of m terms, three sums; what is subtracted.
         let h2 = outer.inner_square;
-        let known = h2 * (levels.errors[0] + blocks.leaks[0]);
+        let known = h2 * (levels.errors[0] + leaks[0]);
         let local = 1.02 * (known + (2.0 * STEP_ERROR + (m + 4.0) * U) * h2 * fast) + 4.1 * U;
         let (mut each, mut sum, mut off) = (0.0, 0.0, vec![0.0]);
         for k in 0..p {
@@ -268,7 +204,7 @@ impl<'a> Counted<'a> {
         // |V X| |S| |V X| entry by entry, sums of two blocks' terms; V X's own error twice; S's.
         let slow = levels.sizes[1];
         let kicked_off = slow * (2.0 * vx * vx_off + vx_off * vx_off)
-            + (vx + vx_off).powi(2) * (levels.errors[1] + blocks.leaks[1])
+            + (vx + vx_off).powi(2) * (levels.errors[1] + leaks[1])
             + 2.0 * product * vx * vx * slow;
         let mut terms = [0; 3].map(|_| vec![0.0; blocks.pattern.entries()]);
         let mut alone = vec![0.0; blocks.alone.entries()];

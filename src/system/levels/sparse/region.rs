@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use faer::Mat;
 
-use super::counted::Blocks;
+use super::blocks::Blocks;
 use super::krylov::top;
 use super::matrix::{Factors, Pattern, Triplets};
 use crate::error::{Error, Result};
@@ -58,6 +58,7 @@ pub struct SparseLevels {
     /// No less than the largest eigenvalue of F, and no more than −λ if some λ < 0 is one.
     ends: OnceLock<Option<[f64; 2]>>,
     held: OnceLock<Held>,
+    /// Where F falls into small ones.
     pub(super) blocks: OnceLock<Option<Arc<Blocks>>>,
     /// By the number of inner steps.
     first: Arc<Mutex<BTreeMap<u64, Option<First>>>>,
