@@ -45,8 +45,7 @@ pub(super) struct Counted<'a> {
     is_parted: OnceLock<bool>,
     /// An e for that.
     gap: Option<f64>,
-    /// What was counted, by its sign and e, and what the next factorization may be off by.
-    known: Mutex<(BTreeMap<[u64; 2], Option<usize>>, f64)>,
+    known: Mutex<Known>,
     /// X of each block,
     turned: Vec<Mat<f64>>,
     /// and the largest e of a mode, as if none were joined to another, rounded.
@@ -109,6 +108,13 @@ struct Turned {
     top: f64,
 }
 
+/// What was counted, by its sign and e, and what the next factorization may be off by.
+#[derive(Default)]
+struct Known {
+    counts: BTreeMap<[u64; 2], Option<usize>>,
+    off: f64,
+}
+
 /// |V| from which on a mode is scaled by it.
 const SMALL: f64 = 0.04;
 
@@ -135,7 +141,7 @@ impl Turned {
         let basis = eigen.U().to_owned();
         let defect = norm::frobenius(&(basis.transpose() * &basis - Mat::<f64>::identity(m, m)));
         // Then it is regular, whatever else the decomposition is off by.
-        if !(defect < 0.1) {
+        if defect.is_nan() || defect >= 0.1 {
             return None;
         }
         let [twists, angles, pulls] = [&now, &turned, slow]
@@ -282,14 +288,14 @@ impl<'a> Counted<'a> {
     fn negative_beside(&self, sign: f64, e: f64) -> Option<usize> {
         let key = [sign, e].map(f64::to_bits);
         let known = || self.known.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(own) = known().0.get(&key) {
+        if let Some(own) = known().counts.get(&key) {
             return *own;
         }
-        let (expected, (terms, slack)) = (known().1, self.pencil(e));
+        let (expected, (terms, slack)) = (known().off, self.pencil(e));
         let found = self.blocks.pattern.negative_beside(sign, 0.0, &terms, [slack, expected]);
         let mut known = known();
-        known.1 = found.map_or(known.1, |(_, off)| 1.5 * off);
-        known.0.insert(key, found.map(|own| own.0));
+        known.off = found.map_or(known.off, |(_, off)| 1.5 * off);
+        known.counts.insert(key, found.map(|own| own.0));
         found.map(|own| own.0)
     }
 
