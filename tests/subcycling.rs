@@ -387,3 +387,42 @@ fn what_these_schemes_have_not_is_refused_by_its_field() {
     let damped = with("avi", &[("friction", json!("1/10"))]).unwrap();
     assert!(damped.friction(&Limits::default()).unwrap().is_some());
 }
+
+/// A document of large subcycling is held by the scheme run from rest, and none of its numbers can be another.
+#[test]
+fn a_document_of_sparse_subcycling_is_verified_and_no_other_is() {
+    use kickdrift::question::{Question, System, Work};
+    use kickdrift::recheck::{Claim, Options};
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/input");
+    let file: Value =
+        serde_json::from_str(&std::fs::read_to_string(folder.join("held.json")).unwrap()).unwrap();
+    let asked: System = serde_json::from_value(json!({"file": "held.json", "system": file})).unwrap();
+    let arrays = kickdrift::scene::Arrays::from(folder.as_path());
+    let work = Work { arrays: Some(&arrays), ..Work::default() };
+    let answer = asked.answer(&work).unwrap();
+    let text = asked.document(&answer).render(kickdrift::format::Format::Json).unwrap();
+    let options = Options { folder: folder.clone(), ..Options::default() };
+    let is_held = |text: &str| {
+        Claim::read(text)
+            .is_ok_and(|own| own.recheck(&options, None).is_ok_and(|own| own.failures.is_empty()))
+    };
+    assert!(is_held(&text), "{text}");
+    let said: Value = serde_json::from_str(&text).unwrap();
+    for (place, value) in [
+        ("/stable", json!(false)),
+        ("/kind", json!("hyperbolic")),
+        ("/parts/0/kind", json!("hyperbolic")),
+        ("/local_steps/scheme", json!("lts")),
+        ("/local_steps/first_unstable/lo", json!(0.7168)),
+        ("/local_steps/first_unstable/hi", json!(0.7166)),
+        ("/local_steps/plain_limit/lo", json!(0.6)),
+        ("/input/system/potentials/0/step", json!("13/20")),
+        ("/input/system/levels/0/substeps", json!(3)),
+    ] {
+        let mut other = said.clone();
+        let own = other.pointer_mut(place).unwrap_or_else(|| panic!("{place}: {text}"));
+        assert_ne!(*own, value, "{place}");
+        *own = value;
+        assert!(!is_held(&other.to_string()), "{place}");
+    }
+}

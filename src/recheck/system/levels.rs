@@ -1,5 +1,7 @@
 //! Two sparse levels run kick by kick: the growing modes of a document.
 
+use num_complex::Complex64;
+
 use crate::recheck::context::{Checked, Outcome, holds};
 use crate::system::levels::Outer;
 use crate::system::levels::sparse::SparseLevels;
@@ -14,11 +16,14 @@ const OFF: f64 = 1e-4;
 /// A period from rest in the middle of a slow kick takes the positions y of a mode to (1 + 2 μ) y.
 pub fn modes(own: &SparseLevels, outer: &Outer, analysis: &Analysis) -> Checked {
     analysis.parts.iter().flat_map(|part| &part.instabilities).try_for_each(|mode| {
-        let y = own.weighted(&mode.shape);
-        let (factor, after) = (1.0 + 2.0 * mode.multiplier.mu.re, period(own, outer, &y));
-        let length = |y: &mut dyn Iterator<Item = f64>| y.map(|x| x * x).sum::<f64>().sqrt();
-        let off = length(&mut after.iter().zip(&y).map(|(after, y)| after - factor * y));
-        let right = off <= OFF * length(&mut y.iter().copied());
+        let both = [&mode.shape, &mode.quadrature].map(|own_part| own.weighted(own_part));
+        let after = both.each_ref().map(|y| period(own, outer, y));
+        let complex = |[re, im]: &[Vec<f64>; 2], i: usize| Complex64::new(re[i], im[i]);
+        let factor = 1.0 + 2.0 * mode.multiplier.mu;
+        let length =
+            |of: &dyn Fn(usize) -> Complex64| (0..own.size()).map(|i| of(i).norm_sqr()).sum::<f64>().sqrt();
+        let off = length(&|i| complex(&after, i) - factor * complex(&both, i));
+        let right = off <= OFF * length(&|i| complex(&both, i));
         holds(right, || {
             format!("a mode said to be multiplied by {factor} in a period is not: it is off by {off}")
         })

@@ -30,13 +30,13 @@ const DIGITS: u32 = 6;
 
 /// An enclosure of a growth rate in so many digits.
 fn outward(rate: Option<(f64, f64)>) -> Option<(f64, f64)> {
-    let (lo, hi) = rate.filter(|own| own.1.is_finite())?;
+    let (lo, hi) = rate.filter(|own| own.0 > 0.0 || own.1.is_finite())?;
     let end = |x: f64, n: usize| match from_f64_exact(x).filter(|x| !x.is_zero()) {
         // The double nearest to a decimal number is on the same side of every double.
         Some(x) => decimal::outward(&x, &x, DIGITS)[n].parse().unwrap_or(0.0),
         None => 0.0,
     };
-    Some((end(lo, 0), end(hi, 1)))
+    Some((end(lo, 0), if hi.is_finite() { end(hi, 1) } else { hi }))
 }
 
 impl SystemMap {

@@ -14,7 +14,7 @@ use crate::system::linear::sparse::Symmetric;
 use crate::system::linear::system::{Potential, System};
 use crate::system::lts::{Growth, SchemeSummary, SparseSteps, SparseSubcycles};
 use crate::system::spectrum::modes::Origin;
-use crate::system::spectrum::rate::{Multiplier, about, per_time};
+use crate::system::spectrum::rate::{Multiplier, per_time};
 use crate::system::vary::stretches::Stretch;
 use crate::system::verdict::analysis::{Analysis, Evidence, Instability, Part};
 use crate::system::verdict::limits::{Limits, degrees_of_freedom};
@@ -42,7 +42,7 @@ enum Of {
 
 /// The note on a verdict in the first region, or on none: which results are left out of the answer.
 const FIRST: &str = "of sparse stiffnesses the first stable region is decided, and what grows above it while no fast mode alone takes half a turn in an \
-                     outer step";
+                     outer step; farther on where the fast one falls into small molecules";
 
 /// The note on an unstable one, where no mode was found.
 const NO_MODE: &str =
@@ -251,17 +251,12 @@ impl SparseSystem {
         };
         levels.look(outer.inner_steps());
         let margin = if levels.is_unstable(outer) { None } else { levels.margin(outer) };
-        let verdict = match margin {
-            Some(_) => Holds::Stable,
-            None if levels.is_unstable(outer) => Holds::Unstable,
-            None => Holds::NotTold,
-        };
+        let (verdict, growing) = margin.map_or_else(|| levels.beyond(outer), |_| (Holds::Stable, None));
         // Nothing is proven of all stiffnesses within more than the margin.
         let holds =
             if margin.is_some_and(|margin| accuracy <= margin) { Holds::Stable } else { Holds::NotTold };
         let first_unstable = levels.first_unstable(outer.inner_steps());
         let period = Laurent::from_rational(self.step.clone());
-        let growing = if verdict == Holds::Unstable { levels.growing(outer) } else { None };
         let largest = growing.as_ref().and_then(|own| own.fastest);
         let note = growing
             .as_ref()
@@ -353,7 +348,15 @@ impl SparseSystem {
 /// The number of growing modes in the answer, in words.
 fn listed(own: &Growing) -> String {
     let shown = own.modes.len();
-    let found = if shown == 1 { "1 mode is".into() } else { format!("{shown} modes are") };
+    let least = own.at_least;
+    let found = if least == 1 { "1 mode is".into() } else { format!("{least} modes are") };
+    if own.modes.iter().any(|mode| mode.radius.is_none()) || shown == 0 {
+        let most = own.at_most.map_or(String::new(), |most| format!(" and at most {most} do"));
+        return format!(
+            "{found} proven to grow by multipliers below −1{most}: bonds take half a turn or more in an outer step; the {shown} shown are rounded, the \
+             growth rate is proven"
+        );
+    }
     match own.at_most {
         Some(most) if most == shown => format!("{found} proven to grow, and no other does (both proven)"),
         Some(most) => format!("{found} proven to grow and at most {most} do: the others are not looked at"),
@@ -363,14 +366,12 @@ fn listed(own: &Growing) -> String {
 
 /// A growing mode with its multiplier.
 fn explained(own: GrowingMode, period: &Laurent) -> (Multiplier, Instability) {
-    let mu = Complex64::new(own.mu, 0.0);
-    let growth = about(mu, own.radius);
-    let multiplier = Multiplier::new(mu, Some(own.radius), Some(growth));
+    let multiplier = Multiplier::new(own.mu, own.radius, own.growth);
     let mode = Instability {
         multiplier,
-        origin: Origin::RealPair,
-        growth_rate: Some(per_time(growth, period)),
-        quadrature: vec![0.0; own.shape.len()],
+        origin: if own.mu.im == 0.0 { Origin::RealPair } else { Origin::Collision },
+        growth_rate: own.growth.map(|growth| per_time(growth, period)),
+        quadrature: own.quadrature,
         shape: own.shape,
         resonance: None,
     };

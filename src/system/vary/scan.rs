@@ -15,7 +15,8 @@ pub struct Point {
     pub at: (Rational, Rational),
     /// `None`: not decided.
     pub kind: Option<Kind>,
-    /// An enclosure of the largest growth rate, per unit time; (0, 0) if nothing grows exponentially; `None`: not bounded.
+    /// An enclosure of the largest growth rate, per unit time, infinite above where the least alone is proven; (0, 0) if nothing grows exponentially;
+    /// `None`: not bounded.
     pub growth_rate: Option<(f64, f64)>,
     /// No more than it: what the fastest mode that is proven to grow has at least, 0 where none is.
     pub at_least: f64,
@@ -27,9 +28,9 @@ impl Point {
         name(self.kind)
     }
 
-    /// The middle of that enclosure, 0 where there is none.
+    /// The middle of that enclosure, what is proven at least where it is infinite, 0 where there is none.
     pub fn rounded_rate(&self) -> f64 {
-        self.growth_rate.map_or(0.0, middle)
+        self.growth_rate.map_or(0.0, |own| if own.1.is_finite() { middle(own) } else { own.0 })
     }
 }
 
@@ -50,6 +51,7 @@ pub fn scan(
         let modes = analysis.parts.iter().flat_map(|part| &part.instabilities);
         let at_least = modes.filter_map(|mode| mode.growth_rate).fold(0.0, |most: f64, (lo, _)| most.max(lo));
         let (kind, growth_rate) = (analysis.kind, analysis.growth_rate());
+        let at_least = growth_rate.map_or(at_least, |(lo, _)| at_least.max(lo));
         Ok(Point { at: (x.clone(), y.clone()), kind, growth_rate, at_least })
     };
     try_map(&pairs, |pair| point(pair).inspect(|_| see()))

@@ -96,7 +96,7 @@ pub struct Part {
     pub roots: Option<MuCount>,
     /// The results for one oscillator beside its multiplier.
     pub oscillator: Option<Clocked>,
-    /// An enclosure of the largest ln |λ| over the period, where it is known though not every multiplier is.
+    /// An enclosure of the largest ln |λ| over the period, where it is known though not every multiplier is; infinite above where only the least is proven.
     pub largest: Option<(f64, f64)>,
 }
 

@@ -7,11 +7,14 @@
 //! * k vectors with residuals R and nearly orthonormal, Gram matrix 1 + Δ, are claims on k eigenvalues, each within 2 |R|/√(1 − |Δ|) + 1.3 |Δ| times their
 //!   spread of its own;
 //! * no more modes grow than α − β h² F − M has negative eigenvalues, for a line α − β s below a/b: one factorization;
-//! * no excess is above ε where α − β h² F + 2 ε ℓ(h² F) − M > 0, ℓ a tangent of the convex 1/V: again one each.
+//! * no excess is above ε where α − β h² F + 2 ε ℓ(h² F) − M > 0, ℓ a tangent of the convex 1/V: again one each;
+//! * where F falls into small blocks, counts say both without a line, and also where p θ > π for some (file `counted`). There the excess is
+//!   symmetric in no scalar product: its modes are rounded, and the counts are what is proven.
 
 use faer::{Mat, Side};
 use num_complex::Complex64;
 
+use super::counted::{Counted, LEAST};
 use super::period::Period;
 use super::region::SparseLevels;
 use crate::number::{U, bisected};
@@ -21,27 +24,34 @@ use crate::system::levels::half::inverse_twist;
 use crate::system::levels::kernel::Outer;
 use crate::system::spectrum::rate;
 use crate::system::verdict::large::start;
+use crate::system::verdict::measured::Holds;
 
 /// What is proven to grow at an unstable outer step.
 #[derive(Clone, Debug)]
 pub struct Growing {
     /// The fastest first.
     pub modes: Vec<GrowingMode>,
-    /// No fewer than all that grow by a multiplier below −1; `None` where the factorization does not count them.
+    /// So many grow by a multiplier below −1 for sure,
+    pub at_least: usize,
+    /// and no more than so many; `None` where they are not counted.
     pub at_most: Option<usize>,
-    /// An enclosure of the largest ln |λ| of a period; `None` where nothing bounds it above.
+    /// An enclosure of the largest ln |λ| of a period, infinite above where only the least is proven; `None` where nothing bounds it above.
     pub fastest: Option<(f64, f64)>,
 }
 
-/// A mode with a multiplier λ < −1.
+/// A mode that grows.
 #[derive(Clone, Debug)]
 pub struct GrowingMode {
-    /// μ = −1 − e, λ + 1/λ = 2 + 4 μ, rounded.
-    pub mu: f64,
-    /// The true μ is within this of it: as many true ones as modes, where these ranges meet.
-    pub radius: f64,
-    /// Positions, the longest entry 1, rounded.
+    /// μ, λ + 1/λ = 2 + 4 μ, rounded; −1 − e of a multiplier λ < −1.
+    pub mu: Complex64,
+    /// The true μ is within this of it: as many true ones as modes, where these ranges meet; `None`: not bounded.
+    pub radius: Option<f64>,
+    /// An enclosure of ln |λ| of a period, infinite above where only the least growth is proven; `None`: not bounded.
+    pub growth: Option<(f64, f64)>,
+    /// Positions, the longest entry 1, rounded,
     pub shape: Vec<f64>,
+    /// and a quarter of the beat later; 0 for a multiplier below −1.
+    pub quadrature: Vec<f64>,
 }
 
 /// The most modes that are looked for.
@@ -59,7 +69,10 @@ const FOUND: f64 = 1e-9;
 const TOLD: f64 = 1e-6;
 
 /// Rooms above the largest excess that is found, relative to it, up to which the true one is sought.
-const ROOMS: [f64; 6] = [0.003, 0.1, 0.5, 2.0, 8.0, 100.0];
+const ROOMS: [f64; 7] = [1e-5, 0.003, 0.1, 0.5, 2.0, 8.0, 100.0];
+
+/// Parts beside the one that is found, up to which counts are asked for none above and some below.
+const BESIDE: [f64; 5] = [1e-5, 1e-3, 0.03, 0.2, 0.7];
 
 /// How near to each other an excess that is proven and one that is not are to be, relative to the first.
 const BETWEEN: f64 = 0.25;
@@ -71,32 +84,93 @@ struct Ritz {
 }
 
 impl SparseLevels {
-    /// The modes that grow fastest at an outer step, up to a dozen; `None` where none is proven to, and where p θ < π is not certain of every fast
-    /// mode, so that multipliers of both of Krein's signs may meet.
+    /// The verdict at an outer step where the first region's line proves nothing, and what grows: the fastest modes, up to a dozen. `Unstable` without any where
+    /// none is found beside the vector that proves it.
     ///
     /// Cost: some hundred to some thousand products with S, p times as many with F, and one to a dozen factorizations.
-    pub fn growing(&self, outer: &Outer) -> Option<Growing> {
+    pub fn beyond(&self, outer: &Outer) -> (Holds, Option<Growing>) {
+        let counted = self.counted(outer);
+        let (told, at_least) = self.told_by(outer, counted.as_ref());
+        if told != Holds::Unstable {
+            return (told, None);
+        }
+        let growing = self.growing(outer, counted.as_ref());
+        let growing = growing.or_else(|| self.growing_past(outer, &counted?, at_least));
+        (Holds::Unstable, growing)
+    }
+
+    /// Where p θ < π for every fast mode, by the chord.
+    fn growing(&self, outer: &Outer, counted: Option<&Counted>) -> Option<Growing> {
         let [low, high] = self.ends(0.0)?;
         let line = chord(outer, low, high)?;
         let period = Period::new(self, *outer, low);
         let (claims, radius) = proven(&period, period.top()?)?;
         let modes: Vec<GrowingMode> = (claims.values.iter().enumerate())
-            .map(|(i, e)| GrowingMode {
+            .map(|(i, e)| {
                 // A rounding of the sum.
-                mu: -1.0 - e,
-                radius: radius + 2.0 * U,
-                shape: longest_one(self.positions(claims.vectors.col_as_slice(i))),
+                let (mu, radius) = (Complex64::new(-1.0 - e, 0.0), radius + 2.0 * U);
+                GrowingMode {
+                    mu,
+                    radius: Some(radius),
+                    growth: Some(rate::about(mu, radius)),
+                    shape: longest_one(self.positions(claims.vectors.col_as_slice(i))),
+                    quadrature: vec![0.0; self.size()],
+                }
             })
             .collect();
-        let ([fast, slow], slack) = self.form(outer, line, 0.0);
-        let terms: [(f64, &[f64]); 2] = [(fast, &self.fast), (slow, &self.slow)];
-        let at_most = self.at_most_negative(line[0], &terms, slack);
-        let fastest = self.fastest(outer, line, &claims, radius);
-        Some(Growing { modes, at_most, fastest })
+        let at_most = counted.and_then(|own| own.at_most_above(0.0)).or_else(|| {
+            let ([fast, slow], slack) = self.form(outer, line, 0.0);
+            self.both.at_most_negative(line[0], &[(fast, &self.fast), (slow, &self.slow)], slack)
+        });
+        let fastest = self.fastest(outer, line, &claims, radius, counted);
+        Some(Growing { at_least: modes.len(), modes, at_most, fastest })
+    }
+
+    /// Where some fast mode has p θ > π: modes are rounded, and the fastest multiplier below −1 is enclosed by counts.
+    fn growing_past(&self, outer: &Outer, counted: &Counted, at_least: usize) -> Option<Growing> {
+        let period = Period::new(self, *outer, self.ends(0.0)?[0]);
+        let rate = |e: f64| rate::about(Complex64::new(-1.0 - e, 0.0), 2.0 * U);
+        let (lo, hi) = counted.farthest()?;
+        let mut found = counted.modes_near(hi);
+        found.retain(|(e, z)| {
+            let image = period.of(z).excess;
+            let turn = Mat::from_fn(2, 2, |a, b| if a == b { e.re } else { [e.im, -e.im][a] });
+            let turn = turn.submatrix(0, 0, z.ncols(), z.ncols());
+            excess(*e) > LEAST && (image - z * turn).norm_l2() < TOLD * z.norm_l2()
+        });
+        found.sort_by(|a, b| excess(b.0).total_cmp(&excess(a.0)));
+        found.truncate(WANTED);
+        let fastest = found.iter().position(|(e, _)| e.im == 0.0);
+        let own = fastest.map(|i| found[i].0.re).filter(|e| *e > lo);
+        let is_held = counted.grows_by_resonance_alone(self);
+        let beside =
+            |sign: f64| own.into_iter().flat_map(move |e| BESIDE.map(move |part| e * (1.0 + sign * part)));
+        let least = beside(-1.0).find(|&e| e > lo && counted.at_least_above(e) > 0).unwrap_or(lo);
+        let most = beside(1.0).chain([hi]).filter(|_| is_held).find(|&e| counted.at_most_above(e) == Some(0));
+        let bounds = (rate(least).0, most.map_or(f64::INFINITY, |e| rate(e).1));
+        let mode = |(i, (e, z)): (usize, &(Complex64, Mat<f64>))| {
+            let y = period.of(z).moved;
+            let of = |j: usize| {
+                if j < y.ncols() { self.positions(y.col_as_slice(j)) } else { vec![0.0; self.size()] }
+            };
+            let (shape, quadrature) = turned(of(0), of(1));
+            let growth = (Some(i) == fastest).then_some(bounds);
+            GrowingMode { mu: -1.0 - e, radius: None, growth, shape, quadrature }
+        };
+        let modes = found.iter().enumerate().map(mode).collect();
+        let at_most = if is_held { counted.at_most_above(0.0) } else { None };
+        Some(Growing { modes, at_least, at_most, fastest: Some(bounds) })
     }
 
     /// Where F + S > 0 off the rigid motions, so that nothing else grows (section 9).
-    fn fastest(&self, outer: &Outer, line: [f64; 2], claims: &Ritz, radius: f64) -> Option<(f64, f64)> {
+    fn fastest(
+        &self,
+        outer: &Outer,
+        line: [f64; 2],
+        claims: &Ritz,
+        radius: f64,
+        counted: Option<&Counted>,
+    ) -> Option<(f64, f64)> {
         if self.unheld() != Some(0) {
             return None;
         }
@@ -105,7 +179,10 @@ impl SparseLevels {
         let y = claims.vectors.col(0);
         let fast = self.both.times(&self.fast, &Mat::from_fn(self.size(), 1, |i, _| y[i]));
         let along = outer.inner_square * (y.transpose() * fast.col(0)) / y.squared_norm_l2();
-        let is_above_all = |e: f64| self.is_no_excess_above(outer, line, ends, along, e);
+        let is_above_all = |e: f64| match counted {
+            Some(own) => own.at_most_above(e) == Some(0),
+            None => self.is_no_excess_above(outer, line, ends, along, e),
+        };
         let (mut open, mut above) = (most, None);
         for room in ROOMS {
             let e = (most + radius) * (1.0 + room);
@@ -201,6 +278,20 @@ impl Period<'_> {
             }
         }
     }
+}
+
+/// How far μ = −1 − e is from what is stable (file `rate`).
+fn excess(e: Complex64) -> f64 {
+    (e.norm() + (e + 1.0).norm() - 1.0) / 2.0
+}
+
+/// Both parts of a complex shape, turned and scaled so that its longest entry is 1.
+fn turned(shape: Vec<f64>, quadrature: Vec<f64>) -> (Vec<f64>, Vec<f64>) {
+    let all: Vec<Complex64> =
+        shape.into_iter().zip(quadrature).map(|(re, im)| Complex64::new(re, im)).collect();
+    let longest =
+        all.iter().fold(Complex64::new(0.0, 0.0), |most, z| if z.norm() > most.norm() { *z } else { most });
+    all.into_iter().map(|z| z / longest).map(|z| (z.re, z.im)).unzip()
 }
 
 /// Takes from x what lies along the first columns of z, by the scalar product of V, twice: once leaves too much where little is left.

@@ -21,7 +21,11 @@
 //! | `region` | the verdict, the margin, the first unstable step |
 //! | `period` | the period of positions, with a bound on its roundings |
 //! | `growing` | the modes that grow beyond that step, enclosed |
+//! | `blocks` | F and S in the blocks of F |
+//! | `counted` | how many grow at any step, where F falls into small blocks |
 
+mod blocks;
+mod counted;
 mod dissect;
 mod fronts;
 mod growing;

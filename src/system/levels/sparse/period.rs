@@ -22,7 +22,7 @@ pub(super) struct Period<'a> {
     pub levels: &'a SparseLevels,
     pub outer: Outer,
     /// a.
-    above: f64,
+    pub above: f64,
     /// How far a product with F or S may be from that without rigid motions, for a vector of length 1.
     errors: [f64; 2],
 }

@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use faer::Mat;
 
+use super::blocks::Blocks;
 use super::krylov::top;
 use super::matrix::{Factors, Pattern, Triplets};
 use crate::error::{Error, Result};
@@ -57,6 +58,8 @@ pub struct SparseLevels {
     /// No less than the largest eigenvalue of F, and no more than −λ if some λ < 0 is one.
     ends: OnceLock<Option<[f64; 2]>>,
     held: OnceLock<Held>,
+    /// Where F falls into small ones.
+    pub(super) blocks: OnceLock<Option<Arc<Blocks>>>,
     /// By the number of inner steps.
     first: Arc<Mutex<BTreeMap<u64, Option<First>>>>,
 }
@@ -119,9 +122,6 @@ const WORTH_A_RECURSION: f64 = 2e4;
 /// How far below what it is at most a margin may be, relative to it.
 const NEAR: f64 = 0.06;
 
-/// Shifts τ that are tried: from the second one on a tenth above what the factorization with the last one may be off by.
-const SHIFTS: u32 = 3;
-
 /// The relative width within which the first unstable step is sought.
 const WIDTH: f64 = 1e-4;
 
@@ -156,7 +156,7 @@ impl SparseLevels {
         let ((size, terms), image) = (both.size_of(&total), both.times(&total, &rigid));
         let rounding = 2.0 * (terms as f64 + 2.0) * U * size * norm::frobenius(&rigid);
         let leak = 3.1 * (norm::frobenius(&image) + rounding);
-        let (ends, held, first) = Default::default();
+        let (ends, held, first, blocks) = Default::default();
         let (sizes, roots) = (sizes.map(|(size, _)| size), masses.iter().map(|m| m.sqrt()).collect());
         Ok(SparseLevels {
             both,
@@ -171,6 +171,7 @@ impl SparseLevels {
             roots,
             ends,
             held,
+            blocks,
             first,
         })
     }
@@ -199,7 +200,7 @@ impl SparseLevels {
         if self.is_proven(outer, epsilon) {
             return Holds::Stable;
         }
-        if epsilon == 0.0 && self.is_unstable(outer) { Holds::Unstable } else { Holds::NotTold }
+        if epsilon == 0.0 { self.told_by(outer, self.counted(outer).as_ref()).0 } else { Holds::NotTold }
     }
 
     /// Whether the mode that is unstable first is proven to grow at an outer step.
@@ -487,21 +488,8 @@ impl SparseLevels {
         if own.is_some() {
             return (Some(0), own);
         }
-        let negative = self.at_most_negative(0.0, &self.total(), slack);
+        let negative = self.both.at_most_negative(0.0, &self.total(), slack);
         (negative.map(|count| count.saturating_sub(self.rigid.ncols())), None)
-    }
-
-    /// No fewer than the eigenvalues that are not above 0 of any matrix within `slack` of c + Σ a_k A_k.
-    pub(super) fn at_most_negative(&self, c: f64, terms: &[(f64, &[f64])], slack: f64) -> Option<usize> {
-        let mut tau = 1.1 * slack;
-        for _ in 0..SHIFTS {
-            let (negative, own) = self.both.negative(tau - c, terms)?;
-            if tau > 1.01 * (own + slack) {
-                return Some(negative);
-            }
-            tau = 1.1 * (own + slack);
-        }
-        None
     }
 
     /// Where a recursion for a vector begins.
