@@ -428,7 +428,7 @@ impl Question for Advise {
     #[cfg(feature = "figure")]
     fn figure(&self, answer: &Answer, _: &Work) -> Result<Option<Figure>> {
         let none = || {
-            let remedy = "advice on forces that are no gradient is not drawn: `kickdrift system FILE --scan outer=LO..HI:BY` draws the growth";
+            let remedy = "there is one step alone, and no multiple of another to draw: `kickdrift system FILE --scan outer=LO..HI:BY` draws the growth";
             Error::input("output", "a figure", remedy)
         };
         report::figure(answer.safe.view(), "Which outer steps are safe").ok_or_else(none).map(Some)

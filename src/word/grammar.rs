@@ -36,9 +36,8 @@ impl FromStr for Word {
         let items = reader.items().and_then(|items| match reader.peek() {
             None if items.is_empty() => reader.wrong(0, "a word has letters, as K(1/2) D(1) K(1/2)"),
             None => Ok(items),
-            Some(c) if c.is_ascii_lowercase() => {
-                reader.wrong(reader.at, format!("unexpected {c:?}; {LETTERS}; a name is a method, not a word"))
-            }
+            Some(c) if c.is_ascii_lowercase() => reader
+                .wrong(reader.at, format!("unexpected {c:?}; {LETTERS}; a name is a method, not a word")),
             Some(c) => reader.wrong(reader.at, format!("unexpected {c:?}; {LETTERS}")),
         });
         let items =

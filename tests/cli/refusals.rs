@@ -104,7 +104,7 @@ fn flags_that_are_missing_unknown_or_given_twice() {
     refused(
         &desk,
         &[&verdict("10", "1", "1", "1")[..], &["--period", "3"]].concat(),
-        &["unknown; see --help"],
+        &["unknown; --help lists all flags"],
     );
     refused(&desk, &["curves", "--samples", "3", "--samples", "4"], &["samples", "once"]);
     refused(&desk, &["curves", "--format", "yaml"], &["format = yaml", "latex"]);

@@ -13,7 +13,6 @@ use crate::number::Rational;
 use crate::number::rational::to_f64;
 use crate::system::levels::Growing;
 
-use super::View;
 use super::molecule::called;
 use super::words::{named, nearest, percent};
 
@@ -88,17 +87,8 @@ fn blocks<'a, T>(
     found
 }
 
-/// Each mode and each pair of modes, or the molecule and each group of its fast modes, at each scheme's own ratio, and the schemes' outer
-/// steps as lines through their rows; `None` of forces that are no gradient, whose growth is a table.
-pub fn figure(of: View, title: &str) -> Option<Figure> {
-    match of {
-        View::Periods(advice) => Some(of_periods(advice, title)),
-        View::Hessians(findings) => Some(of_molecule(findings, title)),
-        View::Direct(_) => None,
-    }
-}
-
-fn of_periods(advice: &Advice, title: &str) -> Figure {
+/// Each mode and each pair of modes at each scheme's own ratio, and the schemes' outer steps as lines through their rows.
+pub(super) fn of_periods(advice: &Advice, title: &str) -> Figure {
     let lines = |answer: &Answer| {
         let modes = answer.rows.iter().map(|row| mode(advice, answer, row));
         modes.chain(answer.pairs.iter().map(|own| pair(advice, answer, own))).collect()
@@ -113,7 +103,7 @@ fn of_periods(advice: &Advice, title: &str) -> Figure {
 }
 
 /// How far all periods may be off, and the friction.
-fn within(foot: Foot, band: &Rational, friction: Option<&Rational>) -> Foot {
+pub(super) fn within(foot: Foot, band: &Rational, friction: Option<&Rational>) -> Foot {
     let foot = foot.words(&format!("all periods within {}", percent(band)));
     let per_ps = |rate: &Rational| decimal(&(rate * Rational::from_integer(1000.into())));
     friction.map_or(foot.clone(), |rate| foot.words(&format!("friction {}/ps", per_ps(rate))))
@@ -145,7 +135,8 @@ fn pair(advice: &Advice, answer: &Answer, own: &Pair) -> Line {
     }
 }
 
-fn of_molecule(findings: &Findings, title: &str) -> Figure {
+/// The molecule and each group of its fast modes, alike.
+pub(super) fn of_molecule(findings: &Findings, title: &str) -> Figure {
     let of = |own| (molecule(findings, own), own.status, &own.safe);
     let far =
         |own: &Finding| own.growing.last().and_then(|last| last.upper).or(own.first.map(|first| first.1));

@@ -3,6 +3,8 @@
 #[cfg(feature = "figure")]
 mod chart;
 mod direct;
+#[cfg(feature = "figure")]
+mod growth;
 mod levers;
 mod lines;
 mod molecule;
@@ -18,7 +20,7 @@ use crate::advise::{Advice, Answer, DirectFindings, Findings, Mode, Pair, Row, U
 use crate::number::Rational;
 
 #[cfg(feature = "figure")]
-pub use chart::{figure, levers as levers_figure};
+pub use chart::levers as levers_figure;
 use tables::{enclosed, engine, for_people, published};
 pub use words::nearest;
 
@@ -40,6 +42,17 @@ pub fn document(of: View, reading: Option<&Reading>, notes: &[String]) -> Docume
         View::Periods(advice) => of_periods(advice, reading),
         View::Hessians(findings) => molecule::document(findings, reading, notes),
         View::Direct(findings) => direct::document(findings, reading, notes),
+    }
+}
+
+/// Each mode and each pair of modes, or the molecule and each group of its fast modes, at each scheme's own ratio, and the schemes' outer steps as lines
+/// through their rows. Of forces that are no gradient the growth over the outer step; `None` where there is one step alone.
+#[cfg(feature = "figure")]
+pub fn figure(of: View, title: &str) -> Option<plot::Figure> {
+    match of {
+        View::Periods(advice) => Some(chart::of_periods(advice, title)),
+        View::Hessians(findings) => Some(chart::of_molecule(findings, title)),
+        View::Direct(findings) => growth::figure(findings, title),
     }
 }
 

@@ -7,7 +7,7 @@ use super::terms;
 use super::words::rate;
 use crate::report::decimal;
 use crate::report::text::counted;
-use crate::system::{Analysis, Instability, Origin, middle};
+use crate::system::{Analysis, Instability, Origin, Part, middle};
 
 /// The most shapes on one page: the fastest.
 const MOST_SHAPES: usize = 4;
@@ -19,21 +19,26 @@ const STEMS: usize = 60;
 
 /// All multipliers by angle and growth, and below the shapes of the fastest growing ones.
 pub fn figure(analysis: &Analysis, title: &str) -> Figure {
-    let mut growing: Vec<&Instability> = analysis.parts.iter().flat_map(|part| &part.instabilities).collect();
-    growing.sort_by(|a, b| b.multiplier.size().total_cmp(&a.multiplier.size()));
+    let parts = analysis.parts.iter().flat_map(|part| part.instabilities.iter().map(move |own| (own, part)));
+    let mut growing: Vec<Growing> = parts.map(|(own, part)| (own, height(own, part))).collect();
+    growing.sort_by(|a, b| b.0.multiplier.size().total_cmp(&a.0.multiplier.size()));
     let shown = &growing[..growing.len().min(MOST_SHAPES)];
     let height = SPECTRUM + SHAPE * shown.len() as f64;
     let first = Figure::double_column(height).columns(1).named(title).with(spectrum(analysis, shown));
-    (1..).zip(shown).fold(first, |figure, (n, unstable)| figure.with(shape(n, unstable)))
+    (1..).zip(shown).fold(first, |figure, (n, own)| figure.with(shape(n, own)))
 }
 
-/// The growth rate as it is drawn: the middle of its enclosure.
-fn height(own: &Instability) -> f64 {
-    own.growth_rate.map_or(0.0, middle)
+/// What grows, and its rate as it is drawn.
+type Growing<'a> = (&'a Instability, f64);
+
+/// The middle of the rate's enclosure, or ln |λ|/T rounded where it has none.
+fn height(own: &Instability, part: &Part) -> f64 {
+    let rounded = || own.multiplier.lambda.norm().ln().abs() / part.period.to_f64();
+    own.growth_rate.filter(|own| own.1.is_finite()).map_or_else(rounded, middle)
 }
 
 /// ln |λ|/T over arg λ/π.
-fn spectrum(analysis: &Analysis, shown: &[&Instability]) -> Panel {
+fn spectrum(analysis: &Analysis, shown: &[Growing]) -> Panel {
     let (mut still, mut moving) = (Vec::new(), Vec::new());
     for part in &analysis.parts {
         let angle = |z: num_complex::Complex64| z.arg().abs() / std::f64::consts::PI;
@@ -41,7 +46,7 @@ fn spectrum(analysis: &Analysis, shown: &[&Instability]) -> Panel {
         let stable =
             part.multipliers.iter().filter(|m| !unstable.contains(&m.mu) && !unstable.contains(&m.mu.conj()));
         still.extend(stable.map(|m| [angle(m.lambda), 0.0]));
-        moving.extend(part.instabilities.iter().map(|own| [angle(own.multiplier.lambda), height(own)]));
+        moving.extend(part.instabilities.iter().map(|own| [angle(own.multiplier.lambda), height(own, part)]));
     }
     let fastest = moving.iter().fold(0.0, |a: f64, own| a.max(own[1]));
     let y = if fastest > 0.0 {
@@ -64,22 +69,23 @@ fn spectrum(analysis: &Analysis, shown: &[&Instability]) -> Panel {
         .with(Layer::lines(stems, Stroke::LINE.in_colour(family(3))))
         .with(Layer::dots(still, Shape::Disc, 2.6, INK))
         .with(Layer::dots(moving, Shape::Disc, 3.6, family(3)));
-    (1..).zip(shown).fold(panel, |panel, (n, unstable)| {
+    (1..).zip(shown).fold(panel, |panel, (n, &(unstable, height))| {
         let angle = unstable.multiplier.lambda.arg().abs() / std::f64::consts::PI;
         let (anchor, shift) = if angle > 0.9 { (Anchor::End, -4.0) } else { (Anchor::Start, 4.0) };
-        panel.note(Note::new([angle, height(unstable)], &n.to_string()).anchored(anchor, [shift, 1.0]))
+        panel.note(Note::new([angle, height], &n.to_string()).anchored(anchor, [shift, 1.0]))
     })
 }
 
 /// The positions of a growing solution, one degree of freedom beside the other.
-fn shape(n: usize, unstable: &Instability) -> Panel {
+fn shape(n: usize, own: &Growing) -> Panel {
+    let unstable = own.0;
     let last = unstable.shape.len() as f64 - 1.0;
     let few = unstable.shape.len() <= STEMS;
     let points = |values: &[f64]| (0..).zip(values).map(|(i, &y)| [f64::from(i), y]).collect::<Vec<_>>();
     let (real, imaginary) = (points(&unstable.shape), points(&unstable.quadrature));
     let mut panel =
         Panel::new(Axis::linear("degree of freedom", -0.5, last + 0.5), Axis::linear("shape", -1.15, 1.15))
-            .titled(&format!("{n}  {}", described(unstable)))
+            .titled(&format!("{n}  {}", described(own)))
             .with(Layer::lines(vec![vec![[-0.5, 0.0], [last + 0.5, 0.0]]], Stroke::THIN.in_colour(GREY)));
     let beats = unstable.origin == Origin::Collision;
     if beats {
@@ -103,14 +109,15 @@ fn shape(n: usize, unstable: &Instability) -> Panel {
 }
 
 /// Kind, growth and resonance, in the notation of labels.
-fn described(unstable: &Instability) -> String {
+fn described(&(unstable, height): &Growing) -> String {
     let kind = match unstable.origin {
         Origin::RealPair => "real pair",
         Origin::Collision => "collision",
     };
     let rate = match unstable.growth_rate {
-        Some((lo, hi)) if lo > 0.0 => decimal::shortened(lo, hi, 4).to_string(),
-        own => rate(own),
+        Some((lo, hi)) if lo > 0.0 && hi.is_finite() => decimal::shortened(lo, hi, 4).to_string(),
+        Some(own) => rate(Some(own)),
+        None => format!("about {}", decimal::few(height, 4)),
     };
     let mut text = format!("{kind}, growth {rate}");
     if let Some(r) = &unstable.resonance {

@@ -353,8 +353,7 @@ fn listed(own: &Growing) -> String {
     if own.modes.iter().any(|mode| mode.radius.is_none()) || shown == 0 {
         let most = own.at_most.map_or(String::new(), |most| format!(" and at most {most} do"));
         return format!(
-            "{found} proven to grow by multipliers below −1{most}: bonds take half a turn or more in an outer step; the {shown} shown are rounded, the \
-             growth rate is proven"
+            "{found} proven to grow by multipliers below −1{most}: bonds take half a turn or more in an outer step; the {shown} shown are rounded"
         );
     }
     match own.at_most {
