@@ -360,6 +360,37 @@ fn what_grows_beyond_half_a_turn_is_enclosed_and_ends() {
 }
 
 /// A document of an unstable droplet, verified: each of its modes is run kick by kick.
+/// Modes before and past half a turn that grow in equal numbers leave the count at 0 as it is where nothing grows: no stability follows.
+#[test]
+fn as_many_growing_modes_before_half_a_turn_as_past_it_are_not_taken_for_none() {
+    let (n, mut numbers, mut seen) = (4, Numbers(8), [0; 3]);
+    for case in 0..400 {
+        // p θ from 3.05 to 3.25, two on either side of π.
+        let angle = |i: usize, x: f64| std::f64::consts::PI + if i % 2 == 0 { 0.1 } else { -0.1 } * x.abs();
+        let square = |turn: f64| 32.0 * (1.0 - (turn / 4.0).cos());
+        let fast: Vec<_> = (0..n).map(|i| (i, i, square(angle(i, numbers.next())))).collect();
+        // Past half a turn a negative slow stiffness makes a mode grow, before it a positive one; every fourth case the other way round.
+        let sign = |i: usize| if (i % 2 == 0) == (case % 4 != 0) { -1.0 } else { 1.0 };
+        let alone = (0..n).map(|i| (i, i, sign(i) * 2.0 * numbers.next().abs())).collect::<Vec<_>>();
+        let slow: Vec<_> =
+            alone.into_iter().chain((1..n).map(|i| (i, i - 1, 0.05 * (i as f64).sin()))).collect();
+        let sparse = SparseLevels::new(&vec![1.0; n], [&fast, &slow], faer::Mat::zeros(n, 0)).unwrap();
+        let whole = |own: &[(usize, usize, f64)]| {
+            let mut matrix = DMatrix::zeros(n, n);
+            own.iter().for_each(|&(i, j, x)| (matrix[(i, j)], matrix[(j, i)]) = (x, x));
+            matrix
+        };
+        let hessians = Hessians::weighted(&vec![1.0; n], &whole(&fast), &whole(&slow), 1e-9).unwrap();
+        let dense = Kernel::new(&hessians).unwrap();
+        let outer = Outer::new(1.0, 4).unwrap();
+        let ((holds, _), truth) = (sparse.beyond(&outer), dense.verdict_within(&outer, 0.0));
+        assert!(holds == truth || holds == Holds::NotTold, "{case}: {holds:?} {truth:?} {fast:?} {slow:?}");
+        seen[holds as usize] += 1;
+    }
+    // Counts that cancel tell nothing: so it is in most cases.
+    assert!(seen[Holds::Stable as usize] > 10 && seen[Holds::Unstable as usize] > 40, "{seen:?}");
+}
+
 #[test]
 fn the_modes_of_a_document_are_what_a_period_makes_of_them() {
     use kickdrift::question::{Question, System, Work};

@@ -5,7 +5,7 @@
 //!
 //! ```text
 //!     L(e) = V (C + 1 + 2 e) − V M V:       at least |neg L(e) − neg V| modes have an excess above e;
-//!                                           just as many where V > 0, or where L is positive definite at some e < 0.
+//!                                           just as many where V > 0, or where L is positive definite at some −1 < e < 0.
 //! ```
 //!
 //! In the latter case all e are real, those with V < 0 above it and the others below. So it goes beyond a resonance with half a turn of bonds:
@@ -43,7 +43,7 @@ pub(super) struct Counted<'a> {
     rigid: usize,
     /// Whether all multipliers are real or on the circle for sure: an L(e) > 0 parts those with V < 0 from those with V > 0.
     is_parted: OnceLock<bool>,
-    /// An e for that.
+    /// An e in (−1, 0) for that.
     gap: Option<f64>,
     known: Mutex<Known>,
     /// X of each block,
@@ -243,8 +243,9 @@ impl<'a> Counted<'a> {
         let beside = |sign: f64| Some(blocks.alone.negative_beside(sign, 0.0, &signs, [slack[1], 0.0])?.0);
         let negative = [beside(-1.0)?, beside(1.0)?];
         let (hi, lo) = all.iter().fold(NOWHERE, |(a, b), own| (a.min(own.ends.0), b.max(own.ends.1)));
-        let gap =
-            (negative[0] == negative[1] && lo < hi && hi < f64::INFINITY).then_some(lo + (hi - lo) / 2.0);
+        // Between −1 and 0 alone does it say that what is above 0 has V < 0, and what is below −1 has V > 0.
+        let (lo, hi) = (lo.max(-1.0), hi.min(0.0));
+        let gap = (negative[0] == negative[1] && lo < hi).then_some(lo + (hi - lo) / 2.0);
         let (rigid, is_parted) = (levels.rigid.ncols(), OnceLock::new());
         let top = most(&|own| own.top);
         let turned = all.into_iter().map(|Turned { own: [x, ..], .. }| x).collect();
