@@ -366,11 +366,13 @@ fn as_many_growing_modes_before_half_a_turn_as_past_it_are_not_taken_for_none() 
     let (n, mut numbers, mut seen) = (4, Numbers(8), [0; 3]);
     for case in 0..400 {
         // p θ from 3.05 to 3.25, two on either side of π.
-        let angle = |i: usize, x: f64| std::f64::consts::PI + if i % 2 == 0 { 0.1 } else { -0.1 } * x.abs();
+        let is_past = |i: usize| i.is_multiple_of(2);
+        let beside = |i: usize, x: f64| if is_past(i) { 0.1 * x.abs() } else { -0.1 * x.abs() };
         let square = |turn: f64| 32.0 * (1.0 - (turn / 4.0).cos());
-        let fast: Vec<_> = (0..n).map(|i| (i, i, square(angle(i, numbers.next())))).collect();
+        let fast: Vec<_> =
+            (0..n).map(|i| (i, i, square(std::f64::consts::PI + beside(i, numbers.next())))).collect();
         // Past half a turn a negative slow stiffness makes a mode grow, before it a positive one; every fourth case the other way round.
-        let sign = |i: usize| if (i % 2 == 0) == (case % 4 != 0) { -1.0 } else { 1.0 };
+        let sign = |i: usize| if is_past(i) == (case % 4 != 0) { -1.0 } else { 1.0 };
         let alone = (0..n).map(|i| (i, i, sign(i) * 2.0 * numbers.next().abs())).collect::<Vec<_>>();
         let slow: Vec<_> =
             alone.into_iter().chain((1..n).map(|i| (i, i - 1, 0.05 * (i as f64).sin()))).collect();
