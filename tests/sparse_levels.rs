@@ -326,6 +326,22 @@ fn the_modes_that_grow_are_those_of_the_dense_kernel() {
     assert!(told > 20 && sharp > 3 && beyond[0] > 2 && beyond[1] > 0, "{told} {sharp} {beyond:?}");
 }
 
+/// Levels of unit masses from the lower triangles of their stiffnesses, and the dense kernel of the same.
+fn sparse_and_dense(
+    n: usize,
+    fast: &[(usize, usize, f64)],
+    slow: &[(usize, usize, f64)],
+) -> (SparseLevels, Kernel) {
+    let sparse = SparseLevels::new(&vec![1.0; n], [fast, slow], faer::Mat::zeros(n, 0)).unwrap();
+    let whole = |own: &[(usize, usize, f64)]| {
+        let mut matrix = DMatrix::zeros(n, n);
+        own.iter().for_each(|&(i, j, x)| (matrix[(i, j)], matrix[(j, i)]) = (x, x));
+        matrix
+    };
+    let hessians = Hessians::weighted(&vec![1.0; n], &whole(fast), &whole(slow), 1e-9).unwrap();
+    (sparse, Kernel::new(&hessians).unwrap())
+}
+
 /// Slow forces that soften the bonds move their resonance to steps in which every bond takes more than half a turn: what grows there is enclosed from both
 /// sides, and later steps are stable again.
 #[test]
@@ -337,14 +353,7 @@ fn what_grows_beyond_half_a_turn_is_enclosed_and_ends() {
         .map(|i| (i, i, if bonds(i) { -0.05 } else { 0.02 }))
         .chain((1..n).map(|i| (i, i - 1, 0.004 * (i as f64).sin())))
         .collect();
-    let sparse = SparseLevels::new(&vec![1.0; n], [&fast, &slow], faer::Mat::zeros(n, 0)).unwrap();
-    let whole = |own: &[(usize, usize, f64)]| {
-        let mut matrix = DMatrix::zeros(n, n);
-        own.iter().for_each(|&(i, j, x)| (matrix[(i, j)], matrix[(j, i)]) = (x, x));
-        matrix
-    };
-    let hessians = Hessians::weighted(&vec![1.0; n], &whole(&fast), &whole(&slow), 1e-9).unwrap();
-    let dense = Kernel::new(&hessians).unwrap();
+    let (sparse, dense) = sparse_and_dense(n, &fast, &slow);
     for k in 0..24 {
         let outer = Outer::new(3.0 + 0.02 * f64::from(k), 8).unwrap();
         let ((holds, growing), truth) = (sparse.beyond(&outer), dense.verdict_within(&outer, 0.0));
@@ -365,7 +374,7 @@ fn what_grows_beyond_half_a_turn_is_enclosed_and_ends() {
 fn as_many_growing_modes_before_half_a_turn_as_past_it_are_not_taken_for_none() {
     let (n, mut numbers, mut seen) = (4, Numbers(8), [0; 3]);
     for case in 0..400 {
-        // p θ from 3.05 to 3.25, two on either side of π.
+        // p θ within 0.05 of π, two on either side.
         let is_past = |i: usize| i.is_multiple_of(2);
         let beside = |i: usize, x: f64| if is_past(i) { 0.1 * x.abs() } else { -0.1 * x.abs() };
         let square = |turn: f64| 32.0 * (1.0 - (turn / 4.0).cos());
@@ -376,14 +385,7 @@ fn as_many_growing_modes_before_half_a_turn_as_past_it_are_not_taken_for_none() 
         let alone = (0..n).map(|i| (i, i, sign(i) * 2.0 * numbers.next().abs())).collect::<Vec<_>>();
         let slow: Vec<_> =
             alone.into_iter().chain((1..n).map(|i| (i, i - 1, 0.05 * (i as f64).sin()))).collect();
-        let sparse = SparseLevels::new(&vec![1.0; n], [&fast, &slow], faer::Mat::zeros(n, 0)).unwrap();
-        let whole = |own: &[(usize, usize, f64)]| {
-            let mut matrix = DMatrix::zeros(n, n);
-            own.iter().for_each(|&(i, j, x)| (matrix[(i, j)], matrix[(j, i)]) = (x, x));
-            matrix
-        };
-        let hessians = Hessians::weighted(&vec![1.0; n], &whole(&fast), &whole(&slow), 1e-9).unwrap();
-        let dense = Kernel::new(&hessians).unwrap();
+        let (sparse, dense) = sparse_and_dense(n, &fast, &slow);
         let outer = Outer::new(1.0, 4).unwrap();
         let ((holds, _), truth) = (sparse.beyond(&outer), dense.verdict_within(&outer, 0.0));
         assert!(holds == truth || holds == Holds::NotTold, "{case}: {holds:?} {truth:?} {fast:?} {slow:?}");

@@ -76,31 +76,20 @@ class Groups:
         notes: Sequence[str] = (),
     ) -> System:
         """The Hessian of each group at the minimum of all, with its measured error."""
-        with self.session():
-            return self._system(minimize, difference, progress, symmetric, longest, notes)
-
-    def _system(
-        self,
-        minimize: bool,
-        difference: float,
-        progress: Progress | bool,
-        symmetric: bool,
-        longest: float,
-        notes: Sequence[str],
-    ) -> System:
-        evaluation = self._evaluation()
         sought = SOUGHT * len(self.forces) if minimize else 0
-        Work(self.where.size, len(self.forces), evaluation, sought).begin(longest, progress is True, "fewer atoms")
-        where = self._start(minimize, difference, progress)
-        seen_by = shown(progress)
-        measured = {
-            name: hessian(force, where, self.masses, difference, None, seen_by, symmetric)
-            for name, force in self.forces.items()
-        }
+        with self.session():
+            evaluation = self._evaluation()
+            Work(self.where.size, len(self.forces), evaluation, sought).begin(longest, progress is True, "fewer atoms")
+            where = self._start(minimize, difference, progress)
+            seen_by = shown(progress)
+            measured = {
+                name: hessian(force, where, self.masses, difference, None, seen_by, symmetric)
+                for name, force in self.forces.items()
+            }
+            forces = {name: force(where) for name, force in self.forces.items()}
         width = f"{difference:g} {self.length}"
         accuracy = max(seen(*own, name, width) for name, own in measured.items())
         unit, scale = self.force
-        forces = {name: force(where) for name, force in self.forces.items()}
         pulls = {name: force * scale for name, force in forces.items()}
         total = np.sum([matrix for matrix, _ in measured.values()], axis=0)
         follow = "Ask oscillations(...) for what grows about that orbit, as a run shows it"
@@ -172,9 +161,9 @@ class Groups:
     def _start(self, minimize: bool, difference: float, progress: Progress | bool) -> Doubles:
         if not minimize:
             return self.where
-        every, told = list(self.forces.values()), shown(progress, "columns on the way to the minimum")
+        every, seen_by = list(self.forces.values()), shown(progress, "columns on the way to the minimum")
 
         def whole(at: Doubles) -> Doubles:
             return np.asarray(np.sum([force(at) for force in every], axis=0))
 
-        return minimum(whole, self.where, Held(self.masses), difference, is_boxed=self.has_mesh, progress=told)[0]
+        return minimum(whole, self.where, Held(self.masses), difference, is_boxed=self.has_mesh, progress=seen_by)[0]

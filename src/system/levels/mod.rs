@@ -44,7 +44,7 @@
 //! | `beyond` | the verdict elsewhere, with the Lipschitz constants of the half period |
 //! | `cell` | the verdict on all outer steps, or scales, between two |
 //! | `growth` | how fast it grows past that, and up to where: sampled |
-//! | `nested` | any number of levels, by the action alone: region, margin, band, growth |
+//! | `nested` | any number of levels, by the action, beyond its first region by the half period: verdict, margin, band, growth |
 //! | `damped` | friction: the spectral radius of the period, proven |
 //! | `paths` | the action itself and the full period: another route, for rechecks |
 //! | `step` | one step of other methods, the same way |
