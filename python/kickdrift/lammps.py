@@ -64,8 +64,8 @@ def system(
     LAMMPS shows the forces of no level but the outermost, by ``fix store/force`` and ``run 0``. So those of level k are
     the outermost's of a shorter run style, with the levels from k on in one, less the outermost's with those from k + 1
     on. The input is left as it was: positions and the run style are put back. Make the instance with ``lammps(cmdargs=
-    ["-screen", "none", "-log", "none"])``, or it writes of each of these runs. Of Coulomb forces ``pair_modify table
-    0`` says that they are no tables, which are rough; pairs that cross a cutoff jump.
+    ["-screen", "none", "-log", "none"])``, or it prints each of these runs. ``pair_modify table 0`` turns off tables of
+    Coulomb forces, which limit the accuracy. Pairs that cross a cutoff make forces jump.
 
     Parameters
     ----------

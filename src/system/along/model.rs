@@ -129,8 +129,8 @@ impl Along {
         Ok(Along { rigid: Rigid::Turning(motions), ..self })
     }
 
-    /// The same without motions that are free, one a column, mass-weighted, where the orbit starts and where it turns: as those of a molecule with
-    /// held bonds in coordinates of what these leave.
+    /// These Hessians without rigid motions that are given as columns, mass-weighted, at t = 0 and at T/2. Coordinates other than those of atoms need
+    /// this, as of a molecule with held bonds.
     ///
     /// # Errors
     /// Columns of another length than n, of another number at the two ends, that depend on each other or are all there is.
