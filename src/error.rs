@@ -69,6 +69,29 @@ impl Error {
         error
     }
 
+    /// Bad input: a name that is none of these. The remedy is what it may be a slip of the keyboard for, else all of them,
+    /// or as many as a line has room for.
+    pub fn unknown<'a>(field: &str, given: &str, names: impl IntoIterator<Item = &'a str>) -> Self {
+        let names: Vec<&str> = names.into_iter().collect();
+        let like: Vec<&str> = names.iter().copied().filter(|name| is_like(given, name)).collect();
+        let remedy = if like.is_empty() {
+            let ends = names.iter().scan(0, |end, name| {
+                *end += name.len() + 2;
+                Some(*end)
+            });
+            let shown = ends.take_while(|&end| end < LONGEST_TEXT - 60).count();
+            let more = if shown < names.len() {
+                format!(" and {} more", names.len() - shown)
+            } else {
+                String::new()
+            };
+            format!("choose among {}{more}", names[..shown].join(", "))
+        } else {
+            format!("unknown; did you mean {}?", like.join(" or "))
+        };
+        Error::input(field, given, remedy)
+    }
+
     /// Bad input: a field that is not there, and how to add it.
     pub fn missing(field: &str, remedy: impl fmt::Display) -> Self {
         Error::new(Kind::Input, field, remedy)
@@ -209,6 +232,11 @@ pub(crate) fn room(bytes: u128, fewer: &str) -> Result<()> {
     }
     let work = format!("work that takes {:.1} GB", bytes as f64 / 1e9);
     Err(Error::too_much(work, format!("there is no memory for it: choose {fewer}")))
+}
+
+/// Whether a word may be a slip of the keyboard for another: one letter in three is wrong, missing or too much.
+pub(crate) fn is_like(given: &str, known: &str) -> bool {
+    3 * strsim::damerau_levenshtein(given, known) <= given.len().max(known.len())
 }
 
 /// Characters that are not seen or turn the direction of what follows: marks, embeddings, isolates, tags, a byte order mark.

@@ -30,7 +30,7 @@ pub struct Common {
     #[arg(long, global = true, value_name = "FILE")]
     pub output: Option<PathBuf>,
     /// Threads to use [default: one a core]. The result is the same, byte for byte.
-    #[arg(long, global = true, value_name = "N", allow_negative_numbers = true, value_parser = flag::<usize>)]
+    #[arg(long, global = true, value_name = "N", value_parser = flag::<usize>)]
     pub threads: Option<usize>,
     /// The environment of LaTeX tables [default: table where it fits a column, else table*; longtable beyond a page].
     #[arg(long, global = true, value_name = "ENV", value_enum)]
@@ -39,7 +39,7 @@ pub struct Common {
     #[arg(long, global = true)]
     pub quiet: bool,
     /// The most kicks that may be composed for one pair of steps, in doubles or in more digits [default: 100000000].
-    #[arg(long, global = true, value_name = "KICKS", allow_negative_numbers = true, value_parser = flag::<u64>)]
+    #[arg(long, global = true, value_name = "KICKS", value_parser = flag::<u64>)]
     pub budget: Option<u64>,
     /// The command as figures carry it.
     #[arg(skip)]
@@ -179,7 +179,7 @@ pub struct Columns {
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     columns: Option<Vec<String>>,
     /// Significant digits of text and latex [default: all; in latex 10, or as many as fit].
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = flag::<u32>)]
+    #[arg(long, value_name = "N", value_parser = flag::<u32>)]
     digits: Option<u32>,
 }
 

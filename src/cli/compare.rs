@@ -20,13 +20,13 @@ pub struct Args {
     #[command(flatten)]
     grid: args::Grid,
     /// Instead of a grid: all coprime p + q up to this number.
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = flag::<u64>)]
+    #[arg(long, value_name = "N", value_parser = flag::<u64>)]
     max_sum: Option<u64>,
     /// lambda2/lambda1, with --max-sum.
     #[arg(long, value_name = "R", allow_hyphen_values = true, value_parser = flag::<Rational>)]
     rho: Option<Rational>,
     /// With --max-sum: the values of s = h1^2 lambda1, evenly spaced inside 0 < s < 4.
-    #[arg(long, value_name = "K", default_value_t = 99, allow_negative_numbers = true, value_parser = flag::<u64>)]
+    #[arg(long, value_name = "K", default_value_t = 99, value_parser = flag::<u64>)]
     samples: u64,
     /// How near q h2 must be to a multiple of T1/2, half the vibration's period, to count as resonant; in units of T1/2.
     #[arg(long, value_name = "T", default_value = "1/20", allow_hyphen_values = true, value_parser = flag::<Rational>)]

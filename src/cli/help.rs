@@ -88,11 +88,13 @@ const EXAMPLES: [(&str, &[&str]); 16] = [
     ("generate", &["generate man --output man", "generate completions --output completions"]),
 ];
 
-/// The program with all of this, its commands in their order.
+/// The program with all of this, its commands in their order. A negative number is a value, for the flag before it to refuse.
 pub fn explained(program: Command) -> Command {
+    let program = negative_numbers(program);
     let names: Vec<String> = program.get_subcommands().map(|own| own.get_name().to_string()).collect();
     names.iter().fold(program, |program, name| {
         program.mut_subcommand(name, |command| {
+            let command = negative_numbers(command);
             let of = |known: &&str| **known == **name;
             let command = match EXAMPLES.iter().find(|(known, _)| of(known)) {
                 Some((_, examples)) => command.after_help(below(name, examples)),
@@ -106,6 +108,11 @@ pub fn explained(program: Command) -> Command {
             }
         })
     })
+}
+
+fn negative_numbers(command: Command) -> Command {
+    command
+        .mut_args(|own| if own.get_action().takes_values() { own.allow_negative_numbers(true) } else { own })
 }
 
 /// Examples, and what the exit codes mean.

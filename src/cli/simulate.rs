@@ -17,7 +17,7 @@ pub struct Args {
     #[arg(value_name = "FILE")]
     file: PathBuf,
     /// Synchronization periods to run.
-    #[arg(long, value_name = "N", default_value_t = 200, allow_negative_numbers = true, value_parser = flag::<u32>)]
+    #[arg(long, value_name = "N", default_value_t = 200, value_parser = flag::<u32>)]
     periods: u32,
     /// The starting displacement of each degree of freedom, as 1/10,0,0; one number moves the first alone.
     #[arg(long, value_name = "X", default_value = "1/10", allow_hyphen_values = true, value_parser = flag::<Displacement>)]

@@ -32,7 +32,7 @@ pub struct Args {
     #[arg(long)]
     exact: bool,
     /// How well measured stiffnesses (by reference to NumPy's files) are known, relative to their norms [default: 1e-6].
-    #[arg(long, value_name = "X")]
+    #[arg(long, value_name = "X", value_parser = flag::<f64>)]
     accuracy: Option<f64>,
     /// The integrator of two measured levels: respa, implicit-explicit, impulse, molly-short, ... [default: the file's].
     #[arg(long, value_name = "NAME", value_parser = from_str::<Method>)]
@@ -44,7 +44,7 @@ pub struct Args {
     #[arg(long, conflicts_with_all = ["scan", "intervals", "friction"])]
     nearest: bool,
     /// The relative width above which no interval is missed, of --intervals and --nearest [default: 1e-4].
-    #[arg(long, value_name = "W")]
+    #[arg(long, value_name = "W", value_parser = flag::<f64>)]
     resolution: Option<f64>,
     /// Friction per unit time, as BAOAB has it: halfway through a drift over t, v becomes v exp(-G t). Does it stop the growth?
     #[arg(long, value_name = "G", value_parser = flag::<Rational>, conflicts_with_all = ["scan", "intervals"])]

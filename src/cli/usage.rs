@@ -2,7 +2,7 @@
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 
-use crate::error::Error;
+use crate::error::{Error, is_like};
 
 /// An error that the argument parser found, as one of ours.
 pub fn explained(error: &clap::Error, program: &clap::Command) -> Error {
@@ -14,8 +14,9 @@ pub fn explained(error: &clap::Error, program: &clap::Command) -> Error {
         ErrorKind::MissingRequiredArgument => {
             invalid().map(|flags| Error::missing(&names(&flags), format!("add {flags}")))
         }
-        ErrorKind::InvalidSubcommand => shown(error, ContextKind::InvalidSubcommand)
-            .map(|name| Error::input("command", &name, likely(&name, program))),
+        ErrorKind::InvalidSubcommand => shown(error, ContextKind::InvalidSubcommand).map(|name| {
+            Error::unknown("command", &name, program.get_subcommands().map(clap::Command::get_name))
+        }),
         ErrorKind::InvalidValue | ErrorKind::ValueValidation => bad_value(error),
         ErrorKind::ArgumentConflict => invalid().map(|flag| match shown(error, ContextKind::PriorArg) {
             Some(other) if other != flag => {
@@ -29,6 +30,9 @@ pub fn explained(error: &clap::Error, program: &clap::Command) -> Error {
             Error::input(&names(&flag), value, "takes no value: write the flag alone")
         }),
         ErrorKind::UnknownArgument => invalid().map(|given| {
+            if given.starts_with('-') && given[1..].starts_with(|c: char| c.is_ascii_digit()) {
+                return Error::input("argument", &given, "write a negative value as --flag=-1/ps");
+            }
             if given.starts_with('-') {
                 return Error::input("flag", &given, suggestion(error));
             }
@@ -53,28 +57,17 @@ fn bad_value(error: &clap::Error) -> Option<Error> {
     Some(if absent { Error::missing(&flag, remedy) } else { Error::input(&flag, value, remedy) })
 }
 
-/// The command that a name may be a slip of the fingers for, else all of them.
-fn likely(given: &str, program: &clap::Command) -> String {
-    let names = program.get_subcommands().map(clap::Command::get_name).filter(|name| is_like(given, name));
-    match names.min_by_key(|name| strsim::damerau_levenshtein(given, name)) {
-        Some(name) => format!("unknown; did you mean {name}?"),
-        None => format!("choose {}", commands(program)),
-    }
-}
-
 fn suggestion(error: &clap::Error) -> String {
+    fn letters(flag: &str) -> &str {
+        flag.trim_start_matches('-')
+    }
     let [given, known] = [ContextKind::InvalidArg, ContextKind::SuggestedArg].map(|kind| shown(error, kind));
     match given.zip(known) {
-        Some((given, known)) if is_like(&given, &known) => format!("unknown; did you mean {known}?"),
+        Some((given, known)) if is_like(letters(&given), letters(&known)) => {
+            format!("unknown; did you mean {known}?")
+        }
         _ => "unknown; --help lists all flags".into(),
     }
-}
-
-/// Whether a word may be a slip of the fingers for another: one letter in three is wrong, missing or too much.
-fn is_like(given: &str, known: &str) -> bool {
-    let letters = |word: &str| word.trim_start_matches('-').to_string();
-    let (given, known) = (letters(given), letters(known));
-    3 * strsim::damerau_levenshtein(&given, &known) <= given.len().max(known.len())
 }
 
 /// Anything else, in the parser's own words.

@@ -31,7 +31,7 @@ question! {
         #[arg(long, value_name = "A", allow_hyphen_values = true, value_parser = flag::<Rational>)]
         area: Option<Rational>,
         /// The most boxes that are tried: each costs some tens of microseconds.
-        #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = flag::<u64>)]
+        #[arg(long, value_name = "N", value_parser = flag::<u64>)]
         boxes: u64 = "100000",
     }
 }

@@ -20,7 +20,7 @@ question! {
         #[arg(long, value_name = "P/Q", allow_hyphen_values = true, value_parser = flag::<Ratio>)]
         ratio: Option<Ratio>,
         /// All coprime p + q up to this number.
-        #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = flag::<u64>)]
+        #[arg(long, value_name = "N", value_parser = flag::<u64>)]
         max_sum: Option<u64>,
         /// Only these labels (with --ratio), as 4 or 1,3,7..9.
         #[arg(long, value_name = "LIST", allow_hyphen_values = true, value_parser = flag::<Labels>)]
@@ -29,10 +29,10 @@ question! {
         #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<(Rational, Rational)>)]
         rho_range: (Rational, Rational) = "1/10000..100",
         /// Where p + q > 24: at how many rho, evenly spaced in ln rho, edges are computed to see where two cross.
-        #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = flag::<usize>)]
+        #[arg(long, value_name = "N", value_parser = flag::<usize>)]
         samples: usize = "400",
         /// Significant digits of s and rho.
-        #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = flag::<u32>)]
+        #[arg(long, value_name = "N", value_parser = flag::<u32>)]
         digits: u32 = "25",
     }
 }

@@ -38,7 +38,7 @@ question! {
         #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<(i64, i64)>)]
         b: (i64, i64) = "-12..12",
         /// Points a curve, evenly spaced in theta over its pieces in the window.
-        #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = flag::<usize>)]
+        #[arg(long, value_name = "N", value_parser = flag::<usize>)]
         samples: usize = "400",
     }
 }

@@ -1,5 +1,6 @@
 //! Exact values as texts: how the fields of a question are read and written.
 
+use num_traits::ToPrimitive;
 use serde_json::{Map, Value};
 
 use crate::error::{Error, Result};
@@ -85,8 +86,9 @@ impl Field for bool {
 
 fn whole<T: TryFrom<u64>>(field: &str, text: &str) -> Result<T> {
     let refused = |remedy| Error::input(field, text, remedy);
-    let number: u64 =
-        text.parse().map_err(|_| refused("write a whole number, in digits only, within 64 bits"))?;
+    let number = parse_rational(field, text)?;
+    let number = if number.is_integer() { number.numer().to_u64() } else { None };
+    let number = number.ok_or_else(|| refused("write a whole number, 0 or more, within 64 bits"))?;
     T::try_from(number).map_err(|_| refused("choose a smaller number"))
 }
 

@@ -13,7 +13,7 @@ question! {
     /// The Proposition for all coprime p, q up to a number, with all witnesses.
     args struct Proposition {
         /// All coprime p, q up to this number.
-        #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = flag::<u64>)]
+        #[arg(long, value_name = "N", value_parser = flag::<u64>)]
         max: u64 = "60",
     }
 }

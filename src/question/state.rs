@@ -28,7 +28,7 @@ question! {
         #[arg(long, value_name = "B", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
         h2: Laurent,
         /// How many steps of the slow clock.
-        #[arg(long, value_name = "N")]
+        #[arg(long, value_name = "N", value_parser = flag::<u64>)]
         steps: u64,
         /// The position at the start.
         #[arg(long, value_name = "X", default_value = "1", allow_hyphen_values = true, value_parser = flag::<Rational>)]

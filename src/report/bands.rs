@@ -1,5 +1,6 @@
 //! Boxes in which every ratio is unstable, as a document and as a figure.
 
+use super::decimal;
 use super::document::Document;
 use super::record::Record;
 use super::table::{Cell as Value, Column};
@@ -34,7 +35,7 @@ pub fn document(bands: &Bands) -> Document {
 fn lines(bands: &Bands, share: f64, area: f64) -> Vec<String> {
     vec![
         format!("{:.4} % of the window: every ratio h2/h1 there is unstable, rational or not", 100.0 * share),
-        format!("  area         {area:.6}, exact in JSON"),
+        format!("  area         {}, exact in JSON", decimal::few(area, 6)),
         format!(
             "  boxes        {} certified, {} left open, {} tried",
             bands.certified.len(),

@@ -327,10 +327,7 @@ impl Choice {
         let known: Vec<(String, (usize, Part))> = whole.chain(ends).collect();
         let place = |name: &String| {
             let found = known.iter().find(|(own, _)| own == name.trim()).map(|(_, place)| *place);
-            found.ok_or_else(|| {
-                let all: Vec<&str> = known.iter().map(|(own, _)| own.as_str()).collect();
-                Error::input("columns", name, format!("choose among {}", all.join(", ")))
-            })
+            found.ok_or_else(|| Error::unknown("columns", name, known.iter().map(|(own, _)| own.as_str())))
         };
         let picks = names.iter().map(place).collect::<Result<Vec<_>>>()?;
         let columns = picks.iter().map(|&(i, part)| columns[i].part(part)).collect();

@@ -30,10 +30,8 @@ impl Method {
 /// # Errors
 /// A name that is not in the catalogue.
 pub fn method(name: &str) -> Result<&'static Method> {
-    METHODS.iter().find(|method| method.name == name).ok_or_else(|| {
-        let names: Vec<&str> = METHODS.iter().map(|method| method.name).collect();
-        Error::input("method", name, format!("choose among {}", names.join(", ")))
-    })
+    let found = METHODS.iter().find(|method| method.name == name);
+    found.ok_or_else(|| Error::unknown("method", name, METHODS.iter().map(|method| method.name)))
 }
 
 macro_rules! methods {

@@ -100,7 +100,7 @@ impl Reader {
             return self.wrong(filtered, "filters stand on K2: x is h sqrt(lambda1), the fast force's angle");
         }
         let filter = filter.unwrap_or_default();
-        self.expect('(', &format!("after {name}"))?;
+        self.expect('(', &format!("after {name}, as in {name}(1/2)"))?;
         let mut powers = vec![self.coefficient()?];
         while self.skip(',') {
             powers.push(self.coefficient()?);

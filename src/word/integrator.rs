@@ -1,6 +1,6 @@
 //! Integrators of two forces by name or as words, each by its quickest route.
 
-use super::catalogue::{METHODS, method};
+use super::catalogue::method;
 use super::enclosed::Enclosed;
 use super::letters::Word;
 use super::point::{At, at};
@@ -35,13 +35,14 @@ impl Integrator {
     /// A text that is neither.
     pub fn named(text: &str) -> Result<Integrator> {
         let text = text.trim();
-        if let Ok(own) = method(text) {
-            return Ok(Integrator::of(own.word()));
+        match (method(text), text.parse()) {
+            (Ok(own), _) => Ok(Integrator::of(own.word())),
+            (_, Ok(word)) => Ok(Integrator::of(word)),
+            (Err(unknown), _) => {
+                let remedy = format!("write a word, or a method: {}", unknown.remedy());
+                Err(Error::input("methods", text, remedy))
+            }
         }
-        text.parse().map(Integrator::of).map_err(|_| {
-            let names: Vec<&str> = METHODS.iter().map(|method| method.name).collect();
-            Error::input("methods", text, format!("write a word, or choose among {}", names.join(", ")))
-        })
     }
 
     /// A word, by the quickest route to its verdicts.

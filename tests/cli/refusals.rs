@@ -177,7 +177,7 @@ fn tongues_that_are_none() {
     tongues("tongues --ratio 7/3 --rho 1e40", &["rho = 1", "1e16"]);
     tongues("tongues --ratio 99999999/1 --rho 1 --m 1", &["99999999/1", "kicks"]);
     tongues("tongues --max-sum 1 --rho 1", &["max-sum = 1", "2 to"]);
-    tongues("tongues --max-sum 9 --rho 1 --columns widths", &["columns = widths", "width, growth_s"]);
+    tongues("tongues --max-sum 9 --rho 1 --columns widths", &["columns = widths", "did you mean width?"]);
     tongues("tongues --max-sum 9 --rho 1 --colour growth", &["--colour = given", ".svg"]);
     tongues("tongues --max-sum 9 --rho 1 --survey --m 3", &["--m = given", "all tongues"]);
     tongues("tongues --ratio 7/3 --rho 1 --survey", &["max-sum missing"]);

@@ -30,7 +30,7 @@ pub struct Args {
     #[arg(long, value_name = "P/Q", allow_hyphen_values = true, value_delimiter = ',', value_parser = flag::<Ratio>)]
     ratio: Vec<Ratio>,
     /// All coprime p + q up to this number.
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = flag::<u64>)]
+    #[arg(long, value_name = "N", value_parser = flag::<u64>)]
     max_sum: Option<u64>,
     /// rho = lambda2/lambda1, not negative.
     #[arg(long, value_name = "R", allow_hyphen_values = true, value_parser = flag::<Rational>)]
@@ -57,7 +57,7 @@ pub struct Args {
     #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<(i64, i64)>)]
     b: Option<(i64, i64)>,
     /// Give the edges to so many significant digits, more or fewer than doubles have.
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = flag::<u32>)]
+    #[arg(long, value_name = "N", value_parser = flag::<u32>)]
     digits: Option<u32>,
     /// Columns by the names that csv has, or groups [default: all; with --max-sum all but growth; in LaTeX edges].
     ///
@@ -68,7 +68,7 @@ pub struct Args {
     #[arg(long)]
     survey: bool,
     /// How many of the thinnest tongues a survey lists.
-    #[arg(long, value_name = "K", allow_negative_numbers = true, value_parser = flag::<usize>)]
+    #[arg(long, value_name = "K", value_parser = flag::<usize>)]
     thinnest: Option<usize>,
     /// What a figure (--output FILE.svg, FILE.pdf or FILE.png) shows [default: atlas].
     #[arg(long, value_name = "WHAT")]

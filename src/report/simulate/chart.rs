@@ -4,6 +4,7 @@ use plot::palette::{GREY, family};
 use plot::{Axis, Figure, Layer, Panel, Place, Stroke};
 
 use crate::avi::{Run, Sample};
+use crate::report::decimal;
 
 /// A quantity that grows by more than this is drawn on a logarithmic scale.
 const LINEAR_RANGE: f64 = 100.0;
@@ -46,7 +47,7 @@ fn with_prediction(run: &Run, panel: Panel) -> Panel {
     let anchor = if run.linear { run.series.last().unwrap_or(first) } else { first };
     let line = (0..=200).map(|i| end * f64::from(i) / 200.0);
     let line = line.map(|t| [t, anchor.amplitude * (run.predicted * (t - anchor.time)).exp()]).collect();
-    let label = format!("predicted: exp({:.4} *t*)", run.predicted);
+    let label = format!("predicted: exp({} *t*)", decimal::few(run.predicted, 4));
     panel
         .with(Layer::lines(vec![line], Stroke::DASHED.in_colour(GREY).wide(1.2)).labelled(&label))
         .legend(Place::Above)

@@ -93,7 +93,8 @@ pub(super) fn no_gradient_lines(own: &NoGradient, analysis: &Analysis, per: &str
     match own.masking {
         Some(0.0) => lines.push("  no friction is needed".into()),
         Some(friction) => {
-            lines.push(format!("  friction from about {friction:.4} per {per} on masks what grows (rounded)"))
+            let friction = decimal::few(friction, 5);
+            lines.push(format!("  friction from about {friction} per {per} on masks what grows (rounded)"))
         }
         None => {}
     }

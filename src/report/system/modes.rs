@@ -123,8 +123,9 @@ fn described(&(unstable, height): &Growing) -> String {
     if let Some(r) = &unstable.resonance {
         let sign = if r.sign > 0 { '+' } else { '−' };
         let (first, second) = r.frequencies;
+        let (first, second) = (decimal::few(first, 5), decimal::few(second, 5));
         let family = terms(&r.family, "*h*_").replace(" - ", " − ");
-        text += &format!("; *w* = {first:.4} {sign} {second:.4} near 2π ({family})");
+        text += &format!("; *w* = {first} {sign} {second} near 2π ({family})");
     }
     text
 }

@@ -23,7 +23,7 @@ pub(super) fn value(own: &Nearest) -> Value {
 pub(super) fn lines(own: &Nearest, unit: &str) -> Vec<String> {
     let side = |name: &str, found: Option<Unstable>, end: f64| match found {
         Some(found) => format!("  {name}: {}", interval(found, unit)),
-        None => format!("  {name}: none between {} and {end:.6}{unit}", own.number),
+        None => format!("  {name}: none between {} and {}{unit}", own.number, decimal::few(end, 6)),
     };
     let mut lines = vec!["  unstable outer steps next to this one, all steps in their ratios:".to_string()];
     if let Some(found) = own.own {
@@ -42,10 +42,10 @@ pub(super) fn lines(own: &Nearest, unit: &str) -> Vec<String> {
 
 /// Its two ends, each between the last step proven one thing and the first proven the other.
 fn interval(own: Unstable, unit: &str) -> String {
-    let lower = own.within.0.map_or(format!("{:.6} or below", own.proven.0), |stable| {
+    let lower = own.within.0.map_or(format!("{} or below", decimal::few(own.proven.0, 7)), |stable| {
         decimal::enclosure(stable, own.proven.0).to_string()
     });
-    let upper = own.within.1.map_or(format!("{:.6} or above", own.proven.1), |stable| {
+    let upper = own.within.1.map_or(format!("{} or above", decimal::few(own.proven.1, 7)), |stable| {
         decimal::enclosure(own.proven.1, stable).to_string()
     });
     format!("{lower} to {upper}{unit}")

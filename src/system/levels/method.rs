@@ -175,10 +175,8 @@ impl std::str::FromStr for Method {
     type Err = Error;
 
     fn from_str(text: &str) -> Result<Method> {
-        Method::all().find(|own| own.name() == text).ok_or_else(|| {
-            let all: Vec<&str> = Method::all().map(Method::name).collect();
-            Error::input("method", text, format!("choose among {}", all.join(", ")))
-        })
+        let found = Method::all().find(|own| own.name() == text);
+        found.ok_or_else(|| Error::unknown("method", text, Method::all().map(Method::name)))
     }
 }
 
