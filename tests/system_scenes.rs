@@ -499,7 +499,7 @@ fn long_periods_are_refused_with_their_cost_and_allowed_by_a_budget() {
         assert_eq!(code, Some(2), "{text}");
         assert!(
             text.contains("products of machine words, up to some ")
-                && text.contains(" h, the limit is 5.0e10"),
+                && text.contains(" s, the limit is 5.0e10"),
             "{text}"
         );
     }
