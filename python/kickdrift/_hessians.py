@@ -146,6 +146,7 @@ def hessian(
     columns: Sequence[int] | None = None,
     progress: Progress | None = None,
     symmetric: bool = True,
+    rounding: float = 0.0,
 ) -> tuple[Doubles, float]:
     """A mass-weighted Hessian by central differences of fourth order, and an estimate of its error.
 
@@ -161,6 +162,8 @@ def hessian(
         The degrees of freedom to keep, all 3n unless given: the others stand still.
     symmetric : bool
         Whether the force is a gradient.
+    rounding : float
+        The unit roundoff of the forces where it is no double's.
 
     Returns
     -------
@@ -170,7 +173,15 @@ def hessian(
         error.
     """
     matrix, correction, asymmetry = _measured(force, positions, masses, difference, columns, progress, symmetric)
+    if rounding:
+        # Noise is as large in the symmetric part, but for chance; on the diagonal it is unseen: a force's own rounding.
+        pull = float(np.abs(force(positions)).max())
+        asymmetry = _CHANCE * asymmetry + 2 * rounding * pull / (difference * float(masses.min()))
     return matrix, correction + asymmetry
+
+
+#: With this the error was at most 0.8 of its estimate in 832 Hessians of 2 to 27 waters in single precision.
+_CHANCE = 4.0
 
 
 def _measured(

@@ -78,6 +78,22 @@ class _Engine:
     count: int
 
     @cached_property
+    def rounding(self) -> float:
+        """The unit roundoff of forces in single precision, as with mixed, which only adds up in more; 0 of doubles."""
+        platform = self.context.getPlatform()
+        known = "Precision" in platform.getPropertyNames()
+        precision = platform.getPropertyValue(self.context, "Precision") if known else platform.getName()
+        return 0.0 if precision in ("Reference", "double") else 2.0**-24
+
+    def exactly(self, where: Doubles, difference: float) -> tuple[Doubles, float]:
+        """Positions, and a difference from them, that single precision rounds no further: nearly those given."""
+        if not self.rounding:
+            return where, difference
+        largest = float(np.abs(where).max(initial=0.0)) + 3 * difference
+        grid = self.rounding * 2.0 ** np.ceil(np.log2(largest))
+        return np.round(where / grid) * grid, max(1, round(difference / grid)) * grid
+
+    @cached_property
     def is_boxed(self) -> bool:
         """Whether translations move nothing, but for the mesh of an Ewald sum."""
         system = self.context.getSystem()
@@ -165,8 +181,9 @@ def system(
     steps: Mapping[int, Any] | None = None,
     atoms: Sequence[int] | None = None,
     minimize: bool = True,
-    difference: float = DIFFERENCE,
+    difference: float | None = None,
     sparse: bool = False,
+    platform: str = "Reference",
     progress: Progress | bool = False,
     longest: float = LONGEST,
 ) -> System:
@@ -190,13 +207,18 @@ def system(
     minimize : bool
         Go to the minimum beside the positions, in a copy; of some atoms, to theirs among the others as these stand.
     difference : float
-        The difference of positions, nm. Pairs of a NonbondedForce or CustomNonbondedForce stay on their side of its
-        cutoff meanwhile.
+        The difference of positions, nm: 1e-4 unless given, 1e-3 in single precision. Pairs of a NonbondedForce or
+        CustomNonbondedForce stay on their side of its cutoff meanwhile.
     sparse : bool
         For thousands of atoms on two levels: bonds, angles, torsions and a NonbondedForce with a cutoff by their
         formulas, compared with differences at random displacements; other bonded terms by differences. No constraints
         and no Ewald sums; ``minimize`` is OpenMM's minimizer alone. Needs SciPy. The answer is about the first stable
         region.
+    platform : str
+        The name of OpenMM's platform that computes the forces. The Reference platform has doubles. Forces in single
+        precision (CPU; CUDA and OpenCL unless their default Precision is set to double) leave the Hessians some hundred
+        times less accurate, which their ``accuracy`` says; ``minimize`` is then OpenMM's minimizer alone. For a force
+        that exists on no other platform.
     progress : bool or callable
         A bar on standard error, in a log four lines for each step, behind what it will take; or what is called with the
         columns done and the columns in all, for each step.
@@ -235,9 +257,13 @@ def system(
     True
     """
     clocks = _clocks(system, integrator, steps)
-    engine = _engine(system)
+    engine = _engine(system, platform)
     where = _positions(positions, engine.count)
     constraints = _constraints(system)
+    if difference is None:
+        difference = WIDE if engine.rounding else DIFFERENCE
+    if sparse and engine.rounding:
+        raise KickdriftError("platform", platform, "computes in single precision: sparse=True needs Reference")
     if sparse:
         if constraints or atoms is not None:
             remedy = "has no sparse Hessians with constraints or some atoms alone: leave sparse=True out"
@@ -251,9 +277,13 @@ def system(
     if chosen is not None:
         constraints = [own for own in constraints if own[0] in set(atoms or ()) or own[1] in set(atoms or ())]
     notes = _notes(system, integrator, clocks)
-    if minimize:
+    if minimize and engine.rounding:
+        where = _relaxed(engine, where, chosen)
+        notes.append(f"forces of the {platform} platform are in single precision: at the minimizer's end, no minimum")
+    elif minimize:
         where, told = _at_rest(engine, where, constraints, difference, chosen, _of_minimum(progress))
         notes += told
+    where, difference = engine.exactly(where, difference)
     held = Held(engine.masses, constraints)
     frame = held.frame(where, chosen)
     measured = _measured(engine, clocks, (where, constraints, chosen), frame, difference, shown(progress))
@@ -295,7 +325,7 @@ def system(
         periodic=system.usesPeriodicBoundaryConditions(),
         keep_rigid=keep,
     )
-    if chosen is not None:
+    if chosen is not None or engine.rounding:
         return made
 
     def find() -> Monodromy:
@@ -497,7 +527,7 @@ def _measured(
     found = []
     for step, groups in _levels(clocks).items():
         force = engine.force(_mask(groups))
-        full, error = hessian(force, where, engine.masses, difference, chosen, progress)
+        full, error = hessian(force, where, engine.masses, difference, chosen, progress, rounding=engine.rounding)
         matrix = full
         if constraints:
             matrix = matrix + Held(engine.masses, constraints).curvature(force(where), where, chosen)
@@ -690,9 +720,8 @@ def bands(
     clocks = _clocks(system, integrator, steps)
     given = _positions(positions, system.getNumParticles())
     before, system = system, _changed(system, topology, given, constraints, hmr)
-    names = [mm.Platform.getPlatform(n).getName() for n in range(mm.Platform.getNumPlatforms())]
     is_small = 3 * system.getNumParticles() <= FOLLOWED
-    engine = _engine(system, "CPU" if "CPU" in names and not is_small else "Reference")
+    engine = _engine(system, "CPU" if "CPU" in _platforms() and not is_small else "Reference")
     difference = difference or (DIFFERENCE if is_small else WIDE)
     where, held = given, Held(engine.masses, _constraints(system))
     notes = _notes(system, integrator, clocks)
@@ -931,6 +960,10 @@ def _of_integrator(integrator: Any, groups: set[int]) -> dict[int, Fraction]:
     return clocks
 
 
+def _platforms() -> list[str]:
+    return [mm.Platform.getPlatform(n).getName() for n in range(mm.Platform.getNumPlatforms())]
+
+
 def _engine(system: Any, platform: str = "Reference") -> _Engine:
     count = system.getNumParticles()
     masses = np.array([system.getParticleMass(n)._value for n in range(count)])
@@ -939,6 +972,8 @@ def _engine(system: Any, platform: str = "Reference") -> _Engine:
         raise KickdriftError("system", f"particle {int(np.argmin(masses))}", remedy)
     # The Reference platform computes in doubles: differences of its forces are good to ten digits.
     integrator = mm.VerletIntegrator(0.001)
+    if platform not in _platforms():
+        raise KickdriftError("platform", platform, f"is not here: give one of {', '.join(_platforms())}")
     context = mm.Context(system, integrator, mm.Platform.getPlatformByName(platform))
     return _Engine(context, masses, count)
 

@@ -1185,3 +1185,68 @@ def test_thousands_of_atoms_with_pme_get_advice() -> None:
     single = ko.bands(*box(2), steps={0: "0.5fs", 1: "2fs", 2: "2fs"}).levels[0].period
     assert fast == pytest.approx(single, rel=5e-3) and 30 < slow < 45 and advice.status == "safe"
     assert "by 80 forces on all atoms" in str(advice)
+
+
+def _cluster(count: int) -> tuple[mm.System, np.ndarray]:
+    """Flexible waters near the middle of OpenMM's own box, not minimized."""
+    pdb = app.PDBFile(str(Path(app.__file__).parent / "data" / "tip3p.pdb"))
+    every = np.array(pdb.positions.value_in_unit(unit.nanometer)).reshape(-1, 3, 3)
+    near = np.argsort(np.linalg.norm(every[:, 0] - every[:, 0].mean(axis=0), axis=1))[:count]
+    modeller = app.Modeller(pdb.topology, pdb.positions)
+    modeller.delete([residue for residue in pdb.topology.residues() if residue.index not in near])
+    modeller.topology.setPeriodicBoxVectors(None)
+    own = app.ForceField("amber14/tip3pfb.xml").createSystem(modeller.topology, rigidWater=False, removeCMMotion=False)
+    return groups(own), np.array(modeller.positions.value_in_unit(unit.nanometer))
+
+
+@pytest.mark.skipif("CPU" not in ko._platforms(), reason="needs OpenMM's CPU platform")
+@pytest.mark.parametrize("far", [0.0, 5.0, 30.0])
+@pytest.mark.parametrize("difference", [2e-4, ko.WIDE, 3e-3])
+@pytest.mark.parametrize("count", [2, 3, 8])
+def test_the_accuracy_of_forces_in_single_precision_covers_how_far_their_hessians_are_off(count, difference, far):
+    # Far from the origin single precision places atoms worse.
+    own, positions = _cluster(count)
+    single, double = ko._engine(own, "CPU"), ko._engine(own)
+    where, width = single.exactly(positions + far, difference)
+    for group in (0, 1):
+        ask = where, single.masses
+        found, error = hessians.hessian(single.force(1 << group), *ask, width, rounding=single.rounding)
+        true, known = hessians.hessian(double.force(1 << group), *ask, ko.DIFFERENCE)
+        off, size = np.linalg.norm(found - true, 2), np.linalg.norm(true, 2)
+        assert off < error + known and known < 1e-5 * size, (group, off / size, error / size)
+        # Useful all the same.
+        assert error < (2e-2 if difference < 1e-3 else 5e-3) * size, (group, error / size)
+
+
+def test_a_field_in_single_precision_is_known_by_its_rounding():
+    # It has no entries off the diagonal, by which noise would be seen.
+    if "CPU" not in ko._platforms():
+        pytest.skip("needs OpenMM's CPU platform")
+    own, walls = mm.System(), mm.CustomExternalForce("500*(x-1)^2+500*y^2+500*z^2")
+    own.addParticle(1.0), walls.addParticle(0), own.addForce(walls)
+    engine = ko._engine(own, "CPU")
+    where, width = engine.exactly(np.array([[1.3, 0.1, 0.2]]), ko.WIDE)
+    found, error = hessians.hessian(engine.force(1), where, engine.masses, width, rounding=engine.rounding)
+    assert np.linalg.norm(found - 1000 * np.eye(3), 2) < error
+
+
+@pytest.mark.skipif("CPU" not in ko._platforms(), reason="needs OpenMM's CPU platform")
+def test_a_system_on_a_platform_in_single_precision_has_the_verdicts_of_doubles():
+    own, positions = waters()
+    found = {}
+    for platform in ("CPU", "Reference"):
+        for outer in ("4fs", "4.6fs"):
+            made = ko.system(own, positions, steps={0: "0.5fs", 1: outer}, minimize=False, platform=platform)
+            assert made.accuracy < (1e-3 if platform == "CPU" else 1e-5)
+            found[platform, outer] = made.decide().stable
+    assert all(found["CPU", outer] == found["Reference", outer] for outer in ("4fs", "4.6fs"))
+    # Its minimizer alone.
+    made = ko.system(own, positions, steps={0: "0.5fs", 1: "4fs"}, platform="CPU")
+    assert any("single precision" in note for note in made.notes) and made.accuracy < 1e-3
+    with pytest.raises(kd.KickdriftError, match="sparse"):
+        ko.system(own, positions, steps={0: "0.5fs", 1: "4fs"}, platform="CPU", sparse=True)
+
+
+def test_a_platform_that_is_not_here_is_refused():
+    with pytest.raises(kd.KickdriftError, match="is not here: give one of Reference"):
+        ko.system(*_cluster(2), steps={0: "0.5fs", 1: "4fs"}, platform="Abacus")

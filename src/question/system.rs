@@ -122,7 +122,7 @@ impl System {
     }
 
     /// The width of intervals, where any are looked for.
-    fn width(&self) -> Option<f64> {
+    pub fn width(&self) -> Option<f64> {
         (self.nearest || self.intervals.is_some()).then(|| self.width.unwrap_or(1e-4))
     }
 

@@ -6,6 +6,7 @@
 
 mod dense;
 mod implicit;
+pub mod intervals;
 mod levels;
 mod local;
 
@@ -14,22 +15,17 @@ use super::context::{Checked, Context, Fault, Outcome, same, too_costly};
 use super::sample::sample;
 use crate::avi::Ends;
 use crate::error::{Kind as Reason, Result};
-use crate::number::rational::{from_f64_exact, to_f64};
+use crate::number::rational::to_f64;
 use crate::question::{Found, Simulate, System, SystemAnswer};
 use crate::report::system::SystemMap;
 use crate::scene::SystemScene;
-use crate::system::stretches::Stretch;
-use crate::system::vary::Intervals;
-use crate::system::{Analysis, Holds, Limits, Model, SchemeSummary, SparseSteps, SparseSubcycles};
+use crate::system::{Analysis, Limits, Model, SchemeSummary, SparseSteps, SparseSubcycles};
 use crate::verdict::Kind;
 
 /// Points of a map whose kind is decided by the other route (where it costs no more than is allowed), unless all are.
 const POINTS: u64 = 200;
 
-/// Stretches of intervals, the same.
-const MIDDLES: u64 = 24;
-
-/// `kickdrift/system-verdict/1`, `kickdrift/system-map/1` or `kickdrift/system-intervals/1`.
+/// `kickdrift/system-verdict/1` or `kickdrift/system-map/1`.
 #[derive(Clone, Debug, serde::Deserialize)]
 pub struct Claim {
     input: System,
@@ -62,7 +58,7 @@ impl Recheck for Claim {
         match found {
             Found::Verdict(own) => verdict(&scene, &own.analysis, own.local.as_ref(), context),
             Found::Map(map) => self.points(&scene, &map, context),
-            Found::Intervals(own) => self.stretches(&scene, &own, context),
+            Found::Intervals(_) => outcome(context, ALONE, Ok(())),
         }
     }
 }
@@ -156,55 +152,6 @@ fn exact_kind(scene: &SystemScene, limits: &Limits) -> Result<Option<Kind>> {
 }
 
 impl Claim {
-    /// Checks a sample of the stretches of the outer step, each in its middle: large local steps are run, systems without a gradient are decided in
-    /// exact arithmetic.
-    fn stretches(&self, scene: &SystemScene, found: &Intervals, context: &Context) -> Result<Outcome> {
-        let (of, limits) = (found.stretches.len() as u64, context.work().products());
-        let most = if context.options.all { of } else { MIDDLES };
-        let is_outer = found.number == "outer";
-        let sampled = sample(&scene.source().to_string(), of, most);
-        let sample = sampled.into_iter().map(|n| (n + 1, &found.stretches[n as usize]));
-        let sample = sample.filter(|(_, own)| own.verdict != Holds::NotTold);
-        let place = |own: &Stretch| format!("{} to {}", own.lo, own.hi);
-        let (mut failures, mut decided) = (Vec::new(), 0);
-        let mut outcome = match scene.model() {
-            Model::Sparse(own) if is_outer => {
-                if let Some(own) = own.subcycles() {
-                    let mut stretches = sample.map(|own| own.1);
-                    let check =
-                        || stretches.try_for_each(|stretch| local::stretch_of_subcycles(own, stretch));
-                    return run(own, context, check);
-                }
-                let Some(steps) = own.local_steps() else { return outcome(context, ALONE, Ok(())) };
-                for (row, own) in sample {
-                    decided += 1;
-                    failures.extend(context.failure(row, || place(own), local::stretch(steps, own))?);
-                }
-                seen(steps, outcome(context, RUN, Ok(()))?)
-            }
-            Model::NoGradient(own) | Model::Subcycled(own, _) if is_outer => {
-                let longest = scene.model().steps().into_iter().max().unwrap_or_default();
-                for (row, stretch) in sample {
-                    let middle = stretch.lo + (stretch.hi - stretch.lo) / 2.0;
-                    let Some(middle) = from_f64_exact(middle) else { continue };
-                    let model = Model::NoGradient(Box::new(own.slowed(&(middle / &longest))?));
-                    let truth = match model.exact_kind(&limits) {
-                        Err(error) if error.kind() == Reason::Budget => continue,
-                        truth => Holds::from(Some(truth?)),
-                    };
-                    decided += 1;
-                    let checked = same("verdict", stretch.verdict.name(), truth.name());
-                    failures.extend(context.failure(row, || place(stretch), checked)?);
-                }
-                let route = "the verdict in the middle of a random sample of stretches in exact arithmetic";
-                outcome(context, route, Ok(()))?
-            }
-            _ => return outcome(context, ALONE, Ok(())),
-        };
-        (outcome.rows, outcome.sample, outcome.failures) = (of, Some((decided, of)), failures);
-        Ok(outcome)
-    }
-
     fn points(&self, scene: &SystemScene, map: &SystemMap, context: &Context) -> Result<Outcome> {
         let (of, limits) = (map.points.len() as u64, context.work().products());
         let mut outcome =

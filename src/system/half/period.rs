@@ -88,7 +88,7 @@ pub(in crate::system) fn follow<'a>(
     events: impl Iterator<Item = Event>,
     kick: impl Fn(usize, usize) -> &'a Stiff,
 ) -> Propagated {
-    followed(drifts, events, kick, |_| false).expect("never given up")
+    followed(drifts, events, kick, |_, _, _| true).expect("never given up")
 }
 
 /// Follows with a bound; `None` as soon as there can be none.
@@ -97,14 +97,28 @@ pub(in crate::system) fn follow_proven<'a>(
     events: impl Iterator<Item = Event>,
     kick: impl Fn(usize, usize) -> &'a Stiff,
 ) -> Option<Propagated> {
-    followed(drifts, events, kick, |account| !account.holds(0.0)).filter(|state| state.error.is_some())
+    follow_looking(drifts, events, kick, |_, _| ())
+}
+
+/// The same, and `look` is shown every event and the rows of positions there, 2n columns each, within [`Propagated::error_on_the_way`].
+pub(in crate::system) fn follow_looking<'a>(
+    drifts: &Drifts,
+    events: impl Iterator<Item = Event>,
+    kick: impl Fn(usize, usize) -> &'a Stiff,
+    mut look: impl FnMut(&Event, &[f64]),
+) -> Option<Propagated> {
+    let state = followed(drifts, events, kick, |account, event, x| {
+        look(event, x);
+        account.holds(0.0)
+    });
+    state.filter(|state| state.error.is_some())
 }
 
 fn followed<'a>(
     drifts: &Drifts,
     events: impl Iterator<Item = Event>,
     kick: impl Fn(usize, usize) -> &'a Stiff,
-    gives_up: impl Fn(&Account) -> bool,
+    mut goes_on: impl FnMut(&Account, &Event, &[f64]) -> bool,
 ) -> Option<Propagated> {
     let n = drifts.inverse_mass.len();
     let unit = |first: usize| {
@@ -125,7 +139,7 @@ fn followed<'a>(
             let step = state.kick(kick(k, clock), event.weight, &mut sizes);
             account.add(step, sizes[0].hypot(sizes[1]));
         }
-        if gives_up(&account) {
+        if !goes_on(&account, &event, &state.x) {
             return None;
         }
     }
@@ -167,6 +181,11 @@ impl Propagated {
     /// The bound on the error where each F is off by `off` and so many times its `known`; `None` where its condition fails.
     pub fn error_within(&self, times: f64) -> Option<f64> {
         self.account.holds(times).then(|| self.account.bound(self.norm(), times))
+    }
+
+    /// More than the error (2-norm) of all positions and momenta on the way, where the bound holds.
+    pub fn error_on_the_way(&self) -> f64 {
+        2.1 * self.account.largest * self.account.sigma[0]
     }
 
     fn row(rows: &[f64], columns: usize, i: usize) -> &[f64] {

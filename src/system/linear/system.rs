@@ -112,7 +112,7 @@ impl System {
     ///
     /// # Errors
     /// As [`System::new`].
-    pub(in crate::system) fn with(&self, stiffer: &Rational, slower: &Rational) -> Result<System> {
+    pub(crate) fn with(&self, stiffer: &Rational, slower: &Rational) -> Result<System> {
         let changed = |own: &Potential| Potential {
             stiffness: if stiffer.is_one() { own.stiffness.clone() } else { own.stiffness.scaled(stiffer) },
             step: &own.step * slower,

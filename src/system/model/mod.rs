@@ -27,7 +27,7 @@ use crate::system::lts::{LocalSteps, SchemeSummary, Subcycles};
 use crate::system::pi::PiSystem;
 use crate::system::verdict::analysis::Analysis;
 use crate::system::verdict::decide::{decide_by, exact_kind, verdict_cost};
-use crate::system::verdict::limits::{DENSE, Limits, Route};
+use crate::system::verdict::limits::{DENSE, Limits, PACE, Route};
 use crate::system::verdict::measured::Holds;
 use crate::verdict::Kind;
 pub use intervals::Number;
@@ -61,9 +61,6 @@ pub enum Model {
     /// Sparse stiffnesses of thousands of degrees of freedom: two levels, or one with local time steps.
     Sparse(Box<SparseSystem>),
 }
-
-/// Products a second, of rational systems with what goes on around them.
-const PACE: f64 = 1e9;
 
 impl Model {
     /// The rational system that stands for it: itself; with π in the stiffnesses of several degrees of freedom within 2^-150 of every

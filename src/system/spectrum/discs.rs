@@ -19,7 +19,7 @@ use faer::{Mat, Scale, c64};
 use crate::number::U;
 use crate::system::half::float::FloatBlocks;
 use crate::system::half::norm;
-use crate::system::spectrum::bauer_fike::{Residual, bauer_fike};
+use crate::system::spectrum::bauer_fike::{Residual, Term, bauer_fike};
 use crate::system::spectrum::clusters::{self, Pencil};
 use crate::system::spectrum::rate;
 use crate::system::spectrum::rate::Multiplier;
@@ -121,6 +121,22 @@ impl Spectrum {
     /// The kind that the discs of all S + x C, |x| ≤ 1, prove, if any.
     pub fn certified_along(&self, change: &Mat<f64>) -> Option<Kind> {
         self.with_residual(self.residual()?.along(&real_form(&self.mu, &self.vectors)?.0, change)?).by_discs()
+    }
+
+    /// The discs of all S + Σ L E R, too.
+    pub fn with_terms(&self, terms: &[Term]) -> Option<Spectrum> {
+        let basis = real_form(&self.mu, &self.vectors)?.0;
+        Some(self.with_residual(self.residual()?.with_terms(&basis, terms)?))
+    }
+
+    /// The rows of V⁻¹ S' V − D for another S', in parts of their bounds.
+    #[cfg(test)]
+    pub fn lengths_of(&self, other: &Mat<f64>) -> Vec<f64> {
+        use faer::linalg::solvers::DenseSolveCore;
+        let (v, d) = real_form(&self.mu, &self.vectors).unwrap();
+        let f = v.partial_piv_lu().inverse() * other * &v - d;
+        let length = |i: usize| (0..v.ncols()).map(|j| f[(i, j)] * f[(i, j)]).sum::<f64>().sqrt();
+        self.rows.iter().enumerate().map(|(i, row)| length(i) / row).collect()
     }
 
     fn residual(&self) -> Option<Residual> {

@@ -15,6 +15,9 @@ pub enum Route {
 /// Products of dense doubles are so many times as fast as others, which are of words or of few doubles at once, as measured on two machines.
 pub(in crate::system) const DENSE: u64 = 10;
 
+/// Products a second, of rational systems with what goes on around them.
+pub(in crate::system) const PACE: f64 = 1e9;
+
 /// The most work that one verdict may cost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
@@ -44,8 +47,13 @@ impl Limits {
             return Ok(());
         }
         let (cost_told, most) = (cost as f64, self.products as f64);
+        let time = match cost_told / PACE {
+            seconds if seconds < 100.0 => format!("{:.0} s", seconds.ceil()),
+            seconds if seconds < 6000.0 => format!("{:.0} min", seconds / 60.0),
+            seconds => format!("{:.0} h", seconds / 3600.0),
+        };
         let work = format!(
-            "{} would cost about {cost_told:.1e} products of machine words, the limit is {most:.1e}",
+            "{} would cost about {cost_told:.1e} products of machine words, up to some {time}, the limit is {most:.1e}",
             work()
         );
         Err(Error::budget(work, cost).or("choose steps with simpler ratios"))

@@ -6,13 +6,14 @@ use num_complex::Complex64;
 use super::levels::{ROUNDINGS, Steps};
 use crate::number::rational::{from_f64_exact, to_f64};
 use crate::number::{Rational, U};
-use crate::schedule::Weight;
+use crate::schedule::{Event, Weight};
 use crate::system::friction::{Damping, Radius, damping};
 use crate::system::half::float::FloatBlocks;
 use crate::system::half::norm;
-use crate::system::half::period::{Drifts, Propagated, Stiff, Stiffness, follow, follow_proven};
+use crate::system::half::period::{Drifts, Propagated, Stiff, Stiffness, follow, follow_looking};
 use crate::system::levels::counts::between_signs;
 use crate::system::levels::damped::least_masking;
+use crate::system::spectrum::bauer_fike::{Term, gamma};
 use crate::system::spectrum::discs::{Spectrum, product};
 use crate::system::spectrum::rate::exponent;
 use crate::verdict::Kind;
@@ -88,97 +89,110 @@ impl Steps<'_> {
         self.kicks_at(step, turning).into_iter().map(|own| stiff(own, 0.0, 0.0)).collect()
     }
 
-    /// How far (2-norm) these kicks are from those of all stiffnesses within ε.
-    fn kick_errors(&self, step: f64, turning: &Turning, epsilon: f64) -> Vec<f64> {
+    /// How far (2-norm) h t² Vᵀ K V of each clock is from that of all stiffnesses within ε; a kick divides its entries by roots.
+    fn kick_errors(&self, step: f64, epsilon: f64) -> Vec<f64> {
         let modes = self.nested.modes_of_all();
         let error = |k: usize| {
             let error = (1.0 + modes.defect) * self.nested.error_within(k, epsilon) + modes.stiffnesses[k].1;
-            1.01 * self.square(step) * self.kicks[k] * error / turning.least
+            1.01 * self.square(step) * self.kicks[k] * error
         };
         (0..self.kicks.len()).map(error).collect()
     }
 
-    fn followed(&self, kicks: &[Stiff], turning: &Turning) -> Option<Propagated> {
+    /// `look` is shown every event, and the rows of positions there.
+    fn followed(
+        &self,
+        kicks: &[Stiff],
+        turning: &Turning,
+        look: impl FnMut(&Event, &[f64]),
+    ) -> Option<Propagated> {
         let drifts = Drifts { inverse_mass: &turning.drifts, decay: &Rational::default(), off: turning.off };
-        follow_proven(&drifts, self.events.iter().copied(), |_, clock| &kicks[clock])
+        follow_looking(&drifts, self.events.iter().copied(), |_, clock| &kicks[clock], look)
     }
 
     /// The half period at a step with a bound for all stiffnesses within ε.
     pub(super) fn half_period(&self, step: f64, epsilon: f64) -> Option<FloatBlocks> {
         let turning = self.turning(step);
-        let kicks = self.kicks_at(step, &turning).into_iter().zip(self.kick_errors(step, &turning, epsilon));
-        let kicks: Vec<Stiff> = kicks.map(|(own, error)| stiff(own, error, 0.0)).collect();
-        Some(self.followed(&kicks, &turning)?.blocks(vec![1.0; self.nested.size()]))
+        let kicks = self.kicks_at(step, &turning).into_iter().zip(self.kick_errors(step, epsilon));
+        let kicks: Vec<Stiff> = kicks.map(|(own, error)| stiff(own, error / turning.least, 0.0)).collect();
+        Some(self.followed(&kicks, &turning, |_, _| ())?.blocks(vec![1.0; self.nested.size()]))
     }
 
-    /// The kind that discs prove at all outer steps between two, of all stiffnesses within ε.
+    /// The kind that discs prove at all outer steps between two, or at one, of all stiffnesses within ε.
     ///
-    /// With kicks (1 + η) (F + ζ E), ζ E within the errors at ζ = 1, S = Bᵀ C is a polynomial in η and ζ, within r of what is computed of F where |η| ≤ ρ, |ζ| ≤ z.
-    /// So by Cauchy's bounds on its coefficients (`proofs/REGION.md`, section 10)
-    ///
-    /// ```text
-    ///     |S(η, 1) − S(0, 1) − S₁ η − S₂ η²| ≤ r (x³ + x/z)/((1 − x) (1 − 1/z)),     x = |η|/ρ,
-    /// ```
-    ///
-    /// and S of F in the middle and at both ends has S₁ and S₂. Where a cell is too narrow for these differences, S(0, 1) alone is kept.
-    pub(super) fn by_discs_between(&self, [lo, hi]: [f64; 2], epsilon: f64) -> Option<Kind> {
+    /// With kicks (1 + η) (F + ζ E), ζ E within the errors at ζ = 1, S = Bᵀ C is a polynomial in η and ζ, within r of what is computed of F where kicks are off by
+    /// at most t of their sizes. So Cauchy's bounds on its coefficients leave little beyond S(0, 0) + S_E + S₁ η + S₂ η² (`proofs/REGION.md`, section 10),
+    /// and S of F in the middle and at both ends has S₁ and S₂; S_E, linear in E, is a sum of products about it. Where a cell is too narrow for these differences,
+    /// S(0, 1) alone is kept.
+    pub(super) fn by_discs_between(&self, ends: [f64; 2], epsilon: f64) -> Option<Kind> {
+        let (spectrum, change) = self.discs_between(ends, epsilon)?;
+        match change {
+            Some(change) => spectrum.certified_along(&change),
+            None => spectrum.by_discs(),
+        }
+    }
+
+    /// The discs of S in the middle of all stiffnesses within ε, and C: of the others S is within x C of these, |x| ≤ 1.
+    fn discs_between(&self, [lo, hi]: [f64; 2], epsilon: f64) -> Option<(Spectrum, Option<Mat<f64>>)> {
         let middle = lo / 2.0 + hi / 2.0;
         let turning = self.turning(middle);
         let rounded = |step: f64| {
             let kicks = self.rounded_kicks(step, &turning);
-            let (s, error) = product(&self.followed(&kicks, &turning)?.blocks(Vec::new()));
+            let (s, error) = product(&self.followed(&kicks, &turning, |_, _| ())?.blocks(Vec::new()));
             Some((s, error?))
         };
         let of = |step: f64| self.square(step) / self.square(middle);
         let (below, above) = (1.0 - of(lo), of(hi) - 1.0);
         let eta = 1.01 * below.max(above) + 8.0 * U;
-        let (s, s_off) = rounded(middle)?;
-        if below.min(above) < NARROW {
-            let (off, rest) = self.off_about(middle, &turning, eta, 1, epsilon)?;
-            return Spectrum::of(s, Some(1.01 * (off + rest)))?.by_discs();
+        let is_narrow = below.min(above) < NARROW;
+        let Near { s, off: s_off, terms, rest: [of_eta, of_errors, of_both] } =
+            self.near(middle, &turning, eta, if is_narrow { 1 } else { 3 }, epsilon)?;
+        let rest = s_off + of_eta + of_errors + of_both;
+        if is_narrow {
+            return Some((Spectrum::of(s, Some(1.01 * rest))?.with_terms(&terms)?, None));
         }
         let ((left, left_off), (right, right_off)) = (rounded(lo)?, rounded(hi)?);
-        let (off, rest) = self.off_about(middle, &turning, eta, 3, epsilon)?;
         // Both ends' differences from the middle are S₁ η + S₂ η² within this.
-        let known = left_off + right_off + 2.0 * s_off + 2.0 * rest;
+        let known = left_off + right_off + 2.0 * s_off + 2.0 * of_eta;
         let bend = faer::Scale(below) * (&right - &s) + faer::Scale(above) * (&left - &s);
         let whole = below + above;
         let second = eta / below * (eta / above) * (norm::frobenius(&bend) / whole + known);
         let change = faer::Scale(1.01 * eta / whole) * (right - left);
         let first = eta / whole * known + (above - below).abs() / eta * second;
-        Spectrum::of(s, Some(1.02 * (off + rest + first + second)))?.certified_along(&change)
+        let own = Spectrum::of(s, Some(1.02 * (rest + first + second)))?;
+        Some((own.with_terms(&terms)?, Some(change)))
     }
 
-    /// Bounds on |S(0, 1) − S| and on what is of this order in η and beyond it, at |η| ≤ `eta`: see [`Steps::by_discs_between`].
-    fn off_about(
-        &self,
-        step: f64,
-        turning: &Turning,
-        eta: f64,
-        order: i32,
-        epsilon: f64,
-    ) -> Option<(f64, f64)> {
-        let kicks = self.kicks_at(step, turning);
-        let errors = self.kick_errors(step, turning, epsilon);
+    /// S at a step, and what is near it: see [`Steps::by_discs_between`]; of η what is of this order and beyond it is in the rest, |η| ≤ `eta`.
+    fn near(&self, step: f64, turning: &Turning, eta: f64, order: i32, epsilon: f64) -> Option<Near> {
+        let (n, kicks) = (self.nested.size(), self.kicks_at(step, turning));
+        let errors = self.kick_errors(step, epsilon);
         let sizes: Vec<f64> = kicks.iter().map(norm::spectral).collect();
-        // z/ρ: E takes at most half of what η takes.
-        let share = sizes.iter().zip(&errors).map(|(size, error)| size / error).fold(1e6, f64::min) / 4.0;
-        let known = |(size, error): (f64, f64)| (error, 1.01 * (size + 2.0 * share * error));
-        let known = sizes.into_iter().zip(errors).map(known);
-        let kicks: Vec<Stiff> =
-            kicks.into_iter().zip(known).map(|(own, (error, known))| stiff(own, error, known)).collect();
-        let state =
-            self.followed(&kicks, &Turning { off: (1.0 + share) * turning.off, ..turning.clone() })?;
+        let error = |k: usize| errors[k] / turning.least;
+        let ratio = (0..sizes.len()).map(|k| sizes[k] / error(k)).fold(4e6, f64::min);
+        let stiff = |(own, size): (Mat<f64>, &f64)| stiff(own, 0.0, 1.01 * size);
+        let kicks: Vec<Stiff> = kicks.into_iter().zip(&sizes).map(stiff).collect();
+        // What meets E at each event, and the positions there.
+        let mut nodes: Vec<(f64, [Mat<f64>; 2])> = Vec::new();
+        let state = self.followed(&kicks, turning, |event, x| {
+            let weight = if event.weight == Weight::Half { 0.5 } else { 1.0 };
+            let size = event.clocks().map(|k| weight * errors[k]).sum();
+            let block = |first: usize| Mat::from_fn(n, n, |i, j| x[2 * n * i + first + j]);
+            nodes.push((size, [block(0), block(n)]));
+        })?;
         let blocks = state.blocks(Vec::new());
-        let rest = |rho: f64| {
-            let error = Some(state.error_within(rho)?);
-            let r = product(&FloatBlocks { error, ..blocks.clone() }).1?;
-            let (x, z) = (eta / rho, rho * share);
-            let terms = x.powi(order) + x / z;
-            (x < 1.0 && z > 1.0).then(|| 1.01 * r * terms / ((1.0 - x) * (1.0 - 1.0 / z)))
+        // Kicks off by t of their sizes: by η alone, by E alone, or half by each, (1 + t/2) t/3 ≤ t/2.
+        let rests = |t: f64| {
+            let error = Some(state.error_within(t)?);
+            let r = 1.01 * product(&FloatBlocks { error, ..blocks.clone() }).1?;
+            let powers = |x: f64, order: i32| if x < 1.0 { x.powi(order) / (1.0 - x) } else { f64::INFINITY };
+            let (x, y) = (eta / t, 1.0 / (t * ratio));
+            Some([powers(x, order), powers(y, 2), powers(2.0 * x, 1) * powers(3.0 * y, 1)].map(|own| r * own))
         };
-        let least = (1..16).filter_map(|k| rest(0.5f64.powi(k))).reduce(f64::min)?;
-        product(&blocks).1.map(|off| (off, least))
+        let least = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|k| a[k].min(b[k]));
+        let rest = (0..16).filter_map(|k| rests(0.5f64.powi(k))).reduce(least)?;
+        let (s, off) = product(&blocks);
+        Some(Near { s, off: off?, terms: terms(&state, &nodes, &turning.roots), rest })
     }
 
     /// (A B) and (C D) of the half period, rounded, by products of whole matrices.
@@ -249,6 +263,41 @@ impl Steps<'_> {
     }
 }
 
+/// S of F in doubles within `off`; what it moves by to first order in the errors of the stiffnesses; more than the rest: of η alone, of the errors
+/// alone, of both.
+struct Near {
+    s: Mat<f64>,
+    off: f64,
+    terms: Vec<Term>,
+    rest: [f64; 3],
+}
+
+/// Σ_j B_jᵀ E (B_j Aᵀ − A_j Bᵀ) C + Bᵀ (C B_jᵀ − D A_jᵀ) E A_j, E = D⁻¹ E_j D⁻¹ with the roots D, of the nodes' sizes of E_j and positions (A_j B_j).
+fn terms(state: &Propagated, nodes: &[(f64, [Mat<f64>; 2])], roots: &[f64]) -> Vec<Term> {
+    let (n, h) = (roots.len(), state.matrix());
+    let block = |i: usize, j: usize| h.submatrix(i * n, j * n, n, n);
+    let (a, b, c, d) = (block(0, 0), block(0, 1), block(1, 0), block(1, 1));
+    // Of true matrices within e and of norms up to g: those of products, and their roundings.
+    let e = state.error_on_the_way();
+    let g = nodes.iter().flat_map(|own| &own.1).map(norm::frobenius).fold(norm::frobenius(&h), f64::max);
+    let (gamma, least) = (gamma(n), roots.iter().fold(f64::INFINITY, |a: f64, x| a.min(*x)));
+    let once = 1.01 * (e + U * g) / least;
+    let twice = 4.0 * g * e + 2.0 * e * e + 3.0 * gamma * g * g;
+    let thrice = 1.01 * (twice * (g + e) + 2.0 * g * g * e + 4.0 * gamma * g * g * g) / least;
+    let columns = |m: Mat<f64>| Mat::from_fn(n, n, |i, j| m[(i, j)] / roots[j]);
+    let rows = |m: Mat<f64>| Mat::from_fn(n, n, |i, j| m[(i, j)] / roots[i]);
+    let term = |(size, [x, y]): &(f64, [Mat<f64>; 2])| {
+        let first = [columns(y.transpose().to_owned()), rows((y * a.transpose() - x * b.transpose()) * c)];
+        let second = [columns(b.transpose() * (c * y.transpose() - d * x.transpose())), rows(x.clone())];
+        [(first, [once, thrice]), (second, [thrice, once])].map(|(sides, off)| Term {
+            size: *size,
+            sides,
+            off,
+        })
+    };
+    nodes.iter().flat_map(term).collect()
+}
+
 /// Where cells are narrower, relatively, four roundings are not far below their width.
 const NARROW: f64 = 1e-10;
 
@@ -256,4 +305,76 @@ const NARROW: f64 = 1e-10;
 fn stiff(kick: Mat<f64>, error: f64, known: f64) -> Stiff {
     let off = error + ROUNDINGS as f64 * U * norm::frobenius(&kick);
     Stiff { stiffness: Stiffness::Whole(kick), off, known }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::OnceLock;
+
+    use nalgebra::DMatrix;
+
+    use super::*;
+    use crate::number::rational::ratio;
+    use crate::system::levels::{Hessians, Nested};
+
+    /// Numbers that repeat, in [−1, 1).
+    fn symmetric(state: &mut u64, n: usize) -> DMatrix<f64> {
+        let mut next = || {
+            *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (*state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+        };
+        let g = DMatrix::from_fn(n, n, |_, _| next());
+        (&g + g.transpose()) / 2.0
+    }
+
+    fn size(k: &DMatrix<f64>) -> f64 {
+        k.clone().symmetric_eigen().eigenvalues.amax()
+    }
+
+    /// Hundreds of errors of the stiffnesses as large as the accuracy: no row of V⁻¹ S V − D is longer than the discs say, and none is so by far. Errors of rank 1
+    /// that pull at one mode come nearest to it.
+    #[test]
+    fn no_error_of_the_data_within_the_accuracy_leaves_the_discs() {
+        let (n, epsilon, mut state) = (6, 1e-6, 7);
+        let steps = [ratio(1, 4), ratio(1, 2), ratio(1, 1)];
+        let mut nearest = 0.0_f64;
+        for _ in 0..4 {
+            let squares = [1.0, 0.1, 0.04].map(|own| {
+                let g = symmetric(&mut state, n);
+                let k = &g * &g;
+                &k * (own / size(&k))
+            });
+            let whole = Hessians::new(&squares[0], &(&squares[1] + &squares[2]), epsilon).unwrap();
+            let nested = Nested::new(&whole, &squares.each_ref().map(|k| vec![k.clone()])).unwrap();
+            let own = nested.at(&steps).unwrap();
+            let first = own.first_unstable().unwrap().0;
+            for step in [0.7, 1.3, 1.9, 2.6].map(|factor| factor * first) {
+                let (spectrum, change) = own.discs_between([step; 2], epsilon).unwrap();
+                assert!(change.is_none());
+                let turning = own.turning(step);
+                for trial in 0..60 {
+                    let mut modes = nested.modes_of_all().clone();
+                    for (k, square) in squares.iter().enumerate() {
+                        let e = match trial % 2 {
+                            0 => symmetric(&mut state, n),
+                            _ => DMatrix::from_fn(n, n, |i, j| {
+                                f64::from(u8::from(i == j && i == trial / 2 % n))
+                            }),
+                        };
+                        let e = &e * (epsilon * size(square) / size(&e));
+                        modes.stiffnesses[k].0 += Mat::from_fn(n, n, |i, j| e[(i, j)]);
+                    }
+                    let moved = Nested { modes_of_all: OnceLock::from(modes), ..nested.clone() };
+                    let moved = moved.at(&steps).unwrap();
+                    let kicks = moved.rounded_kicks(step, &turning);
+                    let blocks = moved.followed(&kicks, &turning, |_, _| ()).unwrap().blocks(Vec::new());
+                    for part in spectrum.lengths_of(&product(&blocks).0) {
+                        assert!(part <= 1.0, "{step}: {part}");
+                        nearest = nearest.max(part);
+                    }
+                }
+            }
+        }
+        assert!(nearest > 0.2, "{nearest}");
+    }
 }

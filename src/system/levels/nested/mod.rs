@@ -80,7 +80,8 @@ impl Steps<'_> {
             return self.by_discs_between(ends, epsilon).into();
         }
         let Some(blocks) = self.half_period(ends[0], epsilon) else { return Holds::NotTold };
-        signs::proven(&blocks).or_else(|| Spectrum::new(&blocks)?.certified(&blocks)).into()
+        let by_clusters = || Spectrum::new(&blocks)?.certified(&blocks);
+        signs::proven(&blocks).or_else(|| self.by_discs_between(ends, epsilon)).or_else(by_clusters).into()
     }
 
     /// What is proven of all stiffnesses within ε of their sizes on all outer steps from `lo` to `hi`, as stretches that cover them; no interval wider than
@@ -105,10 +106,10 @@ impl Steps<'_> {
         Ok(merged(known.into_iter().chain(rest)))
     }
 
-    /// The products of doubles that these cost, roughly: of each cell six counts of chains of twice as many nodes at both ends, and the eigenvalues. Of
+    /// The products of doubles that these cost, roughly: of each cell six counts of chains of twice as many nodes at both ends, products at each node, and the eigenvalues. Of
     /// waters a quarter of the range is narrow cells, those where nothing is proven.
     pub fn cost_of_stretches(&self, range: (f64, f64), width: f64) -> f64 {
-        let each = 24.0 * self.events.len() as f64 + 40.0;
+        let each = 40.0 * self.events.len() as f64 + 40.0;
         most_cells(range, width) / 4.0 * each * (self.nested.size() as f64).powi(3)
     }
 

@@ -1,0 +1,339 @@
+//! Documents of intervals: the stretches as they are written, held against systems at numbers inside them.
+//!
+//! Kicks and drifts with steps in their ratios are followed over half a period in doubles, kick by kick, without the cells that made the document.
+//! The eigenvalues of S = Bᵀ C say whether anything grows at a step. Where nothing does, each mode v has a sign of Krein's, that of vᵀ Aᵀ C v, and
+//! multipliers leave the circle only where they meet one of the other sign, or ±1. So where the order of the signs differs at two steps of a stretch
+//! that is said to be stable, what was passed between them is looked for by halving.
+
+use faer::Mat;
+use num_traits::One;
+
+use super::{ALONE, LEFT, RUN, local, outcome, run, seen};
+use crate::error::{Error, Kind as Reason, Result};
+use crate::number::Rational;
+use crate::number::rational::from_f64_exact;
+use crate::parallel::try_map;
+use crate::question::{Found, System, SystemAnswer};
+use crate::recheck::again::{Left, Recheck, asked};
+use crate::recheck::context::{Checked, Context, Failure, Fault, Outcome, holds, same, too_costly};
+use crate::recheck::sample::sample;
+use crate::scene::SystemScene;
+use crate::system::levels::Method;
+use crate::system::stretches::Stretch;
+use crate::system::vary::Intervals;
+use crate::system::{Holds, Limits, Model, half_period};
+
+/// Stretches that are looked at, unless all are asked for; all of measured levels where it costs no more than is allowed.
+const MOST: u64 = 24;
+
+/// Where in a stretch: beside its ends, too.
+const INSIDE: [f64; 5] = [1.0 / 64.0, 0.25, 0.5, 0.75, 63.0 / 64.0];
+
+/// ln |λ| of a period below which roundings may have made it: of modes that meet, about the square root of 10^-16 times their condition.
+const STILL: f64 = 1e-5;
+
+/// `kickdrift/system-intervals/1`.
+#[derive(Clone, Debug, serde::Deserialize)]
+pub struct Claim {
+    input: System,
+    stretches: Vec<Row>,
+}
+
+rows! {
+    struct Row {
+        lo: f64,
+        hi: f64,
+        verdict: String,
+    }
+}
+
+impl Row {
+    fn stretch(&self) -> Checked<Stretch> {
+        let known = [Holds::Stable, Holds::Unstable, Holds::NotTold];
+        let verdict = known.into_iter().find(|own| own.name() == self.verdict);
+        let verdict = verdict.ok_or_else(|| Fault::Wrong(format!("{} is no verdict", self.verdict)))?;
+        Ok(Stretch { lo: self.lo, hi: self.hi, verdict })
+    }
+}
+
+impl Recheck for Claim {
+    const TABLE: &'static str = "stretches";
+    const LEFT: &'static [Left] = LEFT;
+    asked!(System);
+
+    fn check(&self, SystemAnswer { scene, found }: SystemAnswer, context: &Context) -> Result<Outcome> {
+        let Found::Intervals(found) = found else {
+            return Err(Error::input("input.intervals", "missing", "a document of intervals has some"));
+        };
+        let of = self.stretches.len() as u64;
+        let (mut failures, mut stretches) = (Vec::new(), Vec::new());
+        for (n, row) in (1..).zip(&self.stretches) {
+            let place = || format!("{} to {}", row.lo, row.hi);
+            let checked = self.joined(n, &found).and_then(|()| row.stretch());
+            failures.extend(context.failure(n as u64, place, checked.map(|own| stretches.push(own)))?);
+        }
+        let covered = self.stretches.last().map(|own| own.hi) == found.stretches.last().map(|own| own.hi);
+        let checked = holds(covered, || "the stretches end before the range does".into());
+        failures.extend(context.failure(0, || "the document".into(), checked)?);
+        if failures.is_empty() {
+            return Ok(Outcome { rows: of, ..self.stretches(&stretches, &scene, &found, context)? });
+        }
+        let route = "each stretch begins where the one before it ends";
+        Ok(Outcome { rows: of, route, sample: None, failures, not_rechecked: Vec::new() })
+    }
+}
+
+impl Claim {
+    /// That the n-th row, counted from 1, begins where the one before it ends, the first one with the range. Of isolated edges the next double begins a
+    /// stretch.
+    fn joined(&self, n: usize, found: &Intervals) -> Checked {
+        let row = &self.stretches[n - 1];
+        holds(row.lo <= row.hi, || "it ends before it begins".into())?;
+        let Some(before) = n.checked_sub(2).map(|before| self.stretches[before].hi) else {
+            let first = found.stretches.first().map_or(row.lo, |own| own.lo);
+            return same("lo", row.lo, first);
+        };
+        let is_joined = [before, before.next_up()].contains(&row.lo) || found.is_discrete && row.lo > before;
+        holds(is_joined, || format!("it begins at {}, the one before it ends at {before}", row.lo))
+    }
+
+    /// Looks at a sample of the stretches by the route that the model has.
+    fn stretches(
+        &self,
+        stretches: &[Stretch],
+        scene: &SystemScene,
+        found: &Intervals,
+        context: &Context,
+    ) -> Result<Outcome> {
+        let model = scene.model();
+        if found.number != "outer" || found.is_discrete {
+            return outcome(context, ALONE, Ok(()));
+        }
+        let (of, limits) = (stretches.len() as u64, context.work().products());
+        let mut decided: Vec<(u64, &Stretch)> =
+            (1..).zip(stretches).filter(|(_, own)| own.verdict != Holds::NotTold).collect();
+        let half_periods = match model {
+            Model::Measured(_) if model.method() == Method::Respa => {
+                Some(Steps::of(model, self.input.width().unwrap_or_default())?)
+            }
+            _ => None,
+        };
+        let is_cheap = half_periods.as_ref().is_some_and(|own| own.allow(decided.len(), &limits).is_ok());
+        if !(context.options.all || is_cheap) {
+            let drawn = sample(&scene.source().to_string(), decided.len() as u64, MOST);
+            decided = drawn.into_iter().map(|n| decided[n as usize]).collect();
+        }
+        let done = |outcome: Outcome, failures: Vec<Option<Failure>>| {
+            let sample = Some((failures.len() as u64, of));
+            Outcome { sample, failures: failures.into_iter().flatten().collect(), ..outcome }
+        };
+        let look = |check: &(dyn Fn(&Stretch) -> Checked + Sync)| {
+            let place = |own: &Stretch| format!("{} to {}", own.lo, own.hi);
+            try_map(&decided, |(row, own)| context.failure(*row, || place(own), check(own)))
+        };
+        if let Some(steps) = half_periods {
+            let (mut found, mut failures) = (outcome(context, ALONE, Ok(()))?, Vec::new());
+            match steps.allow(decided.len(), &limits) {
+                Err(error) => found.not_rechecked.push(too_costly("the stretches", &error)),
+                Ok(()) => {
+                    found.route = HALF;
+                    found.not_rechecked.push(BETWEEN.into());
+                    failures = look(&|own| steps.stretch(own))?;
+                }
+            }
+            return Ok(done(found, failures));
+        }
+        match model {
+            Model::Sparse(own) => {
+                if let Some(own) = own.subcycles() {
+                    let check = || decided.iter().try_for_each(|of| local::stretch_of_subcycles(own, of.1));
+                    return run(own, context, check);
+                }
+                let Some(steps) = own.local_steps() else { return outcome(context, ALONE, Ok(())) };
+                let failures = look(&|own| local::stretch(steps, own))?;
+                Ok(done(seen(steps, outcome(context, RUN, Ok(()))?), failures))
+            }
+            Model::NoGradient(own) | Model::Subcycled(own, _) => {
+                let longest = model.steps().into_iter().max().unwrap_or_default();
+                let exactly = |stretch: &Stretch| {
+                    let middle = stretch.lo + (stretch.hi - stretch.lo) / 2.0;
+                    let Some(middle) = from_f64_exact(middle) else { return Ok(()) };
+                    let model = Model::NoGradient(Box::new(own.slowed(&(middle / &longest))?));
+                    match model.exact_kind(&limits) {
+                        Err(error) if error.kind() == Reason::Budget => Ok(()),
+                        truth => same("verdict", stretch.verdict.name(), Holds::from(Some(truth?)).name()),
+                    }
+                };
+                let route = "the verdict in the middle of a random sample of stretches in exact arithmetic";
+                Ok(done(outcome(context, route, Ok(()))?, look(&exactly)?))
+            }
+            _ => outcome(context, ALONE, Ok(())),
+        }
+    }
+}
+
+/// The route of measured levels.
+const HALF: &str = "the half period in doubles, kick by kick, at five steps of each stretch; the order of Krein's signs between them";
+
+/// And its limit.
+const BETWEEN: &str =
+    "that nothing grows between these steps where the order of the signs is the same at both";
+
+/// A measured system at all outer steps, the others in their ratios.
+struct Steps {
+    system: crate::system::System,
+    outer: Rational,
+    /// No interval as wide, relative to its end, hides where the order of signs differs.
+    width: f64,
+}
+
+/// What doubles see at a step.
+#[derive(Debug, PartialEq)]
+enum Motion {
+    /// ln |λ| of a period, above [`STILL`].
+    Grows(f64),
+    /// All multipliers turn, and none is near one of the other sign: the signs by increasing angle.
+    Turns(Vec<bool>),
+    Unclear,
+}
+
+impl Steps {
+    fn of(model: &Model, width: f64) -> Result<Steps> {
+        let outer = model.steps().into_iter().max().unwrap_or_default();
+        Ok(Steps { system: model.moving()?.into_owned(), outer, width })
+    }
+
+    /// Five half periods of each stretch, about as many halvings: kicks on 2n columns, eigenvalues and vectors.
+    fn allow(&self, stretches: usize, limits: &Limits) -> Result<()> {
+        let (n, kicks) = (self.system.size() as u64, self.system.schedule().strikes() / 2 + 1);
+        let each = n.saturating_pow(3).saturating_mul(30 + 2 * kicks);
+        let cost = each.saturating_mul(10 * stretches as u64);
+        limits.allow(cost, || format!("half periods of {n} degrees of freedom at {} steps", 10 * stretches))
+    }
+
+    fn motion(&self, step: f64) -> Result<Motion> {
+        let Some(step) = from_f64_exact(step) else { return Ok(Motion::Unclear) };
+        let h = half_period::<f64>(&self.system.with(&Rational::one(), &(step / &self.outer))?);
+        let n = self.system.size();
+        let block = |i: usize, j: usize| Mat::from_fn(n, n, |k, l| h[(i * n + k, j * n + l)]);
+        let (a, c) = (block(0, 0), block(1, 0));
+        let s = block(0, 1).transpose() * &c;
+        let is_finite = (0..n).all(|j| (0..n).all(|i| s[(i, j)].is_finite()));
+        let Some(eigen) = is_finite.then(|| s.eigen().ok()).flatten() else { return Ok(Motion::Unclear) };
+        let mu: Vec<_> = (0..n).map(|k| eigen.S()[k]).collect();
+        // 1 + 2 μ = cosh ln λ; see `system::spectrum::rate`.
+        let excess = mu.iter().map(|mu| (mu.norm() + (mu + 1.0).norm() - 1.0) / 2.0).fold(0.0, f64::max);
+        let growth = 2.0 * excess.sqrt().asinh();
+        if growth > STILL {
+            return Ok(Motion::Grows(growth));
+        }
+        // A pair that has just left the circle, or that roundings have joined.
+        if mu.iter().any(|mu| mu.im != 0.0) {
+            return Ok(Motion::Unclear);
+        }
+        let v = Mat::from_fn(n, n, |i, k| eigen.U()[(i, k)].re);
+        let (av, cv) = (&a * &v, &c * &v);
+        let sign = |k: usize| (0..n).map(|i| av[(i, k)] * cv[(i, k)]).sum::<f64>() > 0.0;
+        // μ = −sin² θ/2 for λ = e^(iθ).
+        let angle = |k: usize| 2.0 * (-mu[k].re).clamp(0.0, 1.0).sqrt().asin();
+        let mut modes: Vec<(f64, bool)> = (0..n).map(|k| (angle(k), sign(k))).collect();
+        modes.sort_by(|x, y| x.0.total_cmp(&y.0));
+        let are_apart = modes.windows(2).all(|two| two[0].1 == two[1].1 || two[1].0 - two[0].0 > STILL);
+        let are_off_ends = modes.iter().all(|own| own.0 > STILL && own.0 < std::f64::consts::PI - STILL);
+        let turns = are_apart && are_off_ends;
+        Ok(if turns { Motion::Turns(modes.into_iter().map(|own| own.1).collect()) } else { Motion::Unclear })
+    }
+
+    fn stretch(&self, said: &Stretch) -> Checked {
+        let at = |part: f64| said.lo + (said.hi - said.lo) * part;
+        let mut before = None;
+        for step in INSIDE.map(at) {
+            match (self.motion(step)?, said.verdict) {
+                (Motion::Grows(growth), Holds::Stable) => return Err(grows(step, growth)),
+                (Motion::Turns(_), Holds::Unstable) => {
+                    return Err(Fault::Wrong(format!("at a step of {step} nothing grows: not unstable")));
+                }
+                (Motion::Turns(signs), Holds::Stable) => {
+                    let own = (step, signs);
+                    before.iter().try_for_each(|before| self.between(before, &own))?;
+                    before = Some(own);
+                }
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// That nothing grows where the order of signs changes between two steps of a stable stretch.
+    fn between(&self, low: &(f64, Vec<bool>), high: &(f64, Vec<bool>)) -> Checked {
+        if low.1 == high.1 || high.0 - low.0 <= self.width / 4.0 * high.0 {
+            return Ok(());
+        }
+        let middle = low.0 / 2.0 + high.0 / 2.0;
+        match self.motion(middle)? {
+            Motion::Grows(growth) => Err(grows(middle, growth)),
+            Motion::Unclear => Ok(()),
+            Motion::Turns(signs) => {
+                let own = (middle, signs);
+                self.between(low, &own).and_then(|()| self.between(&own, high))
+            }
+        }
+    }
+}
+
+fn grows(step: f64, growth: f64) -> Fault {
+    Fault::Wrong(format!("at a step of {step} a mode grows by exp({growth:.2e}) in a period: not stable"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn found(file: &str, range: &str, width: f64) -> (Steps, Vec<Stretch>) {
+        let folder = std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/data/scenes"));
+        let text = std::fs::read_to_string(folder.join(file)).unwrap();
+        let scene = SystemScene::from_json_in(folder, serde_json::from_str(&text).unwrap()).unwrap();
+        let all = scene.intervals(&format!("outer={range}").parse().unwrap(), width, &Limits::default());
+        (Steps::of(scene.model(), width).unwrap(), all.unwrap().stretches)
+    }
+
+    /// Stretches that hold; an unstable one moved by half of itself into a stable one, and one that is called stable with all up to the next stable ones.
+    #[test]
+    fn an_interval_that_was_moved_or_dropped_is_found_without_the_cells() {
+        for (file, range) in [("water4.json", "1/250..29/5000"), ("water4-levels.json", "1/250..29/5000")] {
+            let (steps, all) = found(file, range, 1e-3);
+            assert!(all.iter().all(|own| steps.stretch(own).is_ok()), "{file}");
+            let is_stable = |own: &Stretch| own.verdict == Holds::Stable;
+            let (mut moved, mut dropped) = (0, 0);
+            for (k, own) in all.iter().enumerate().filter(|(_, own)| own.verdict == Holds::Unstable) {
+                let by = (own.hi - own.lo) / 2.0;
+                let after = all[k..].iter().find(|next| is_stable(next));
+                let lies_in = after.is_some_and(|next| next.lo < own.hi + by / 4.0 && own.hi + by < next.hi);
+                if lies_in {
+                    let right = Stretch { lo: own.lo + by, hi: own.hi + by, ..*own };
+                    assert!(matches!(steps.stretch(&right), Err(Fault::Wrong(_))), "{file}: {right:?}");
+                    moved += 1;
+                }
+                let before = all[..k].iter().rfind(|last| is_stable(last));
+                if let (Some(before), Some(after)) = (before, after) {
+                    let whole = Stretch { lo: before.lo, hi: after.hi, verdict: Holds::Stable };
+                    assert!(matches!(steps.stretch(&whole), Err(Fault::Wrong(_))), "{file}: {whole:?}");
+                    dropped += 1;
+                }
+            }
+            assert!(moved > 0 && dropped > 1, "{file}: {moved} moved, {dropped} dropped");
+        }
+    }
+
+    /// About a narrow interval of a molecule: at the five steps that are looked at nothing grows, and the order of signs finds it.
+    #[test]
+    fn a_narrow_interval_is_found_by_the_order_of_signs() {
+        let (steps, all) = found("alanine-dipeptide.json", "99/20000..203/40000", 1e-4);
+        let narrow = all.iter().position(|own| own.verdict == Holds::Unstable).unwrap();
+        let (lo, hi) = (all[0].lo, all[narrow].hi + 1e-5);
+        let whole = Stretch { lo, hi, verdict: Holds::Stable };
+        let misses = |part: &f64| matches!(steps.motion(lo + (hi - lo) * part), Ok(Motion::Turns(_)));
+        assert!(INSIDE.iter().all(misses), "{:?}", all[narrow]);
+        assert!(matches!(steps.stretch(&whole), Err(Fault::Wrong(_))));
+    }
+}
