@@ -354,6 +354,36 @@ fn intervals_of_sparse_subcycling_hold_what_is_stable_and_end_where_nothing_is_t
 }
 
 #[test]
+fn the_first_unstable_step_is_told_where_a_resonance_is_hardly_coupled() {
+    // The fastest fine motion is at the far wall, sixty springs away from what is coarse: what grows before its half turn is thinner than doubles are.
+    let spring = |i: usize| if i < 4 { 40.0 } else { [16.0, 1.0][usize::from(i > 60)] };
+    let stiffness: Vec<_> = (0..90)
+        .flat_map(|i| [(i, i, spring(i) + spring(i + 1)), (i + 1, i, -spring(i + 1))])
+        .filter(|own| own.0 < 90)
+        .collect();
+    let fine = |i: usize, j: usize| match i.abs_diff(j) {
+        0 => spring(i) + spring(i + 1),
+        1 => -spring(i.max(j)),
+        _ => 0.0,
+    };
+    let largest = DMatrix::from_fn(70, 70, fine).symmetric_eigenvalues().max();
+    for substeps in 2..6 {
+        let level = Level { fine: (0..70).collect(), substeps };
+        let own = SparseSubcycles::new(&[1.0; 90], &stiffness, vec![level]).unwrap();
+        let (lo, hi) = own.first_unstable().expect("proven");
+        // p θ = π of the largest eigenvalue, which nalgebra rounds.
+        let p = f64::from(substeps);
+        let half_turn = 2.0 * p * (std::f64::consts::PI / (2.0 * p)).sin() / largest.sqrt();
+        assert!(lo < half_turn * (1.0 + 1e-13) && half_turn * (1.0 - 1e-13) < hi, "{lo} {half_turn} {hi}");
+        assert!(hi < lo * (1.0 + 1e-11), "{substeps}: {lo} {hi}");
+        let verdicts = [lo, hi * (1.0 + 1e-9)].map(|dt| own.verdict(dt));
+        assert_eq!(verdicts, [Holds::Stable, Holds::NotTold], "{substeps}");
+        let last = own.stretches((lo / 2.0, 2.0 * hi)).unwrap();
+        assert_eq!(last.iter().map(|own| own.verdict).collect::<Vec<_>>(), [Holds::Stable, Holds::NotTold]);
+    }
+}
+
+#[test]
 fn what_these_schemes_have_not_is_refused_by_its_field() {
     let with = |scheme: &str, changes: &[(&str, Value)]| {
         let mut file =

@@ -154,15 +154,12 @@ fn exact_kind(scene: &SystemScene, limits: &Limits) -> Result<Option<Kind>> {
 impl Claim {
     fn points(&self, scene: &SystemScene, map: &SystemMap, context: &Context) -> Result<Outcome> {
         let (of, limits) = (map.points.len() as u64, context.work().products());
+        if matches!(scene.model(), Model::Sparse(_)) {
+            return outcome(context, ALONE, Ok(()));
+        }
         let mut outcome =
             outcome(context, "the kind of a random sample of points in exact arithmetic", Ok(()))?;
         let Some(axes) = self.input.scan(scene)? else { return Ok(outcome) };
-        if matches!(scene.model(), Model::Sparse(_)) {
-            outcome
-                .not_rechecked
-                .push("points by another route: exact arithmetic needs dense stiffnesses".into());
-            return Ok(outcome);
-        }
         let most = if context.options.all { of } else { POINTS };
         let mut decided = 0;
         for n in sample(&scene.source().to_string(), of, most) {

@@ -50,7 +50,7 @@ pub struct SchemeSummary {
     pub levels: Vec<(usize, u32)>,
     /// As [`LocalSteps::plain_limit`].
     pub plain_limit: Option<(f64, f64)>,
-    /// \[lo, hi\]: every step in (0, lo] is proven stable, some step up to hi is proven unstable; `None` where that is not known.
+    /// \[lo, hi\]: every step in (0, lo] is proven stable, some step up to hi is proven unstable (of large subcycling, or has the multiplier −1); `None` where that is not known.
     pub first_unstable: Option<(f64, f64)>,
 }
 

@@ -18,13 +18,13 @@ use faer::{Mat, Side};
 use num_complex::Complex64;
 
 use super::blocks::Blocks;
+use super::krylov::arnoldi;
 use super::period::Period;
 use super::region::SparseLevels;
 use crate::number::U;
 use crate::parallel::map;
 use crate::system::half::norm;
 use crate::system::levels::kernel::{Outer, STEP_ERROR};
-use crate::system::verdict::large::start;
 use crate::system::verdict::measured::Holds;
 
 /// The pencil at an outer step as Xᵀ L(e) X, which has as many negative eigenvalues for every regular X. Here X has the modes of each block, each over
@@ -108,12 +108,8 @@ struct Turned {
     top: f64,
 }
 
-/// What was counted, by its sign and e, and what the next factorization may be off by.
-#[derive(Default)]
-struct Known {
-    counts: BTreeMap<[u64; 2], Option<usize>>,
-    off: f64,
-}
+/// What was counted, by its sign and e.
+type Known = BTreeMap<[u64; 2], Option<usize>>;
 
 /// |V| from which on a mode is scaled by it.
 const SMALL: f64 = 0.04;
@@ -167,10 +163,8 @@ const NEAREST: usize = 24;
 /// An excess below it is rounding.
 pub(super) const LEAST: f64 = 1e-9;
 
-/// Where the largest excess is sought, where no mode alone shows it; by what factor it is found, and how often that is taken.
+/// Where the largest excess is sought, where nothing shows it.
 const ANYWHERE: f64 = 1e-4;
-const TURN: f64 = 2.0;
-const MOST_TURNS: usize = 20;
 
 /// Of no mode.
 const NOWHERE: (f64, f64) = (f64::INFINITY, f64::NEG_INFINITY);
@@ -285,19 +279,24 @@ impl<'a> Counted<'a> {
         self.negative_beside(-1.0, e)
     }
 
-    /// Each asked for once; a factorization is expected to be off by as much as the last one was.
+    /// How far from e a mode is to be for a count to see on which side it is, as a rule.
+    pub fn sharp(&self, e: f64) -> f64 {
+        self.blocks.pattern.usually_off(&self.pencil(e).0)
+    }
+
+    /// Each asked for once.
     fn negative_beside(&self, sign: f64, e: f64) -> Option<usize> {
         let key = [sign, e].map(f64::to_bits);
         let known = || self.known.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(own) = known().counts.get(&key) {
+        if let Some(own) = known().get(&key) {
             return *own;
         }
-        let (expected, (terms, slack)) = (known().off, self.pencil(e));
+        let (terms, slack) = self.pencil(e);
+        let expected = self.blocks.pattern.usually_off(&terms);
         let found = self.blocks.pattern.negative_beside(sign, 0.0, &terms, [slack, expected]);
-        let mut known = known();
-        known.off = found.map_or(known.off, |(_, off)| 1.5 * off);
-        known.counts.insert(key, found.map(|own| own.0));
-        found.map(|own| own.0)
+        let found = found.map(|own| own.0);
+        known().insert(key, found);
+        found
     }
 
     fn is_parted(&self) -> bool {
@@ -308,8 +307,13 @@ impl<'a> Counted<'a> {
         *self.is_parted.get_or_init(|| self.gap.is_some_and(is_definite))
     }
 
-    /// So many modes have a multiplier −λ > 1 with an excess above e ≥ 0 for sure, and more may: one factorization or two.
+    /// So many modes have a multiplier −λ > 1 with an excess above e ≥ 0 for sure, and more may: one factorization, or two where multipliers with both signs
+    /// of V are next to each other.
     pub fn at_least_above(&self, e: f64) -> usize {
+        // Those with V < 0 alone are above 0 then.
+        if self.negative[0] > 0 && self.is_parted() {
+            return self.at_most_negative(e).map_or(0, |own| self.negative[0].saturating_sub(own));
+        }
         let more = self.at_least_negative(e).map_or(0, |own| own.saturating_sub(self.negative[1]));
         if more > 0 || self.negative[0] == 0 {
             return more;
@@ -338,19 +342,9 @@ impl<'a> Counted<'a> {
         self.is_parted() && held()
     }
 
-    /// Some mode has an excess above the first, where a count says so; the second is a little above the largest for which one does.
-    pub fn farthest(&self) -> Option<(f64, f64)> {
-        let is_below = |e: f64| self.at_least_above(e) > 0;
-        let mut e = if self.top > LEAST { self.top } else { ANYWHERE };
-        let is_first = is_below(e);
-        for _ in 0..MOST_TURNS {
-            let next = if is_first { TURN * e } else { e / TURN };
-            if is_below(next) != is_first {
-                return Some(if is_first { (e, next) } else { (next, e) });
-            }
-            e = next;
-        }
-        is_first.then_some((e, TURN * e))
+    /// The largest e as if no mode were joined to another, rounded, or a small one.
+    pub fn about(&self) -> f64 {
+        if self.top > LEAST { self.top } else { ANYWHERE }
     }
 
     /// The modes whose e is nearest to one that is given, and their z (of a pair of complex ones the first, real and imaginary part), all rounded; none
@@ -362,41 +356,16 @@ impl<'a> Counted<'a> {
     fn inverted_modes(&self, e: f64) -> Option<Vec<(Complex64, Mat<f64>)>> {
         let pattern = &self.blocks.pattern;
         let own = pattern.factored_signed(&self.pencil(e).0)?;
-        let (n, most) = (pattern.size(), SPACE.min(pattern.size()));
-        let (mut basis, mut form) = (Mat::<f64>::zeros(n, most), Mat::<f64>::zeros(most, most));
-        let begin = start(n);
-        let mut next = Mat::from_fn(n, 1, |i, _| begin[i]);
-        let mut size = 0;
-        while size < most {
-            let before = next.norm_l2();
-            for _ in 0..2 {
-                let along = basis.subcols(0, size).transpose() * &next;
-                next -= basis.subcols(0, size) * &along;
-                (0..size).for_each(|i| form[(i, size.saturating_sub(1))] += along[(i, 0)]);
-            }
-            let length = next.norm_l2();
-            // What is left is rounding.
-            if !(length.is_finite() && length > 1e-13 * before) {
-                break;
-            }
-            if size > 0 {
-                form[(size, size - 1)] = length;
-            }
-            next /= faer::Scale(length);
-            basis.col_mut(size).copy_from(next.col(0));
-            next = own.solve(pattern.times(&self.terms[1], &next))?;
-            size += 1;
-        }
-        let along = basis.subcols(0, size).transpose() * &next;
-        (0..size).for_each(|i| form[(i, size - 1)] = along[(i, 0)]);
-        let eigen = form.submatrix(0, 0, size, size).eigen().ok()?;
+        let n = pattern.size();
+        let (basis, form) = arnoldi(n, SPACE, |x| own.solve(pattern.times(&self.terms[1], x)))?;
+        let (size, eigen) = (basis.ncols(), form.eigen().ok()?);
         let mut order: Vec<usize> = (0..size).filter(|&i| eigen.S()[i].im >= 0.0).collect();
         order.sort_by(|&i, &j| eigen.S()[j].norm().total_cmp(&eigen.S()[i].norm()));
         let mode = |&i: &usize| {
             let theta = eigen.S()[i];
             let columns = if theta.im == 0.0 { 1 } else { 2 };
             let part = |k: usize, c: usize| if c == 0 { eigen.U()[(k, i)].re } else { eigen.U()[(k, i)].im };
-            let found = basis.subcols(0, size) * Mat::from_fn(size, columns, part);
+            let found = &basis * Mat::from_fn(size, columns, part);
             let mut z = Mat::<f64>::zeros(n, columns);
             for (rows, x) in self.blocks.rows.iter().zip(&self.turned) {
                 let turned = x * Mat::from_fn(rows.len(), columns, |a, c| found[(rows[a], c)]);

@@ -1,6 +1,7 @@
 //! The modes that grow beyond the first unstable step, where p θ < π still holds for every fast mode.
 //!
-//! A Krylov space of the excess e (file `period`), symmetric in the scalar product of V, is begun anew from its best part until the largest
+//! Where the fast stiffness falls into small blocks a Krylov space of an inverse (file `counted`), above the largest excess that products tell, has the modes.
+//! Elsewhere one of the excess e itself (file `period`), symmetric in the scalar product of V, is begun anew from its best part until the largest
 //! eigenvalues are found (thick restarts: Wu and Simon, SIAM J. Matrix Anal. Appl. 22, 2000). What is claimed of them rests on their residuals
 //! alone, computed again with bounds on all roundings (proofs/REGION.md, section 9):
 //!
@@ -15,6 +16,7 @@ use faer::{Mat, Side};
 use num_complex::Complex64;
 
 use super::counted::{Counted, LEAST};
+use super::krylov::arnoldi;
 use super::period::Period;
 use super::region::SparseLevels;
 use crate::number::{U, bisected};
@@ -68,11 +70,24 @@ const MOST_ROUNDS: usize = 60;
 const FOUND: f64 = 1e-9;
 const TOLD: f64 = 1e-6;
 
+/// How sharp growth is to be at best: a part of the excess.
+const NEAREST: f64 = 1e-5;
+
 /// Rooms above the largest excess that is found, relative to it, up to which the true one is sought.
-const ROOMS: [f64; 7] = [1e-5, 0.003, 0.1, 0.5, 2.0, 8.0, 100.0];
+const ROOMS: [f64; 6] = [0.003, 0.1, 0.5, 2.0, 8.0, 100.0];
 
 /// Parts beside the one that is found, up to which counts are asked for none above and some below.
-const BESIDE: [f64; 5] = [1e-5, 1e-3, 0.03, 0.2, 0.7];
+const BESIDE: [f64; 5] = [1e-3, 0.03, 0.1, 0.3, 0.7];
+
+/// How often a larger or a smaller one is asked for.
+const MOST_TURNS: i32 = 12;
+
+/// Steps of a recursion that finds about the largest excess, and what part above it a Krylov space of an inverse begins.
+const STEPS: usize = 160;
+const ABOVE: f64 = 1.1;
+
+/// How often that is tried.
+const MOST_TRIES: u32 = 4;
 
 /// How near to each other an excess that is proven and one that is not are to be, relative to the first.
 const BETWEEN: f64 = 0.25;
@@ -104,7 +119,8 @@ impl SparseLevels {
         let [low, high] = self.ends(0.0)?;
         let line = chord(outer, low, high)?;
         let period = Period::new(self, *outer, low);
-        let (claims, radius) = proven(&period, period.top()?)?;
+        let seeds = counted.map_or_else(Vec::new, |own| period.farthest(own).1);
+        let (claims, radius) = proven(&period, period.top(seeds)?)?;
         let modes: Vec<GrowingMode> = (claims.values.iter().enumerate())
             .map(|(i, e)| {
                 // A rounding of the sum.
@@ -123,15 +139,15 @@ impl SparseLevels {
             self.both.at_most_negative(line[0], &[(fast, &self.fast), (slow, &self.slow)], slack)
         });
         let fastest = self.fastest(outer, line, &claims, radius, counted);
-        Some(Growing { at_least: modes.len(), modes, at_most, fastest })
+        let at_least = modes.len().max(counted.map_or(0, |own| own.at_least_above(0.0)));
+        Some(Growing { at_least, modes, at_most, fastest })
     }
 
     /// Where some fast mode has p θ > π: modes are rounded, and the fastest multiplier below −1 is enclosed by counts.
     fn growing_past(&self, outer: &Outer, counted: &Counted, at_least: usize) -> Option<Growing> {
         let period = Period::new(self, *outer, self.ends(0.0)?[0]);
         let rate = |e: f64| rate::about(Complex64::new(-1.0 - e, 0.0), 2.0 * U);
-        let (lo, hi) = counted.farthest()?;
-        let mut found = counted.modes_near(hi);
+        let (about, mut found) = period.farthest(counted);
         found.retain(|(e, z)| {
             let image = period.of(z).excess;
             let turn = Mat::from_fn(2, 2, |a, b| if a == b { e.re } else { [e.im, -e.im][a] });
@@ -141,12 +157,17 @@ impl SparseLevels {
         found.sort_by(|a, b| excess(b.0).total_cmp(&excess(a.0)));
         found.truncate(WANTED);
         let fastest = found.iter().position(|(e, _)| e.im == 0.0);
-        let own = fastest.map(|i| found[i].0.re).filter(|e| *e > lo);
+        let own = fastest.map_or(about, |i| found[i].0.re);
         let is_held = counted.grows_by_resonance_alone(self);
-        let beside =
-            |sign: f64| own.into_iter().flat_map(move |e| BESIDE.map(move |part| e * (1.0 + sign * part)));
-        let least = beside(-1.0).find(|&e| e > lo && counted.at_least_above(e) > 0).unwrap_or(lo);
-        let most = beside(1.0).chain([hi]).filter(|_| is_held).find(|&e| counted.at_most_above(e) == Some(0));
+        // No nearer than counts can see.
+        let nearest = (counted.sharp(own) / own).max(NEAREST);
+        let parts = || std::iter::once(nearest).chain(BESIDE.into_iter().filter(move |part| *part > nearest));
+        let beside = |sign: f64| parts().map(move |part| 1.0 + sign * part);
+        let farther = |turn: f64| (1..=MOST_TURNS).map(move |k| turn.powi(k));
+        let least = beside(-1.0).chain(farther(0.2)).map(|by| by * own);
+        let least = least.into_iter().find(|&e| counted.at_least_above(e) > 0)?;
+        let most = beside(1.0).chain(farther(2.0)).map(|by| by * own).filter(|_| is_held);
+        let most = most.into_iter().find(|&e| counted.at_most_above(e) == Some(0));
         let bounds = (rate(least).0, most.map_or(f64::INFINITY, |e| rate(e).1));
         let mode = |(i, (e, z)): (usize, &(Complex64, Mat<f64>))| {
             let y = period.of(z).moved;
@@ -184,7 +205,9 @@ impl SparseLevels {
             None => self.is_no_excess_above(outer, line, ends, along, e),
         };
         let (mut open, mut above) = (most, None);
-        for room in ROOMS {
+        // No nearer than counts can see.
+        let nearest = counted.map_or(0.0, |own| own.sharp(most) / most).max(NEAREST);
+        for room in std::iter::once(nearest).chain(ROOMS.into_iter().filter(|room| *room > nearest)) {
             let e = (most + radius) * (1.0 + room);
             if is_above_all(e) {
                 above = Some(e);
@@ -221,14 +244,48 @@ impl SparseLevels {
 }
 
 impl Period<'_> {
+    /// About the largest real excess, and the modes next to a number above it, rounded: where one of these is above that, too, a larger one is tried.
+    fn farthest(&self, counted: &Counted) -> (f64, Vec<(Complex64, Mat<f64>)>) {
+        let about = self.about(counted);
+        let (mut e, mut left) = (ABOVE * about, MOST_TRIES);
+        loop {
+            let found = counted.modes_near(e);
+            let above = found.iter().map(|own| own.0).filter(|own| own.im == 0.0 && own.re > e);
+            let (top, is_beyond) = above.fold((e, false), |(top, _), own| (own.re.max(top), true));
+            left -= 1;
+            if !is_beyond || left == 0 {
+                return (about, found);
+            }
+            e = 2.0 * top;
+        }
+    }
+
+    /// About the largest real excess: what products tell of it.
+    fn about(&self, counted: &Counted) -> f64 {
+        let found = || {
+            let (_, form) = arnoldi(self.levels.size(), STEPS, |z| Some(self.of(z).excess))?;
+            let eigen = form.eigen().ok()?;
+            let real = (0..form.ncols()).map(|i| eigen.S()[i]).filter(|e| e.im == 0.0);
+            real.map(|e| e.re).max_by(f64::total_cmp).filter(|e| *e > LEAST)
+        };
+        found().unwrap_or_else(|| counted.about())
+    }
+
     /// The largest eigenvalues of the excess and their z, rounded: those above 0 whose residuals are small. `None` where there is none.
-    fn top(&self) -> Option<Ritz> {
+    ///
+    /// `seeds` are about these: where the largest one is as sharp as it is to be, they are all that is looked at.
+    fn top(&self, seeds: Vec<(Complex64, Mat<f64>)>) -> Option<Ritz> {
         let n = self.levels.size();
         let most = SPACE.min(n);
         let mut space = [0; 3].map(|_| Mat::<f64>::zeros(n, most));
         let begin = start(n);
         let mut next = Mat::from_fn(n, 1, |i, _| begin[i]);
         let (mut size, mut round) = (0, 0);
+        let mut seeds: Vec<_> = seeds.into_iter().filter(|(e, _)| e.im == 0.0 && e.re > LEAST).collect();
+        seeds.sort_by(|a, b| a.0.re.total_cmp(&b.0.re));
+        let mut seeds = seeds.into_iter().map(|(_, z)| &z / faer::Scale(z.norm_l2()));
+        let mut is_seeded = seeds.len() > 0;
+        next = seeds.next_back().unwrap_or(next);
         loop {
             let mut is_used_up = false;
             while size < most {
@@ -249,8 +306,15 @@ impl Period<'_> {
                         .for_each(|(to, x)| *to = scale * x);
                 }
                 size += 1;
+                if let Some(seed) = seeds.next_back() {
+                    next = seed;
+                    continue;
+                }
                 next = Mat::from_fn(n, 1, |i, _| excess[(i, size - 1)]);
                 next /= faer::Scale(next.norm_l2().max(f64::MIN_POSITIVE));
+                if is_seeded {
+                    break;
+                }
             }
             let [z, moved, excess] = &mut space;
             orthogonal(&mut next, z, moved, size);
@@ -270,8 +334,10 @@ impl Period<'_> {
             let wanted: Vec<usize> = (0..kept.min(WANTED)).filter(|&i| values[i] > 0.0).collect();
             let is_found =
                 !values.is_empty() && residual(0) < FOUND && wanted.iter().all(|&i| residual(i) < FOUND);
-            if is_found || is_used_up || round == MOST_ROUNDS {
-                let told: Vec<usize> = wanted.into_iter().filter(|&i| residual(i) < TOLD).collect();
+            let is_enough = std::mem::take(&mut is_seeded) && residual(0) < FOUND;
+            if is_found || is_enough || is_used_up || round == MOST_ROUNDS {
+                let most = if is_enough { FOUND } else { TOLD };
+                let told: Vec<usize> = wanted.into_iter().filter(|&i| residual(i) < most).collect();
                 let vectors = Mat::from_fn(n, told.len(), |i, j| z[(i, told[j])]);
                 let values: Vec<f64> = told.into_iter().map(|i| values[i]).collect();
                 return (!values.is_empty()).then_some(Ritz { values, vectors });

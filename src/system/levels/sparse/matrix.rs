@@ -300,8 +300,18 @@ impl Pattern {
             SymbolicCholeskyRaw::Simplicial(own) => self.simplicial(own, &values)?,
             SymbolicCholeskyRaw::Supernodal(own) => self.fronts(own, values, Elimination::Signed)?,
         };
-        let off = 2.0 * (self.terms as f64 + 24.0) * U * (size + trace + c.abs());
+        let off = self.off(size + trace, c);
         off.is_finite().then_some((negative, off))
+    }
+
+    /// How far the pivots of a sum may be off where |L||D||Lᵀ| is no larger than a few times the diagonal, as most often.
+    pub fn usually_off(&self, terms: &[(f64, &[f64])]) -> f64 {
+        self.off(USUAL * self.sum(0.0, terms).1, 0.0)
+    }
+
+    /// How far pivots may be off, by Σ |d_k| |l_k|² and the sum of |entries| on the diagonal.
+    fn off(&self, sizes: f64, c: f64) -> f64 {
+        2.0 * (self.terms as f64 + 24.0) * U * (sizes + c.abs())
     }
 
     /// No fewer than the eigenvalues that are not above 0 of any matrix within `slack` of c + Σ a_k A_k.
@@ -361,7 +371,10 @@ impl Pattern {
 }
 
 /// Shifts τ that are tried: from the second one on a tenth above what the factorization with the last one may be off by.
-const SHIFTS: u32 = 3;
+const SHIFTS: u32 = 8;
+
+/// Σ |d_k| |l_k|² and the diagonal together, over the diagonal alone, as factorizations most often have them.
+const USUAL: f64 = 4.0;
 
 /// So many values of factors are not kept: 8 GB.
 const MOST_KEPT: usize = 1_000_000_000;
