@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::args::Common;
 use super::progress::{announce, progress};
-use crate::error::{Error, Result};
+use crate::error::{Error, Kind, Result};
 use crate::format::Format;
 use crate::recheck::{Claim, Options, Outcome};
 use crate::report::document::Document;
@@ -21,7 +21,7 @@ pub struct Args {
     /// Take the slower route for every pair or ratio of a map or a survey, and not for a random sample of them.
     #[arg(long)]
     all: bool,
-    /// Where the files are that a system of measured stiffnesses refers to [default: the folder of FILE].
+    /// The folder of the scene, where files are that a system refers to (Hessians) [default: the folder of FILE].
     #[arg(long, value_name = "FOLDER")]
     data: Option<PathBuf>,
 }
@@ -37,14 +37,14 @@ impl Args {
         })?;
         let claim = Claim::read(&text)?;
         let options = Options { budget: common.budget, all: self.all, folder: self.folder() };
-        let work = claim.work(&options)?;
+        let work = claim.work(&options).map_err(|error| self.elsewhere(error))?;
         announce(common.quiet, &format!("{file}, about {work} kicks"), work as f64 / KICKS_A_SECOND);
         let bar = progress(common.quiet, 0, "rows");
         let see = |done: u64, of: u64| {
             bar.set_length(of);
             bar.set_position(done);
         };
-        let outcome = claim.recheck(&options, Some(&see))?;
+        let outcome = claim.recheck(&options, Some(&see)).map_err(|error| self.elsewhere(error))?;
         bar.finish_and_clear();
         let name = claim.name();
         if let Some(first) = outcome.failures.first() {
@@ -56,6 +56,15 @@ impl Args {
             ));
         }
         common.write(&document(&outcome, &file.to_string(), name), Format::Text)
+    }
+
+    /// A file that is not beside the document may be elsewhere.
+    fn elsewhere(&self, error: Error) -> Error {
+        if error.kind() != Kind::Io || self.data.is_some() {
+            return error;
+        }
+        let remedy = format!("{}: --data FOLDER says where the scene of the document lies", error.remedy());
+        error.or(remedy)
     }
 
     fn folder(&self) -> PathBuf {
