@@ -56,6 +56,9 @@ const LONGEST_VALUE: usize = 60;
 /// The longest path, cause or remedy, which may quote the user too, in characters.
 const LONGEST_TEXT: usize = 400;
 
+/// The longest list of names in a remedy, the words about it left out.
+const LONGEST_LIST: usize = LONGEST_TEXT - 60;
+
 impl Error {
     fn new(kind: Kind, field: impl fmt::Display, remedy: impl fmt::Display) -> Self {
         let (field, remedy) = (field.to_string(), remedy.to_string());
@@ -75,15 +78,13 @@ impl Error {
         let names: Vec<&str> = names.into_iter().collect();
         let like: Vec<&str> = names.iter().copied().filter(|name| is_like(given, name)).collect();
         let remedy = if like.is_empty() {
-            let ends = names.iter().scan(0, |end, name| {
-                *end += name.len() + 2;
-                Some(*end)
-            });
-            let shown = ends.take_while(|&end| end < LONGEST_TEXT - 60).count();
-            let more = if shown < names.len() {
-                format!(" and {} more", names.len() - shown)
-            } else {
-                String::new()
+            let fits = |count: &usize| {
+                names[..*count].iter().map(|name| name.len() + 2).sum::<usize>() < LONGEST_LIST
+            };
+            let shown = (1..=names.len()).rev().find(fits).unwrap_or_default();
+            let more = match names.len() - shown {
+                0 => String::new(),
+                more => format!(" and {more} more"),
             };
             format!("choose among {}{more}", names[..shown].join(", "))
         } else {

@@ -15,13 +15,13 @@ use crate::number::rational::from_f64_exact;
 use crate::parallel::try_map;
 use crate::question::{Found, System, SystemAnswer};
 use crate::recheck::again::{Left, Recheck, asked};
-use crate::recheck::context::{Checked, Context, Failure, Fault, Outcome, holds, same, too_costly};
+use crate::recheck::context::{Checked, Context, Fault, Outcome, holds, same, too_costly};
 use crate::recheck::sample::sample;
 use crate::scene::SystemScene;
 use crate::system::levels::Method;
 use crate::system::stretches::Stretch;
 use crate::system::vary::Intervals;
-use crate::system::{Holds, Limits, Model, half_period};
+use crate::system::{Holds, Jacobians, Limits, Model, SparseSystem, half_period};
 
 /// Stretches that are looked at, unless all are asked for; all of measured levels where it costs no more than is allowed.
 const MOST: u64 = 24;
@@ -109,66 +109,84 @@ impl Claim {
         if found.number != "outer" || found.is_discrete {
             return outcome(context, ALONE, Ok(()));
         }
-        let (of, limits) = (stretches.len() as u64, context.work().products());
-        let mut decided: Vec<(u64, &Stretch)> =
-            (1..).zip(stretches).filter(|(_, own)| own.verdict != Holds::NotTold).collect();
-        let half_periods = match model {
-            Model::Measured(_) if model.method() == Method::Respa => {
-                Some(Steps::of(model, self.input.width().unwrap_or_default())?)
-            }
-            _ => None,
-        };
-        let is_cheap = half_periods.as_ref().is_some_and(|own| own.allow(decided.len(), &limits).is_ok());
-        if !(context.options.all || is_cheap) {
-            let drawn = sample(&scene.source().to_string(), decided.len() as u64, MOST);
-            decided = drawn.into_iter().map(|n| decided[n as usize]).collect();
-        }
-        let done = |outcome: Outcome, failures: Vec<Option<Failure>>| {
-            let sample = Some((failures.len() as u64, of));
-            Outcome { sample, failures: failures.into_iter().flatten().collect(), ..outcome }
-        };
-        let look = |check: &(dyn Fn(&Stretch) -> Checked + Sync)| {
-            let place = |own: &Stretch| format!("{} to {}", own.lo, own.hi);
-            try_map(&decided, |(row, own)| context.failure(*row, || place(own), check(own)))
-        };
-        if let Some(steps) = half_periods {
-            let (mut found, mut failures) = (outcome(context, ALONE, Ok(()))?, Vec::new());
-            match steps.allow(decided.len(), &limits) {
-                Err(error) => found.not_rechecked.push(too_costly("the stretches", &error)),
-                Ok(()) => {
-                    found.route = HALF;
-                    found.not_rechecked.push(BETWEEN.into());
-                    failures = look(&|own| steps.stretch(own))?;
-                }
-            }
-            return Ok(done(found, failures));
-        }
+        let all = (1..).zip(stretches).filter(|(_, own)| own.verdict != Holds::NotTold);
+        let decided = Decided { of: stretches.len() as u64, drawn: all.collect(), context };
+        let seed = scene.source().to_string();
         match model {
-            Model::Sparse(own) => {
-                if let Some(own) = own.subcycles() {
-                    let check = || decided.iter().try_for_each(|of| local::stretch_of_subcycles(own, of.1));
-                    return run(own, context, check);
-                }
-                let Some(steps) = own.local_steps() else { return outcome(context, ALONE, Ok(())) };
-                let failures = look(&|own| local::stretch(steps, own))?;
-                Ok(done(seen(steps, outcome(context, RUN, Ok(()))?), failures))
+            Model::Measured(_) if model.method() == Method::Respa => {
+                decided.by_half_periods(&Steps::of(model, self.input.width().unwrap_or_default())?, &seed)
             }
-            Model::NoGradient(own) | Model::Subcycled(own, _) => {
-                let longest = model.steps().into_iter().max().unwrap_or_default();
-                let exactly = |stretch: &Stretch| {
-                    let middle = stretch.lo + (stretch.hi - stretch.lo) / 2.0;
-                    let Some(middle) = from_f64_exact(middle) else { return Ok(()) };
-                    let model = Model::NoGradient(Box::new(own.slowed(&(middle / &longest))?));
-                    match model.exact_kind(&limits) {
-                        Err(error) if error.kind() == Reason::Budget => Ok(()),
-                        truth => same("verdict", stretch.verdict.name(), Holds::from(Some(truth?)).name()),
-                    }
-                };
-                let route = "the verdict in the middle of a random sample of stretches in exact arithmetic";
-                Ok(done(outcome(context, route, Ok(()))?, look(&exactly)?))
-            }
+            Model::Sparse(own) => decided.sampled(&seed).by_running(own),
+            Model::NoGradient(own) | Model::Subcycled(own, _) => decided.sampled(&seed).exactly(model, own),
             _ => outcome(context, ALONE, Ok(())),
         }
+    }
+}
+
+/// The stretches with a verdict that are looked at, each with its row.
+struct Decided<'a> {
+    /// Rows in all.
+    of: u64,
+    drawn: Vec<(u64, &'a Stretch)>,
+    context: &'a Context<'a>,
+}
+
+impl Decided<'_> {
+    /// Some of them, unless all are asked for.
+    fn sampled(mut self, seed: &str) -> Self {
+        if !self.context.options.all {
+            let drawn = sample(seed, self.drawn.len() as u64, MOST);
+            self.drawn = drawn.into_iter().map(|n| self.drawn[n as usize]).collect();
+        }
+        self
+    }
+
+    /// `outcome` with what `check` finds of each.
+    fn look(&self, outcome: Outcome, check: impl Fn(&Stretch) -> Checked + Sync) -> Result<Outcome> {
+        let place = |own: &Stretch| format!("{} to {}", own.lo, own.hi);
+        let look = |(row, own): &(u64, &Stretch)| self.context.failure(*row, || place(own), check(own));
+        let failures = try_map(&self.drawn, look)?;
+        let sample = Some((failures.len() as u64, self.of));
+        Ok(Outcome { sample, failures: failures.into_iter().flatten().collect(), ..outcome })
+    }
+
+    /// All, or a sample where that costs too much.
+    fn by_half_periods(self, steps: &Steps, seed: &str) -> Result<Outcome> {
+        let (context, limits) = (self.context, self.context.work().products());
+        let allow = |own: &Self| steps.allow(own.drawn.len(), &limits);
+        let own = if allow(&self).is_ok() { self } else { self.sampled(seed) };
+        let mut found = outcome(context, HALF, Ok(()))?;
+        if let Err(error) = allow(&own) {
+            found.not_rechecked.push(too_costly("the stretches", &error));
+            return Ok(Outcome { route: ALONE, sample: Some((0, own.of)), ..found });
+        }
+        found.not_rechecked.push(BETWEEN.into());
+        own.look(found, |stretch| steps.stretch(stretch))
+    }
+
+    fn by_running(self, model: &SparseSystem) -> Result<Outcome> {
+        if let Some(own) = model.subcycles() {
+            let check = || self.drawn.iter().try_for_each(|of| local::stretch_of_subcycles(own, of.1));
+            return run(own, self.context, check);
+        }
+        let Some(steps) = model.local_steps() else { return outcome(self.context, ALONE, Ok(())) };
+        let found = seen(steps, outcome(self.context, RUN, Ok(()))?);
+        self.look(found, |own| local::stretch(steps, own))
+    }
+
+    fn exactly(self, model: &Model, own: &Jacobians) -> Result<Outcome> {
+        let (limits, longest) = (self.context.work().products(), model.steps().into_iter().max());
+        let longest = longest.unwrap_or_default();
+        let route = "the verdict in the middle of a random sample of stretches in exact arithmetic";
+        self.look(outcome(self.context, route, Ok(()))?, |stretch| {
+            let middle = stretch.lo + (stretch.hi - stretch.lo) / 2.0;
+            let Some(middle) = from_f64_exact(middle) else { return Ok(()) };
+            let model = Model::NoGradient(Box::new(own.slowed(&(middle / &longest))?));
+            match model.exact_kind(&limits) {
+                Err(error) if error.kind() == Reason::Budget => Ok(()),
+                truth => same("verdict", stretch.verdict.name(), Holds::from(Some(truth?)).name()),
+            }
+        })
     }
 }
 

@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
+use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::perm::PermRef;
 use faer::sparse::linalg::cholesky::simplicial::SymbolicSimplicialCholesky;
 use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
@@ -233,28 +233,12 @@ impl Pattern {
     /// The factors of c + Σ a_k A_k minus what makes them prove that every matrix within `slack` of it (2-norm) is positive definite, by
     /// Rump's criterion (BIT 46, 2006); `None` where that proves nothing, or memory runs out.
     pub fn factored(&self, c: f64, terms: &[(f64, &[f64])], slack: f64) -> Option<Factors> {
-        let values = self.lowered(c, terms, slack)?;
-        let (own, threads) = (&self.symbolic, faer::get_global_parallelism());
-        let scratch = own.factorize_numeric_llt_scratch::<f64>(threads, Default::default());
-        let (matrix, none) = (self.matrix(&values), Default::default());
-        let factor = self.with_room(scratch, |factor, stack| {
-            own.factorize_numeric_llt(factor, matrix, Side::Lower, none, threads, stack, Default::default())
-                .is_ok()
-        })?;
-        Some(Factors { symbolic: Arc::clone(&self.symbolic), values: factor, is_signed: false })
+        self.factors(&self.lowered(c, terms, slack)?, false)
     }
 
     /// The factors L D Lᵀ of Σ a_k A_k without exchanges, rounded; `None` where a pivot vanishes or memory runs out.
     pub fn factored_signed(&self, terms: &[(f64, &[f64])]) -> Option<Factors> {
-        let (values, _) = self.sum(0.0, terms);
-        let (own, threads) = (&self.symbolic, faer::get_global_parallelism());
-        let scratch = own.factorize_numeric_ldlt_scratch::<f64>(threads, Default::default());
-        let (matrix, none) = (self.matrix(&values), Default::default());
-        let factor = self.with_room(scratch, |factor, stack| {
-            own.factorize_numeric_ldlt(factor, matrix, Side::Lower, none, threads, stack, Default::default())
-                .is_ok()
-        })?;
-        Some(Factors { symbolic: Arc::clone(&self.symbolic), values: factor, is_signed: true })
+        self.factors(&self.sum(0.0, terms).0, true)
     }
 
     /// c + Σ a_k A_k minus as much of the identity as Cholesky's factors may be off by: where they exist, whatever the order of their sums, every
@@ -341,14 +325,7 @@ impl Pattern {
 
     /// The pivots of L D Lᵀ column by column.
     fn simplicial(&self, own: &SymbolicSimplicialCholesky<usize>, values: &[f64]) -> Option<Pivots> {
-        let (symbolic, threads) = (&self.symbolic, faer::get_global_parallelism());
-        let scratch = symbolic.factorize_numeric_ldlt_scratch::<f64>(threads, Default::default());
-        let (matrix, none, lower) = (self.matrix(values), Default::default(), Side::Lower);
-        let factor = self.with_room(scratch, |to, stack| {
-            symbolic
-                .factorize_numeric_ldlt(to, matrix, lower, none, threads, stack, Default::default())
-                .is_ok()
-        })?;
+        let factor = self.factors(values, true)?.values;
         // Of each column: its pivot, and the square of its length, 1 on the diagonal.
         Some(own.col_ptr().windows(2).fold(Pivots::default(), |sum, ends| {
             let (pivot, below) = (factor[ends[0]], &factor[ends[0] + 1..ends[1]]);
@@ -357,16 +334,24 @@ impl Pattern {
         }))
     }
 
-    /// The values of factors that `factor` writes with so much room beside; `None` where it fails, memory runs out, or they are too many to keep.
-    fn with_room(
-        &self,
-        scratch: StackReq,
-        factor: impl FnOnce(&mut [f64], &mut MemStack) -> bool,
-    ) -> Option<Vec<f64>> {
-        let own = self.symbolic.len_val();
+    /// The factors L Lᵀ of a matrix of this pattern, or L D Lᵀ; `None` where a pivot is none, memory runs out, or they are too many to keep.
+    fn factors(&self, entries: &[f64], is_signed: bool) -> Option<Factors> {
+        let (own, threads) = (&self.symbolic, faer::get_global_parallelism());
+        let scratch = match is_signed {
+            false => own.factorize_numeric_llt_scratch::<f64>(threads, Default::default()),
+            true => own.factorize_numeric_ldlt_scratch::<f64>(threads, Default::default()),
+        };
         let mut room = MemBuffer::try_new(scratch).ok()?;
-        let mut values = if own < MOST_KEPT { zeros(own, 0.0)? } else { return None };
-        factor(&mut values, MemStack::new(&mut room)).then_some(values)
+        let mut values = if own.len_val() < MOST_KEPT { zeros(own.len_val(), 0.0)? } else { return None };
+        let (to, matrix, side) = (&mut values[..], self.matrix(entries), Side::Lower);
+        let (none, stack) = (Default::default(), MemStack::new(&mut room));
+        let is_done = if is_signed {
+            own.factorize_numeric_ldlt(to, matrix, side, none, threads, stack, Default::default()).is_ok()
+        } else {
+            let none = Default::default();
+            own.factorize_numeric_llt(to, matrix, side, none, threads, stack, Default::default()).is_ok()
+        };
+        is_done.then(|| Factors { symbolic: Arc::clone(&self.symbolic), values, is_signed })
     }
 }
 
