@@ -279,7 +279,8 @@ def system(
     notes = _notes(system, integrator, clocks)
     if minimize and engine.rounding:
         where = _relaxed(engine, where, chosen)
-        notes.append(f"forces of the {platform} platform are in single precision: at the minimizer's end, no minimum")
+        place = "the positions are where OpenMM's minimizer stopped, near a minimum and not at it"
+        notes.append(f"forces of the {platform} platform are in single precision: {place}")
     elif minimize:
         where, told = _at_rest(engine, where, constraints, difference, chosen, _of_minimum(progress))
         notes += told

@@ -25,7 +25,7 @@ pub(super) fn lines(own: &Nearest, unit: &str) -> Vec<String> {
         Some(found) => format!("  {name}: {}", interval(found, unit)),
         None => format!("  {name}: none between {} and {}{unit}", own.number, decimal::few(end, 6)),
     };
-    let mut lines = vec!["  unstable outer steps next to this one, all steps in their ratios:".to_string()];
+    let mut lines = vec!["  unstable outer steps next to this one, all steps in their ratios; none between the two ends is proven stable:".to_string()];
     if let Some(found) = own.own {
         lines.push(format!("  this one lies in {}", interval(found, unit)));
     }

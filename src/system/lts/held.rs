@@ -114,8 +114,8 @@ impl SparseSubcycles {
     /// \[lo, hi\]: every step in (0, lo] is proven stable, some step up to hi is unstable or has the multiplier −1; `None` where nothing is proven.
     ///
     /// Where the fastest fine motion takes half a turn the step has the multiplier −1, however weakly that motion is coupled: where the coupling is too
-    /// weak for doubles to see what grows before, hi is no more than the half turn itself is known to. Coupled at all, it grows a little before; of one
-    /// that the coarse part does not feel at all the step −1 is stable, and so may those beyond be, which are not looked at.
+    /// weak for doubles to see what grows before, hi is the upper end of the half turn's enclosure. If the coarse part feels that motion at all, something
+    /// grows a little before it. If not, the step with the multiplier −1 is stable; steps beyond it are not looked at.
     pub fn first_unstable(&self) -> Option<(f64, f64)> {
         let ((lo, hi), (_, half_turn)) = (self.edge()?, self.end?);
         Some((lo, hi.unwrap_or(half_turn))).filter(|own| own.1.is_finite())
