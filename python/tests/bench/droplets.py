@@ -4,9 +4,10 @@ modes that grow.
 Weak springs hold each atom where it is, as in an equilibration: so the place is a minimum, and the verdict has a
 margin.
 
-Run, from python/, with a release build installed:  python tests/bench/droplets.py 500 2000 [10000] [droplets.svg]
+Run, from python/, with a release build installed:  python tests/bench/droplets.py 500 2000 [0.5nm] [droplets.svg]
 
-The name of a picture, last, has the seconds of processors drawn over the degrees of freedom.
+A length is the cutoff of the slow forces. The name of a picture, last, has the seconds of processors drawn over the
+degrees of freedom.
 """
 
 from __future__ import annotations
@@ -23,13 +24,13 @@ from openmm import app, unit
 
 import kickdrift.openmm as ko
 
-#: Molecules a nm³, nm, kJ/mol/nm.
+#: Molecules a nm³, the cutoff in nm unless another is given, kJ/mol/nm.
 DENSITY, CUTOFF, REST = 33.0, 0.9, 1.0
 #: kJ/mol/nm², and the outer steps in ps: stable, and beyond the first resonance.
 SPRING, STEPS = 2000.0, ("1/250", "0.004424")
 
 
-def droplet(count: int) -> tuple[mm.System, np.ndarray]:
+def droplet(count: int, cutoff: float = CUTOFF) -> tuple[mm.System, np.ndarray]:
     """So many waters next to the middle of a box, cooled and at rest but for what single precision leaves."""
     field = app.ForceField("amber14/tip3pfb.xml")
     modeller = app.Modeller(app.Topology(), [])
@@ -43,8 +44,8 @@ def droplet(count: int) -> tuple[mm.System, np.ndarray]:
     system = field.createSystem(
         modeller.topology,
         nonbondedMethod=app.CutoffNonPeriodic,
-        nonbondedCutoff=CUTOFF,
-        switchDistance=CUTOFF - 0.1,
+        nonbondedCutoff=cutoff,
+        switchDistance=cutoff - 0.1,
         rigidWater=False,
         removeCMMotion=False,
     )
@@ -76,9 +77,10 @@ def draw(path: str, sizes: list[int], seconds: list[float]) -> None:
 def main() -> None:
     """Print a line for each number of waters."""
     counts = [int(own) for own in sys.argv[1:] if own.isdigit()]
+    cutoff = next((float(own[:-2]) for own in sys.argv[1:] if own.endswith("nm")), CUTOFF)
     seconds = []
     for count in counts:
-        system, positions = droplet(count)
+        system, positions = droplet(count, cutoff)
         held = mm.CustomExternalForce(f"{SPRING / 2}*((x-x0)^2+(y-y0)^2+(z-z0)^2)")
         for name in ("x0", "y0", "z0"):
             held.addPerParticleParameter(name)
@@ -100,7 +102,7 @@ def main() -> None:
             print(f"{count} waters, {outer} ps: Hessians {made:.1f} s, answer {decided:.1f} s", end=" ")
             print(f"({processor:.1f} s of processors), at most {peak:.1f} GB")
             print("\n".join(f"  {line}" for line in str(found).splitlines()), flush=True)
-    if not sys.argv[-1].isdigit():
+    if sys.argv[-1].endswith((".svg", ".pdf", ".png")):
         draw(sys.argv[-1], [9 * count for count in counts], seconds)
 
 
