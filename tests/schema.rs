@@ -60,7 +60,7 @@ fn output(line: &str) -> Value {
 }
 
 /// One line for every shape that a command's answer can take.
-const LINES: [&str; 74] = [
+const LINES: [&str; 75] = [
     "verdict --lambda1 pi^2 --lambda2 pi^2/25 --h1 1/100 --h2 0.98",
     "verdict --lambda1 pi^2 --lambda2 pi^2/25 --h1 1/100 --h2 1/2",
     "verdict --lambda1 11/4 --lambda2 57/10 --h1 1 --h2 5/3",
@@ -102,6 +102,7 @@ const LINES: [&str; 74] = [
     "system data/scenes/local-steps.json",
     "system data/scenes/local-steps.json --intervals outer=1..5/2",
     "system data/scenes/subcycled.json",
+    "system data/scenes/nested-subcycles.json",
     "system data/scenes/bar-avi.json",
     "system data/scenes/membrane.json",
     "system data/scenes/membrane.json --intervals outer=1/2..3/4 --resolution 1e-2",

@@ -1,7 +1,8 @@
 //! Subcycling with held velocities and AVI on levels of elements, against both schemes run step by step.
 
-use kickdrift::number::Rational;
+use kickdrift::number::polynomial::Sturm;
 use kickdrift::number::rational::{ratio, to_f64};
+use kickdrift::number::{Polynomial, Rational};
 use kickdrift::scene::{Span, SystemScene};
 use kickdrift::system::{
     Analysis, Holds, Level, Limits, Model, Potential, Route, SparseSubcycles, Subcycles, Symmetric, System,
@@ -22,7 +23,7 @@ impl Numbers {
     /// Nested parts of n, each with its substeps.
     fn levels(&mut self, n: usize) -> Vec<Level> {
         let mut fine: Vec<usize> = (0..n).collect();
-        let levels = (0..1 + self.below(2)).map(|_| {
+        let levels = (0..1 + self.below(3)).map(|_| {
             fine.retain(|_| self.below(3) > 0);
             Level { fine: fine.iter().copied().collect(), substeps: 1 + self.below(4) as u32 }
         });
@@ -115,6 +116,102 @@ fn verdicts_on_subcycling_are_those_of_the_scheme_run() {
         }
     }
     assert!(seen.iter().all(|&n| n > 100), "{seen:?}");
+}
+
+type Exact = DMatrix<Rational>;
+
+fn product(a: &Exact, b: &Exact) -> Exact {
+    let entry = |i, j| (0..a.ncols()).map(|k| &a[(i, k)] * &b[(k, j)]).sum::<Rational>();
+    DMatrix::from_fn(a.nrows(), b.ncols(), entry)
+}
+
+/// Positions after a step from rest, kick by kick in rationals; kicks of half weight at both ends.
+fn from_rest(plain: &System, levels: &[Level]) -> Exact {
+    let n = plain.size();
+    let clock = &plain.clocks()[0];
+    let force = DMatrix::from_fn(n, n, |i, j| clock.stiffness.get(i, j) / plain.mass().get(i, i));
+    let ticks: u32 = levels.iter().map(|own| own.substeps).product();
+    let is_in = |i| move |own: &&Level| own.fine.contains(&i);
+    let substeps = |i: usize| levels.iter().filter(is_in(i)).map(|own| own.substeps).product::<u32>();
+    let every: Vec<u32> = (0..n).map(|i| ticks / substeps(i)).collect();
+    let mut x = DMatrix::from_fn(n, n, |i, j| ratio(i64::from(i == j), 1));
+    let mut v = DMatrix::from_fn(n, n, |_, _| ratio(0, 1));
+    for tick in 0..=ticks {
+        let half = ratio(1, if tick % ticks == 0 { 2 } else { 1 });
+        let pull = product(&force, &x);
+        for i in (0..n).filter(|&i| tick % every[i] == 0) {
+            let step = &clock.step * &half * ratio(every[i].into(), ticks.into());
+            (0..n).for_each(|j| v[(i, j)] -= &step * &pull[(i, j)]);
+        }
+        if tick < ticks {
+            let drift = &clock.step / ratio(ticks.into(), 1);
+            x.iter_mut().zip(v.iter()).for_each(|(x, v)| *x += &drift * v);
+        }
+    }
+    x
+}
+
+/// Whether a matrix is diagonalizable with eigenvalues in (−1, 1): its characteristic polynomial (Faddeev, Le Verrier) without multiple factors has all roots
+/// there and is 0 at the matrix.
+fn is_within_one(q: &Exact) -> bool {
+    let n = q.nrows();
+    let plus = |m: &Exact, c: &Rational| {
+        DMatrix::from_fn(n, n, |i, j| if i == j { &m[(i, j)] + c } else { m[(i, j)].clone() })
+    };
+    let zero = DMatrix::from_fn(n, n, |_, _| ratio(0, 1));
+    let (mut coefficients, mut m) = (vec![ratio(1, 1)], plus(&zero, &ratio(1, 1)));
+    for k in 1..=n {
+        let image = product(q, &m);
+        let c = -(0..n).map(|i| image[(i, i)].clone()).sum::<Rational>() / ratio(k as i64, 1);
+        m = plus(&image, &c);
+        coefficients.push(c);
+    }
+    coefficients.reverse();
+    let own = Polynomial::new(coefficients).squarefree();
+    let [below, above] = [ratio(-1, 1), ratio(1, 1)];
+    let at_matrix = own.coefficients().iter().rev().fold(zero, |sum, c| plus(&product(&sum, q), c));
+    [&below, &above].iter().all(|x| own.eval(x) != ratio(0, 1))
+        && Some(Sturm::new(&own).count(&below, &above)) == own.degree()
+        && at_matrix.iter().all(|x| *x == ratio(0, 1))
+}
+
+/// A positive definite stiffness, one to three levels.
+fn nested(numbers: &mut Numbers) -> (System, Vec<Level>) {
+    loop {
+        let plain = numbers.plain();
+        let n = plain.size();
+        let mut fine: Vec<usize> = (0..n).collect();
+        let levels = (0..[1, 2, 3, 3][numbers.below(4) as usize]).map(|_| {
+            fine.retain(|_| numbers.below(6) > 0);
+            let substeps = [1, 2, 2, 2, 3, 3][numbers.below(6) as usize];
+            Level { fine: fine.iter().copied().collect(), substeps }
+        });
+        let levels: Vec<_> = levels.collect();
+        let stiffness = DMatrix::from_fn(n, n, |i, j| to_f64(&plain.clocks()[0].stiffness.get(i, j)));
+        if stiffness.symmetric_eigenvalues().min() > 1e-6 {
+            return (plain, levels);
+        }
+    }
+}
+
+#[test]
+fn exact_verdicts_on_nested_levels_are_those_of_the_scheme_run_in_exact_arithmetic() {
+    let (mut numbers, mut seen) = (Numbers(17), [[0; 2]; 4]);
+    for case in 0..600 {
+        let (plain, levels) = nested(&mut numbers);
+        let (_, clocks) = Subcycles::newmark(plain.clone(), levels.clone()).unwrap();
+        let stable = is_within_one(&from_rest(&plain, &levels));
+        let routes: &[Route] =
+            if case % 4 == 0 { &[Route::Cheapest, Route::Exact] } else { &[Route::Cheapest] };
+        for &route in routes {
+            let found = clocks.decide(route, &Limits::default()).unwrap();
+            assert!(found.is_proof() && found.is_stable() == stable, "{plain:?} {levels:?}");
+        }
+        // Levels that hold something and take substeps.
+        let depth = levels.iter().filter(|own| own.substeps > 1 && !own.fine.is_empty()).count();
+        seen[depth][usize::from(stable)] += 1;
+    }
+    assert!(seen.iter().flatten().all(|&n| n >= 15), "{seen:?}");
 }
 
 #[test]
@@ -290,38 +387,41 @@ fn a_step_of_another_ratio_is_decided_as_a_file_of_that_step() {
 
 #[test]
 fn sparse_subcycling_is_decided_below_its_first_resonance_as_by_exact_arithmetic() {
-    let (mut numbers, mut seen, mut edges) = (Numbers(11), [[0; 3]; 2], 0);
-    for case in 0..500 {
-        let plain = numbers.plain();
+    let (mut numbers, mut seen, mut edges) = (Numbers(11), [[[0; 3]; 2]; 4], [0; 4]);
+    for case in 0..320 {
+        let (plain, levels) = nested(&mut numbers);
         let n = plain.size();
-        let fine = (0..n).filter(|_| numbers.below(2) == 0).collect();
-        let level = Level { fine, substeps: 1 + numbers.below(6) as u32 };
         let entry = |i: usize, j: usize| (i, j, to_f64(&plain.clocks()[0].stiffness.get(i, j)));
         let entries: Vec<_> = (0..n).flat_map(|i| (0..=i).map(move |j| entry(i, j))).collect();
         let masses: Vec<f64> = (0..n).map(|i| to_f64(&plain.mass().get(i, i))).collect();
-        let sparse = SparseSubcycles::new(&masses, &entries, vec![level.clone()]).unwrap();
-        // Where nothing grows below the first resonance, or the fine part is singular, any steps.
+        let sparse = SparseSubcycles::new(&masses, &entries, levels.clone()).unwrap();
+        let depth = levels.iter().filter(|own| own.substeps > 1 && !own.fine.is_empty()).count();
         let first = sparse.first_unstable();
-        edges += usize::from(first.is_some());
+        // Of the system in rationals, rounded: the same, or a little wider.
+        let (own, _) = Subcycles::newmark(plain.clone(), levels.clone()).unwrap();
+        let near = |a: (f64, f64), b: (f64, f64)| a.0 <= b.1 && b.0 <= a.1;
+        assert!(own.first_unstable().zip(first).is_none_or(|(a, b)| near(a, b)), "{case}");
+        assert_eq!(own.first_unstable().is_some(), first.is_some(), "{case}");
+        edges[depth] += usize::from(first.is_some());
         let (lo, hi) = first.unwrap_or((1.0, 1.0));
         assert!(lo <= hi && hi < lo * (1.0 + 1e-5), "{lo} {hi}");
         for share in [0.4, 0.8, 0.999, 1.001, 1.03, 1.2] {
             let dt = (lo * share * 1e6).round();
-            let step = ratio(dt as i64, 1_000_000);
-            let at = vec![Potential::new(plain.clocks()[0].stiffness.clone(), step)];
+            let at = vec![Potential::new(plain.clocks()[0].stiffness.clone(), ratio(dt as i64, 1_000_000))];
             let system = System::new(plain.mass().clone(), at).unwrap();
-            let (_, clocks) = Subcycles::newmark(system, vec![level.clone()]).unwrap();
-            let truth = Holds::from(clocks.decide(Route::Exact, &Limits::default()).unwrap().kind);
+            let truth =
+                if is_within_one(&from_rest(&system, &levels)) { Holds::Stable } else { Holds::Unstable };
             let told = sparse.verdict(dt / 1e6);
-            let is_below = usize::from(share < 1.0);
-            seen[is_below][told as usize] += 1;
+            seen[depth][usize::from(share < 1.0)][told as usize] += 1;
             assert!(told == Holds::NotTold || told == truth, "{case} {share}: {told:?} {truth:?}");
             assert!(first.is_none() || share > 1.0 || told == Holds::Stable, "{case} {share}");
         }
     }
-    let [above, below] = seen;
-    assert!(edges > 150 && below[Holds::Stable as usize] > 450, "{edges} {below:?}");
-    assert!(above[Holds::Unstable as usize] > 250, "{above:?}");
+    // Of every depth.
+    for (edges, [above, below]) in edges.into_iter().zip(seen) {
+        assert!(edges > 15 && below[Holds::Stable as usize] > 45, "{edges} {below:?}");
+        assert!(above[Holds::Unstable as usize] > 20, "{above:?}");
+    }
 }
 
 #[test]
@@ -348,9 +448,9 @@ fn intervals_of_sparse_subcycling_hold_what_is_stable_and_end_where_nothing_is_t
         }
     }
     assert!(SparseSubcycles::new(&[1.0; 40], &stiffness, Vec::new()).is_err());
-    let two = [0..20, 0..10].map(|fine| Level { fine: fine.collect(), substeps: 2 });
-    let error = SparseSubcycles::new(&[1.0; 40], &stiffness, two.into()).unwrap_err();
-    assert_eq!(error.field(), "levels");
+    let apart = [0..20, 10..30].map(|fine| Level { fine: fine.collect(), substeps: 2 });
+    let error = SparseSubcycles::new(&[1.0; 40], &stiffness, apart.into()).unwrap_err();
+    assert_eq!(error.field(), "levels[1].fine");
 }
 
 #[test]

@@ -761,7 +761,7 @@ class SystemVerdict(Document):
     def local_steps(self) -> Mapping[str, Any] | None:
         """Of a scheme of local time steps: its ``levels``, and the ``plain_limit`` of leapfrog without them.
 
-        Of a sparse one with a single level also its ``first_unstable`` step.
+        Of a sparse one also its ``first_unstable`` step, under ``lts`` where it has a single level.
         """
         return self._beside("local_steps")
 

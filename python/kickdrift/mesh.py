@@ -141,10 +141,9 @@ def waves(
         Of the wave, and of what it moves through; the unit of time follows from these.
     scheme : "lts", "newmark" or "avi"
         Leapfrog with local time steps, where small elements make all their nodes fine; subcycling of these with held
-        velocities, of one level; or asynchronous variational integrators, where they kick with a step of their own.
+        velocities; or asynchronous variational integrators, where they kick with a step of their own.
     substeps : int or sequence of int
-        In a step of the level above, the coarsest level first: 2 or 3, or (2, 2); of AVI one number above 1, of
-        subcycling one number.
+        In a step of the level above, the coarsest level first: 2 or 3, or (2, 2); of AVI one number above 1.
     step : Exact, optional
         Of the coarse elements, rational.
     courant : float
@@ -182,8 +181,6 @@ def waves(
         raise KickdriftError("substeps", shown(substeps), "give 1 or more, or one number for each level")
     if scheme not in ("lts", "newmark", "avi"):
         raise KickdriftError("scheme", shown(scheme), "give lts, newmark or avi")
-    if scheme == "newmark" and len(factors) > 1:
-        raise KickdriftError("substeps", shown(substeps), "of newmark give one number: one level of subcycles")
     if scheme == "avi" and (len(factors) > 1 or factors[0] < 2):
         raise KickdriftError("substeps", shown(substeps), "of avi give one number above 1: two classes of elements")
     celerity, rho = (_each(name, own, len(cells)) for name, own in (("speed", speed), ("density", density)))

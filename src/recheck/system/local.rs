@@ -51,11 +51,14 @@ pub fn steps(own: &LocalSteps) -> Checked {
 
 /// One period of subcycling with held velocities in doubles.
 pub fn period(own: &Subcycles) -> DMatrix<f64> {
-    let (n, clock) = (own.plain().size(), &own.plain().clocks()[0]);
-    let pull =
-        DMatrix::from_fn(n, n, |i, j| to_f64(&(clock.stiffness.get(i, j) / own.plain().mass().get(i, i))));
-    let all = DMatrix::identity(2 * n, 2 * n);
-    subcycled(own.levels(), to_f64(&clock.step), |x| &pull * x, all)
+    let (n, clock, pull) = (own.plain().size(), &own.plain().clocks()[0], pull(own));
+    subcycled(own.levels(), to_f64(&clock.step), |x| &pull * x, DMatrix::identity(2 * n, 2 * n))
+}
+
+/// M⁻¹ K.
+fn pull(own: &Subcycles) -> DMatrix<f64> {
+    let (n, stiffness, mass) = (own.plain().size(), &own.plain().clocks()[0].stiffness, own.plain().mass());
+    DMatrix::from_fn(n, n, |i, j| to_f64(&(stiffness.get(i, j) / mass.get(i, i))))
 }
 
 /// A step dt of the scheme, run on columns of n positions and n velocities, kicks of half weight at both ends: each degree of freedom kicks when its own
@@ -102,19 +105,34 @@ pub fn subcycles(
     held(own, hi, Holds::Unstable)
 }
 
+/// The first unstable step of subcycling as small as can be seen.
+pub fn first_unstable(own: &Subcycles, (lo, hi): (f64, f64)) -> Checked {
+    let pull = pull(own);
+    let held = |dt, said| from_rest((pull.nrows(), own.levels(), dt), |x| &pull * x, said);
+    held(lo, Holds::Stable)?;
+    held(hi, Holds::Unstable)
+}
+
 /// Checks the verdict of a stretch of steps, in the middle of it.
 pub fn stretch_of_subcycles(own: &SparseSubcycles, said: &Stretch) -> Checked {
     held(own, said.lo + (said.hi - said.lo) / 2.0, said.verdict)
 }
 
 fn held(own: &SparseSubcycles, dt: f64, said: Holds) -> Checked {
-    let n = own.size();
     let pull = |x: DMatrixView<f64>| {
         let columns = x.column_iter().flat_map(|y| own.plain().pull(&y.iter().copied().collect::<Vec<_>>()));
-        DMatrix::from_iterator(n, x.ncols(), columns)
+        DMatrix::from_iterator(x.nrows(), x.ncols(), columns)
     };
-    let at_rest = DMatrix::identity(2 * n, n);
-    let after = subcycled(std::slice::from_ref(own.level()), dt, pull, at_rest);
+    from_rest((own.size(), own.levels(), dt), pull, said)
+}
+
+/// Whether Q11 of a step is as it is said to be.
+fn from_rest(
+    (n, levels, dt): (usize, &[Level], f64),
+    pull: impl Fn(DMatrixView<f64>) -> DMatrix<f64>,
+    said: Holds,
+) -> Checked {
+    let after = subcycled(levels, dt, pull, DMatrix::identity(2 * n, n));
     let all = after.rows(0, n).into_owned().complex_eigenvalues();
     let excess = all.iter().map(|mu| mu.im.abs().max(mu.re.abs() - 1.0)).fold(f64::NEG_INFINITY, f64::max);
     let right = match said {

@@ -96,6 +96,11 @@ fn verdict(
     }
     let traces = || {
         scene.model().local_steps().map_or(Ok(()), local::steps)?;
+        if let (Model::Subcycled(_, own), Some(first)) =
+            (scene.model(), local.and_then(|own| own.first_unstable))
+        {
+            local::first_unstable(own, first)?;
+        }
         scene.model().implicit().map_or(Ok(()), |own| implicit::in_doubles(own, analysis))?;
         dense::traces(scene, analysis)
     };

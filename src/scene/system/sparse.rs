@@ -14,7 +14,7 @@
 //!
 //! `csr` names the three arrays `data`, `indices` and `indptr` of compressed rows: `slow.data` and so on, or, where it is empty, those of a file
 //! of `scipy.sparse.save_npz`. With `"scheme": "lts"` or `"newmark"` there is one stiffness, and `"levels": [{"fine": [4, 5], "substeps": 2}]` are local
-//! time steps (see `local`), of newmark one level; `fine` may stand by reference, too, as `{"npz": "mesh.npz", "array": "fine"}`. A stiffness is K, not mass-weighted, symmetric to rounding; both triangles stand in it.
+//! time steps (see `local`); `fine` may stand by reference, too, as `{"npz": "mesh.npz", "array": "fine"}`. A stiffness is K, not mass-weighted, symmetric to rounding; both triangles stand in it.
 
 use std::collections::BTreeSet;
 

@@ -1,21 +1,24 @@
-//! Subcycling with held velocities of many thousands of degrees of freedom, one level of p substeps: its first stable region, by factorizations of a plain
-//! leapfrog's matrices (proofs/SUBCYCLING.md).
+//! Subcycling with held velocities of many thousands of degrees of freedom, on nested levels: its first stable region, by factorizations of a plain leapfrog's
+//! matrices (proofs/SUBCYCLING.md).
 //!
-//! With C and F the coarse and the fine part of K, B their coupling, and θ the angle of the substep, 4 sin²(θ/2) = (dt/p)² F, the step from rest in the positions has
-//!
-//! ```text
-//!     1 − Q11 = (dt²/2) N,     N H = G symmetric,     H = diag((C − B F⁻¹ Bᵀ)⁻¹, F⁻¹ V),     V = sin(p θ)/(p sin θ).
-//! ```
-//!
-//! While all p θ < π, V > 0: both G and H are positive where K is, **the step is similar to a symmetric one, and stable iff (4/dt²) H > G**. By partial
-//! fractions of tan(p θ/2) that is the condition of leapfrog in which no part has substeps, of a body whose fine part lies in ⌈p/2⌉ layers:
+//! The velocity of a degree of freedom stands still between its own kicks, N_l = p_1 ... p_l of them in a step at level l. A step is the half period there and
+//! back, and with the actions of velocities that change their sign from step to step, even about the middle of a step or odd,
 //!
 //! ```text
-//!     Σ_j w_j K(x, z_j) < (4/dt²) (M on x, 2 M on each z_j, M on the last one of odd p),     w_j = m_j/(p sin((2 j − 1) π/(2 p)))²,
+//!     even > 0 and K > 0:  stable;      odd > 0, and even is not:  unstable;      even > 0 implies odd > 0.
 //! ```
 //!
-//! m_j = 2, of the last one of odd p 1; Σ w_j = 1. With two substeps: K below 4/dt² times masses of which the fine ones count twice. Beyond p θ = π
-//! H is indefinite, and no verdict is proven.
+//! In waves of the angles ω = (2 j − 1) π, j = 1 ... ⌈N_l/2⌉, even > 0 is the condition of leapfrog in which no part has substeps, of a body whose level l
+//! lies in ⌈N_l/2⌉ layers. Layers ω at level l and ω' at a level above belong together where ω = ±ω' to multiples of 2 π N_l':
+//!
+//! ```text
+//!     Σ_j w_j K(x_0, z_1, z_2, ...) < (4/dt²) (M on x_0, m_j M on each layer),     w_j = m_j/(N sin(ω/(2 N)))²  of the finest level,
+//! ```
+//!
+//! m_j = 2, of ω = N_l π 1; Σ w_j = 1. With two substeps: K below 4/dt² times masses of which the fine ones count twice. Odd > 0 is the same without the layers of
+//! m_j = 1; with one level it ends where the fastest fine motion takes half a turn in a step. Beyond it no verdict is proven.
+
+use std::collections::BTreeSet;
 
 use super::scheme::{Level, Scheme, SchemeSummary};
 use super::sparse::SparseSteps;
@@ -43,11 +46,11 @@ use crate::system::verdict::measured::Holds;
 /// ```
 #[derive(Clone, Debug)]
 pub struct SparseSubcycles {
-    level: Level,
+    levels: Vec<Level>,
     /// Leapfrog without substeps, and that of the body in layers.
     plain: SparseSteps,
     layered: SparseSteps,
-    /// The step at which the fastest fine motion has p θ = π: no less than the first, no more than the second; `None` where F > 0 is not proven.
+    /// The step at which the odd action is singular: no less than the first, no more than the second; `None` where that is not known.
     end: Option<(f64, f64)>,
 }
 
@@ -58,27 +61,31 @@ impl SparseSubcycles {
     /// From K, each pair of entries once or both alike, and the mass of each degree of freedom.
     ///
     /// # Errors
-    /// As [`SparseSteps::new`]; several levels.
+    /// As [`SparseSteps::new`].
     pub fn new(masses: &[f64], stiffness: &Triplets, levels: Vec<Level>) -> Result<SparseSubcycles> {
+        SparseSubcycles::within(masses, stiffness, levels, 0.0)
+    }
+
+    /// As above, for entries that are each off by so much, relative to their size.
+    pub(super) fn within(
+        masses: &[f64],
+        stiffness: &Triplets,
+        levels: Vec<Level>,
+        off: f64,
+    ) -> Result<SparseSubcycles> {
         Level::check(&levels, masses.len())?;
-        let [level] = &levels[..] else {
-            let remedy = "so large a scheme has one level of subcycles: give one, or choose lts";
-            return Err(Error::input("levels", format!("{} of them", levels.len()), remedy));
-        };
-        let single = |own: &Level| vec![Level { fine: own.fine.clone(), substeps: 1 }];
-        let plain = SparseSteps::new(masses, stiffness, single(level))?;
-        let (masses, stiffness) = layers(masses, stiffness, level);
-        let none = Level { fine: Default::default(), substeps: 1 };
-        let layered = SparseSteps::within(&masses, &stiffness, vec![none], ROUNDED)?;
-        let end = match &plain.fine {
+        // Without substeps: so its fine block is the part of A that has any.
+        let fine = levels.iter().find(|own| own.substeps > 1).map(|own| own.fine.clone()).unwrap_or_default();
+        let plain = SparseSteps::within(masses, stiffness, vec![Level { fine, substeps: 1 }], off)?;
+        let (masses, stiffness, odd) = layers(masses, stiffness, &levels);
+        // And here that of the odd action.
+        let odd = Level { fine: odd, substeps: 1 };
+        let layered = SparseSteps::within(&masses, &stiffness, vec![odd], ROUNDED + off)?;
+        let end = match &layered.fine {
             None => Some((f64::INFINITY, f64::INFINITY)),
-            Some(fine) => fine.is_definite().then(|| fine.largest(SHARP)).flatten().map(|(lo, hi)| {
-                let p = f64::from(level.substeps);
-                let half_turn = 2.0 * p * (std::f64::consts::PI / (2.0 * p)).sin();
-                (half_turn / hi.sqrt() * (1.0 - 8.0 * U), half_turn / lo.sqrt() * (1.0 + 8.0 * U))
-            }),
+            Some(odd) => odd.limit(SHARP),
         };
-        Ok(SparseSubcycles { level: level.clone(), plain, layered, end })
+        Ok(SparseSubcycles { levels, plain, layered, end })
     }
 
     /// The number of degrees of freedom.
@@ -91,9 +98,9 @@ impl SparseSubcycles {
         self.layered.products()
     }
 
-    /// Which degrees of freedom subcycle, and how often.
-    pub fn level(&self) -> &Level {
-        &self.level
+    /// Which degrees of freedom subcycle, and how often: the coarsest level first.
+    pub fn levels(&self) -> &[Level] {
+        &self.levels
     }
 
     /// Leapfrog of the same body, all with the step of the whole.
@@ -101,24 +108,29 @@ impl SparseSubcycles {
         &self.plain
     }
 
-    /// The verdict at a step, the nearest double of it: two factorizations, or a vector that proves growth; [`Holds::NotTold`] where the fastest fine
-    /// motion takes half a turn in a step.
+    /// The verdict at a step, the nearest double of it: two factorizations, or a vector that proves growth; [`Holds::NotTold`] from where the odd action
+    /// is not positive, with one level where the fastest fine motion takes half a turn in a step.
     pub fn verdict(&self, dt: f64) -> Holds {
-        match (self.end, self.layered.verdict(dt)) {
-            (Some(_), Holds::Stable) => Holds::Stable,
-            (Some((end, _)), Holds::Unstable) if dt < end => Holds::Unstable,
-            _ => Holds::NotTold,
+        // Where it is K that has a negative value, the fine part must be positive.
+        let grows = |end: f64| {
+            let is_definite = || self.plain.fine.as_ref().is_none_or(|fine| fine.is_definite());
+            dt < end && (self.layered.is_below_four(dt) == Holds::Unstable || is_definite())
+        };
+        match self.layered.verdict(dt) {
+            Holds::Unstable if !self.end.is_some_and(|(end, _)| grows(end)) => Holds::NotTold,
+            own => own,
         }
     }
 
     /// \[lo, hi\]: every step in (0, lo] is proven stable, some step up to hi is unstable or has the multiplier −1; `None` where nothing is proven.
     ///
-    /// Where the fastest fine motion takes half a turn the step has the multiplier −1, however weakly that motion is coupled: where the coupling is too
-    /// weak for doubles to see what grows before, hi is the upper end of the half turn's enclosure. If the coarse part feels that motion at all, something
-    /// grows a little before it. If not, the step with the multiplier −1 is stable; steps beyond it are not looked at.
+    /// Where the odd action is singular (with one level, where the fastest fine motion takes half a turn) the step has the multiplier −1, however weakly
+    /// that motion is coupled to what is coarse: where the coupling is too weak for doubles to see what grows before, hi is the upper end of that step's
+    /// enclosure. If the coarse part feels that motion at all, something grows a little before it. If not, the step with the multiplier −1 is stable;
+    /// steps beyond it are not looked at.
     pub fn first_unstable(&self) -> Option<(f64, f64)> {
-        let ((lo, hi), (_, half_turn)) = (self.edge()?, self.end?);
-        Some((lo, hi.unwrap_or(half_turn))).filter(|own| own.1.is_finite())
+        let ((lo, hi), (_, singular)) = (self.edge()?, self.end?);
+        Some((lo, hi.unwrap_or(singular))).filter(|own| own.1.is_finite())
     }
 
     /// All steps up to the first are proven stable, and the second is proven unstable.
@@ -132,7 +144,8 @@ impl SparseSubcycles {
         Some((beside(lo.min(end.next_down()), -1.0, Holds::Stable)?, beside(hi, 1.0, Holds::Unstable)))
     }
 
-    /// The verdicts on all steps from `lo` to `hi`, as stretches that cover them: they are open from where the fastest fine motion takes half a turn.
+    /// The verdicts on all steps from `lo` to `hi`, as stretches that cover them: they are open from where the odd action is not
+    /// positive.
     ///
     /// # Errors
     /// An empty range.
@@ -164,50 +177,73 @@ impl SparseSubcycles {
         SchemeSummary {
             scheme: Scheme::Newmark,
             size: self.size(),
-            levels: vec![(self.level.fine.len(), self.level.substeps)],
+            levels: self.levels.iter().map(|own| (own.fine.len(), own.substeps)).collect(),
             plain_limit: self.plain.plain_limit(),
             first_unstable: self.first_unstable(),
         }
     }
 }
 
-/// How sharp the step at which the fastest fine motion takes half a turn is, and the first unstable one: the coupling between them may be weak.
+/// How sharp the step at which the odd action is singular is, and the first unstable one: the coupling between them may be weak.
 const SHARP: f64 = 1e-12;
 
 /// How far beside its enclosure the first unstable step may be proven, relative to it.
 const BESIDE: [f64; 7] = [1e-12, 1e-11, 1e-10, 1e-9, 1e-8, 1e-7, 1e-6];
 
-/// Masses and stiffness of the body in layers: the coarse degrees of freedom first, then layer by layer.
-fn layers(masses: &[f64], stiffness: &Triplets, level: &Level) -> (Vec<f64>, Vec<(usize, usize, f64)>) {
-    let p = level.substeps;
-    let count = p.div_ceil(2);
-    let of = |j: u32| {
-        let mass = if 2 * j + 1 == p { 1.0 } else { 2.0 };
-        let sine = (f64::from(2 * j + 1) * std::f64::consts::PI / (2.0 * f64::from(p))).sin();
-        (mass, mass / (f64::from(p) * sine).powi(2))
-    };
-    let all: Vec<(f64, f64)> = (0..count).map(of).collect();
-    let is_fine = |i: &usize| level.fine.contains(i);
-    let coarse = (0..masses.len()).filter(|i| !is_fine(i));
-    let order: Vec<usize> = coarse.chain(level.fine.iter().copied()).collect();
-    let (fine, first) = (level.fine.len(), masses.len() - level.fine.len());
-    let mut place = vec![0; masses.len()];
-    order.iter().enumerate().for_each(|(at, &i)| place[i] = at);
-    let mut weighed: Vec<f64> = order[..first].iter().map(|&i| masses[i]).collect();
-    for (mass, _) in &all {
-        weighed.extend(order[first..].iter().map(|&i| mass * masses[i]));
+/// Masses and stiffness of the body in layers, coarsest level first and layer by layer, and those of its degrees of freedom that odd velocities have.
+fn layers(
+    masses: &[f64],
+    stiffness: &Triplets,
+    levels: &[Level],
+) -> (Vec<f64>, Vec<(usize, usize, f64)>, BTreeSet<usize>) {
+    // Of each level the substeps in a step, its degrees of freedom, and where its first layer begins.
+    let mut of: Vec<(u32, Vec<usize>, usize)> = vec![(1, Vec::new(), 0)];
+    of.extend(levels.iter().scan(1, |all, own| {
+        *all *= own.substeps;
+        Some((*all, Vec::new(), 0))
+    }));
+    let place: Vec<(usize, usize)> = (0..masses.len())
+        .map(|i| {
+            let level = levels.iter().filter(|own| own.fine.contains(&i)).count();
+            of[level].1.push(i);
+            (level, of[level].1.len() - 1)
+        })
+        .collect();
+    let (mut weighed, mut odd) = (Vec::new(), BTreeSet::new());
+    for (substeps, own, begin) in &mut of {
+        *begin = weighed.len();
+        for turns in turns(*substeps) {
+            let mass = layer_mass(*substeps, turns);
+            if mass > 1.0 {
+                odd.extend(weighed.len()..weighed.len() + own.len());
+            }
+            weighed.extend(own.iter().map(|&i| mass * masses[i]));
+        }
     }
     let mut entries = Vec::new();
     for &(i, j, x) in stiffness.iter().filter(|(i, j, _)| i >= j) {
-        let (low, high) = (place[i].min(place[j]), place[i].max(place[j]));
-        if high < first {
-            entries.push((high, low, x));
-            continue;
-        }
-        for (layer, (_, weight)) in all.iter().enumerate() {
-            let of = |at: usize| if at < first { at } else { at + layer * fine };
-            entries.push((of(high), of(low), weight * x));
+        let finest = of[place[i].0.max(place[j].0)].0;
+        for turns in turns(finest) {
+            let sine = (f64::from(turns) * std::f64::consts::PI / (2.0 * f64::from(finest))).sin();
+            let weight = layer_mass(finest, turns) / (f64::from(finest) * sine).powi(2);
+            let at = |(level, index): (usize, usize)| {
+                let (substeps, own, begin) = &of[level];
+                let rest = turns % (2 * substeps);
+                begin + own.len() * (rest.min(2 * substeps - rest) / 2) as usize + index
+            };
+            let (a, b) = (at(place[i]), at(place[j]));
+            entries.push((a.max(b), a.min(b), weight * x));
         }
     }
-    (weighed, entries)
+    (weighed, entries, odd)
+}
+
+/// ω/π of the layers of a level with so many substeps in a step.
+fn turns(substeps: u32) -> impl Iterator<Item = u32> {
+    (1..=substeps).step_by(2)
+}
+
+/// 2 for ±ω, 1 where these are the same.
+fn layer_mass(substeps: u32, turns: u32) -> f64 {
+    if turns == substeps { 1.0 } else { 2.0 }
 }

@@ -68,6 +68,12 @@ impl Block {
     pub fn largest(&self, within: f64) -> Option<(f64, f64)> {
         self.pattern.largest(&self.values, self.error, within)
     }
+
+    /// 2/√λ of it, where leapfrog of these rows and columns alone becomes unstable.
+    pub fn limit(&self, within: f64) -> Option<(f64, f64)> {
+        let (lo, hi) = self.largest(within)?;
+        Some((2.0 / hi.sqrt() * (1.0 - 4.0 * U), 2.0 / lo.sqrt() * (1.0 + 4.0 * U)))
+    }
 }
 
 /// Sums of rows as small beside those of |entries| are rounding: then all may move together.
@@ -302,8 +308,7 @@ impl SparseSteps {
 
     /// The limit of plain leapfrog, enclosed as sharply as given.
     pub(super) fn plain_limit_within(&self, within: f64) -> Option<(f64, f64)> {
-        let (lo, hi) = self.plain.largest(within)?;
-        Some((2.0 / hi.sqrt() * (1.0 - 4.0 * U), 2.0 / lo.sqrt() * (1.0 + 4.0 * U)))
+        self.plain.limit(within)
     }
 
     /// The summary of the scheme in answers.

@@ -8,8 +8,8 @@
 //!     v_i ← v_i − d_i (M⁻¹ K x)_i   at t = 0, d_i, 2 d_i, …,      x ← x + t v   in between
 //! ```
 //!
-//! The kick of a level is its rows of K, which are no symmetric matrix: a force without a potential of its own, though K has one. So its step keeps no
-//! energy, no two factorizations decide, and [`Jacobians`] do. The levels' kicks at one time are all of the same positions, so they commute.
+//! The kick of a level is its rows of K, which are no symmetric matrix: a force without a potential of its own, though K has one. So its step is decided by
+//! [`Jacobians`]. The levels' kicks at one time are all of the same positions, so they commute. Up to its first unstable step two factorizations decide, too (file `held`).
 //!
 //! **AVI** (Lew, Marsden, Ortiz and West 2003): element by element. The elements of a level share a clock, and the kick is that of their stiffness, which is
 //! symmetric: the system of these clocks.
@@ -17,11 +17,16 @@
 use nalgebra::DMatrix;
 use num_traits::Zero;
 
+use super::held::SparseSubcycles;
 use super::scheme::{Level, Scheme, SchemeSummary, plain_limit};
 use crate::error::{Error, Result};
-use crate::number::Rational;
+use crate::number::rational::to_f64;
+use crate::number::{Rational, U};
 use crate::system::jacobian::Jacobians;
 use crate::system::linear::system::System;
+
+/// Entries of a system in layers, twice as many at most: some seconds.
+const MOST_ENTRIES: usize = 1_000_000;
 
 /// Levels of steps under one of these schemes, beside the clocks that decide it.
 #[derive(Clone, Debug)]
@@ -106,6 +111,21 @@ impl Subcycles {
         &self.plain
     }
 
+    /// Of subcycling, as [`SparseSubcycles::first_unstable`] of this system rounded, the roundings within its proof; `None` also where its layers would be large.
+    pub fn first_unstable(&self) -> Option<(f64, f64)> {
+        let (clock, mass) = (self.plain.clocks().first()?, self.plain.mass());
+        let stiffness = &clock.stiffness;
+        let layers: usize = self.levels.iter().map(|own| own.substeps as usize).product();
+        if self.scheme != Scheme::Newmark || stiffness.places().count() * layers > MOST_ENTRIES {
+            return None;
+        }
+        let masses: Vec<f64> = (0..self.size).map(|i| to_f64(&mass.get(i, i))).collect();
+        let row = |i: usize| stiffness.row(i).iter().map(move |(&j, x)| (i, j, to_f64(x)));
+        let entries: Vec<_> = (0..self.size).flat_map(row).collect();
+        // Of an entry and of two masses, half of each.
+        SparseSubcycles::within(&masses, &entries, self.levels.clone(), 3.0 * U).ok()?.first_unstable()
+    }
+
     /// The scheme as answers state it: its levels, and plain leapfrog's limit beside them.
     pub fn summary(&self) -> SchemeSummary {
         SchemeSummary {
@@ -113,7 +133,7 @@ impl Subcycles {
             size: self.size,
             levels: self.levels.iter().map(|own| (own.fine.len(), own.substeps)).collect(),
             plain_limit: plain_limit(&self.plain),
-            first_unstable: None,
+            first_unstable: self.first_unstable(),
         }
     }
 }

@@ -250,11 +250,14 @@ impl SparseSystem {
             Of::Subcycles(own) => return Ok(self.of_subcycles(own)),
         };
         levels.look(outer.inner_steps());
-        let margin = if levels.is_unstable(outer) { None } else { levels.margin(outer) };
+        let margin = if levels.is_unstable(outer, 0.0) { None } else { levels.margin(outer) };
         let (verdict, growing) = margin.map_or_else(|| levels.beyond(outer), |_| (Holds::Stable, None));
-        // Nothing is proven of all stiffnesses within more than the margin.
-        let holds =
-            if margin.is_some_and(|margin| accuracy <= margin) { Holds::Stable } else { Holds::NotTold };
+        // Of the first region nothing is proven of all stiffnesses within more than the margin.
+        let holds = match margin {
+            Some(margin) if accuracy <= margin => Holds::Stable,
+            None if verdict != Holds::NotTold => levels.verdict_past(outer, accuracy),
+            _ => Holds::NotTold,
+        };
         let first_unstable = levels.first_unstable(outer.inner_steps());
         let period = Laurent::from_rational(self.step.clone());
         let largest = growing.as_ref().and_then(|own| own.fastest);

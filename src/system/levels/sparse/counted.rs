@@ -53,26 +53,30 @@ pub(super) struct Counted<'a> {
 }
 
 impl SparseLevels {
-    /// The pencil at an outer step; `None` where F does not fall into small blocks, or an eigenvalue of V is too near to 0.
+    /// The pencil at an outer step, for all stiffnesses within `epsilon` times their norms; `None` where F does not fall into small blocks, or an eigenvalue
+    /// of V is too near to 0.
     ///
     /// Cost: p products of every block, two of every pair that S joins.
-    pub(super) fn counted(&self, outer: &Outer) -> Option<Counted<'_>> {
+    pub(super) fn counted(&self, outer: &Outer, epsilon: f64) -> Option<Counted<'_>> {
         let blocks = self.blocks()?;
-        let [low, high] = self.ends(0.0)?;
+        let [low, high] = self.ends(epsilon)?;
         // Else θ is no angle, and |U_k| may be any.
         if outer.scaled_up(high) >= 4.0 {
             return None;
         }
-        Counted::new(self, blocks, &Period::new(self, *outer, low))
+        Counted::new(self, blocks, &Period::new(self, *outer, low), epsilon)
     }
 
-    /// The verdict past the first region's line, by one vector or by a count; and so many modes grow for sure.
-    pub(super) fn told_by(&self, outer: &Outer, counted: Option<&Counted>) -> (Holds, usize) {
+    /// The verdict past the first region's line for all stiffnesses within `epsilon` times their norms, by one vector or by a count of these; and so many modes
+    /// grow for sure.
+    pub(super) fn told_by(&self, outer: &Outer, epsilon: f64, counted: Option<&Counted>) -> (Holds, usize) {
         let at_least = counted.map_or(0, |own| own.at_least_above(0.0));
-        if at_least > 0 || self.is_unstable(outer) {
+        if at_least > 0 || self.is_unstable(outer, epsilon) {
             return (Holds::Unstable, at_least.max(1));
         }
+        // Where p θ < π, F + S > 0 is asked for of the matrices given alone; the first region's line has been asked there.
         let is_stable = counted
+            .filter(|own| epsilon == 0.0 || !own.is_first())
             .is_some_and(|own| own.at_most_above(0.0) == Some(0) && own.grows_by_resonance_alone(self));
         (if is_stable { Holds::Stable } else { Holds::NotTold }, 0)
     }
@@ -170,8 +174,9 @@ const ANYWHERE: f64 = 1e-4;
 const NOWHERE: (f64, f64) = (f64::INFINITY, f64::NEG_INFINITY);
 
 impl<'a> Counted<'a> {
-    fn new(levels: &SparseLevels, blocks: &'a Blocks, period: &Period) -> Option<Counted<'a>> {
+    fn new(levels: &SparseLevels, blocks: &'a Blocks, period: &Period, epsilon: f64) -> Option<Counted<'a>> {
         let (outer, leaks) = (&period.outer, levels.leaks());
+        let errors = [0, 1].map(|k| levels.errors[k] + epsilon * levels.sizes[k] + leaks[k]);
         let diagonal = blocks.slow.iter().filter(|([k, l], _)| k == l);
         let both: Vec<_> = blocks.fast.iter().zip(diagonal.map(|(_, own)| own)).collect();
         let all = map(&both, |(fast, slow)| Turned::new(fast, slow, outer))
@@ -183,7 +188,7 @@ impl<'a> Counted<'a> {
         let fast = blocks.fast.iter().fold(0.0, |size: f64, own| size.max(norm::frobenius(own)));
         // U_k is off by Σ U_(k−1−i) f_i (file `period`): h² and F, a product of m terms, three sums; what is subtracted.
         let h2 = outer.inner_square;
-        let known = h2 * (levels.errors[0] + leaks[0]);
+        let known = h2 * errors[0];
         let local = 1.02 * (known + (2.0 * STEP_ERROR + (m + 4.0) * U) * h2 * fast) + 4.1 * U;
         let (mut each, mut sum, mut off) = (0.0, 0.0, vec![0.0]);
         for k in 0..p {
@@ -204,7 +209,7 @@ impl<'a> Counted<'a> {
         // |V X| |S| |V X| entry by entry, sums of two blocks' terms; V X's own error twice; S's.
         let slow = levels.sizes[1];
         let kicked_off = slow * (2.0 * vx * vx_off + vx_off * vx_off)
-            + (vx + vx_off).powi(2) * (levels.errors[1] + leaks[1])
+            + (vx + vx_off).powi(2) * errors[1]
             + 2.0 * product * vx * vx * slow;
         let mut terms = [0; 3].map(|_| vec![0.0; blocks.pattern.entries()]);
         let mut alone = vec![0.0; blocks.alone.entries()];

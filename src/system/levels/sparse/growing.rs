@@ -104,8 +104,8 @@ impl SparseLevels {
     ///
     /// Cost: some hundred to some thousand products with S, p times as many with F, and one to a dozen factorizations.
     pub fn beyond(&self, outer: &Outer) -> (Holds, Option<Growing>) {
-        let counted = self.counted(outer);
-        let (told, at_least) = self.told_by(outer, counted.as_ref());
+        let counted = self.counted(outer, 0.0);
+        let (told, at_least) = self.told_by(outer, 0.0, counted.as_ref());
         if told != Holds::Unstable {
             return (told, None);
         }

@@ -194,18 +194,23 @@ impl SparseLevels {
         self.both.products()
     }
 
-    /// The verdict at an outer step, for all stiffnesses within `epsilon` times their norms: [`Holds::Unstable`] is known of the matrices given
-    /// alone, [`Holds::NotTold`] beyond the first region.
+    /// The verdict at an outer step, for all stiffnesses within `epsilon` times their norms.
     pub fn verdict(&self, outer: &Outer, epsilon: f64) -> Holds {
         if self.is_proven(outer, epsilon) {
             return Holds::Stable;
         }
-        if epsilon == 0.0 { self.told_by(outer, self.counted(outer).as_ref()).0 } else { Holds::NotTold }
+        self.verdict_past(outer, epsilon)
     }
 
-    /// Whether the mode that is unstable first is proven to grow at an outer step.
-    pub fn is_unstable(&self, outer: &Outer) -> bool {
-        self.first(outer.inner_steps).is_some_and(|first| self.resonates_along(first.quotients, outer))
+    /// As [`SparseLevels::verdict`] where the first region's line is known to prove nothing.
+    pub fn verdict_past(&self, outer: &Outer, epsilon: f64) -> Holds {
+        self.told_by(outer, epsilon, self.counted(outer, epsilon).as_ref()).0
+    }
+
+    /// Whether the mode that is unstable first is proven to grow at an outer step, for all stiffnesses within `epsilon` times their norms.
+    pub fn is_unstable(&self, outer: &Outer, epsilon: f64) -> bool {
+        self.first(outer.inner_steps)
+            .is_some_and(|first| self.resonates_along(first.quotients, outer, epsilon))
     }
 
     /// The largest ε, rounded down within six percent, for which the verdict is stable for all stiffnesses within ε times their norms; `None`
@@ -327,7 +332,7 @@ impl SparseLevels {
             lo = found;
         }
         let quotients = self.quotients(&along);
-        let unstable = |step: f64| at(step).is_some_and(|outer| self.resonates_along(quotients, &outer));
+        let unstable = |step: f64| at(step).is_some_and(|outer| self.resonates_along(quotients, &outer, 0.0));
         let first =
             (0..40).map(|k| lo * (1.0 + WIDTH / 16.0 * 1.5f64.powi(k))).take_while(|&step| step < top);
         let hi = first.into_iter().find(|&step| unstable(step))?;
@@ -523,9 +528,11 @@ impl SparseLevels {
     }
 
     /// Whether E(h² xᵀFx) < xᵀMx for sure for a vector with these quotients, all eigenvalues of h² F being where E is concave: a multiplier is
-    /// below −1.
-    fn resonates_along(&self, [fast, slow]: [f64; 2], outer: &Outer) -> bool {
-        let Some([low, high]) = self.ends(0.0) else { return false };
+    /// below −1, for all stiffnesses within `epsilon` times their norms.
+    fn resonates_along(&self, quotients: [f64; 2], outer: &Outer, epsilon: f64) -> bool {
+        let Some([low, high]) = self.ends(epsilon) else { return false };
+        // Of one rounding each.
+        let [fast, slow] = [0, 1].map(|k| quotients[k] - 1.01 * epsilon * self.sizes[k]);
         if chord(outer, low, high).is_none() {
             return false;
         }
