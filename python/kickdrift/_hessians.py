@@ -998,7 +998,7 @@ def monodromy(
             part /= 2
     if found.drift > _DRIFTS:
         remedy = (
-            f"does not close: its softest motions drift by {found.drift:.0e} of the extent in a period, as the bends of "
+            f"does not close: its softest motions drift by {found.drift:.0e} of the extent in a period, as bends of "
             "a chain of bonds alone, or a molecule that is loosely bound; give these a force, or about='minimum'"
         )
         raise KickdriftError("about", "orbit", remedy)
