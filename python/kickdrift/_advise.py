@@ -409,10 +409,14 @@ def molecule(
     if home == "ase":
         from kickdrift import ase
 
+        if "groups" not in made:
+            raise KickdriftError("groups", None, "of ASE give groups={'fast': (calculator, '0.5fs'), ...}")
         return ase.system(given, **made), _no_groups(steps)
     if home == "lammps":
         from kickdrift import lammps
 
+        if "respa" not in made:
+            raise KickdriftError("respa", None, "of LAMMPS give respa='run_style respa ...', the line with its levels")
         return lammps.system(given, **made), _no_groups(steps)
     if home == "openmm":
         from kickdrift import openmm
@@ -447,7 +451,8 @@ def asked(
         "band": band if isinstance(band, str) else text("band", band),
         "length": _time("length", length),
         "friction": friction if friction is None or isinstance(friction, str) else f"{text('friction', friction)}/ps",
-        "constraints": constraints,
+        # OpenMM's own names are objects.
+        "constraints": constraints if constraints is None or isinstance(constraints, str) else str(constraints),
         "hmr": hmr if hmr is None or isinstance(hmr, str) else text("hmr", hmr),
         "no_levers": None if levers else "true",
         "all_modes": "true" if all_modes else None,

@@ -9,6 +9,7 @@ from fractions import Fraction
 
 import numpy as np
 
+from kickdrift._errors import KickdriftError
 from kickdrift._held import Held
 from kickdrift._hessians import (
     SOUGHT,
@@ -16,6 +17,7 @@ from kickdrift._hessians import (
     Force,
     Monodromy,
     Work,
+    cooled,
     hessian,
     minimum,
     monodromy,
@@ -166,4 +168,16 @@ class Groups:
         def whole(at: Doubles) -> Doubles:
             return np.asarray(np.sum([force(at) for force in every], axis=0))
 
-        return minimum(whole, self.where, Held(self.masses), difference, is_boxed=self.has_mesh, progress=seen_by)[0]
+        held = Held(self.masses)
+
+        def newton(near: Doubles, far: float) -> Doubles:
+            return minimum(whole, near, held, difference, is_boxed=self.has_mesh, far=far, progress=seen_by)[0]
+
+        try:
+            return newton(self.where, _CLOSE * difference)
+        except (KickdriftError, np.linalg.LinAlgError):
+            return newton(cooled(whole, self.where, held, difference), np.inf)
+
+
+#: How many differences of positions Newton's method alone may go: 0.5 Å.
+_CLOSE = 500

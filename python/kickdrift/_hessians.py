@@ -343,6 +343,47 @@ def _moved(force: Force, held: Held, own: Doubles, kept: npt.NDArray[np.intp], a
         part /= 2
 
 
+def cooled(force: Force, where: Doubles, held: Held, difference: float) -> Doubles:
+    """Positions nearer to a minimum, by dynamics that lose what leads uphill (FIRE, Bitzek and others 2006).
+
+    It asks for forces alone, where energies that jump at a cutoff stop a minimizer that compares them. Far from a
+    minimum a step of Newton's method costs as much as a thousand of these, and is kept as short. It ends where its
+    steps get short, at a jump of the forces, or after ``_COOLED`` of them.
+    """
+    from kickdrift import _bands
+
+    product = _bands.by_differences(force, where, held.root, difference)
+    longest = 1.0 / float(np.sqrt(max(_bands.top(product, where.size, _ROUGH).found, 1e-300)))
+    # The numbers are those of the paper.
+    step, share, uphill, speed = longest, 0.1, 0, np.zeros(where.size)
+    best = (np.inf, where)
+    for _ in range(_COOLED):
+        pull = force(where).ravel() / held.root
+        pull -= held.gradients(where).T @ held.along(pull, where)
+        size = float(np.linalg.norm(pull))
+        best = min(best, (size, where), key=lambda own: own[0])
+        if step < longest / 1000 or size == 0.0:
+            break
+        if pull @ speed > 0:
+            speed, uphill = (1 - share) * speed + share * np.linalg.norm(speed) / size * pull, uphill + 1
+            if uphill > 5:
+                step, share = min(1.1 * step, longest), 0.99 * share
+        else:
+            step, share, uphill, speed = step / 2, 0.1, 0, np.zeros(where.size)
+        speed = speed + step * pull
+        speed *= min(1.0, _FAR * difference / max(step * float(np.abs(speed / held.root).max()), 1e-300))
+        try:
+            where, speed, _ = held.drift(where, speed, step)
+        except KickdriftError:
+            break
+    return best[1]
+
+
+#: Products of Lanczos' method for the stiffest motion, to a tenth; steps towards a minimum, by forces alone; and how
+#: many differences of positions the longest of them is.
+_ROUGH, _COOLED, _FAR = 12, 5000, 50
+
+
 def arrived(pull: float, stiffness: Doubles, masses: Doubles) -> None:
     """That so small a mass-weighted pull is rounding: less than a displacement of 1e-9 would bring about.
 
@@ -491,6 +532,9 @@ class Monodromy(Frozen):
         Why there are none; empty where there are.
     time_unit : str
         That of the period and of rates, where it is known.
+    drift : float
+        Along an orbit, how far motions that are softer than 1e-7 of the stiffest go in a period, relative to the extent
+        of the atoms: along these it is not closed.
     """
 
     about: str
@@ -504,6 +548,7 @@ class Monodromy(Frozen):
     along: System | None = None
     unproven: str = ""
     time_unit: str = ""
+    drift: float = 0.0
 
     @cached_property
     def _decided(self) -> tuple[SystemVerdict | None, str]:
@@ -542,6 +587,8 @@ class Monodromy(Frozen):
         does = (
             "nothing grows" if self.stable else f"deviations grow at {self.growth_rate:.3g}/{self.time_unit or 'time'}"
         )
+        if self.drift > _CLOSED:
+            does += f", softest motions apart, which drift by {self.drift:.0e} of the extent in a period"
         if self.proven and self.along is not None:
             bounds = self.growth_bounds
             is_enclosed = bounds is not None and bounds[1] - bounds[0] <= _SHARP * bounds[1]
@@ -809,6 +856,10 @@ def _damped(size_at: Callable[[float], float], size: float) -> float | None:
 #: Newton's method has arrived where its next step is this part of the extent of the atoms.
 _ARRIVED = 1e-9
 
+#: What is too soft for Newton's method may go so far in a period, relative to the extent: of clusters in which a water
+#: is loosely bound, verdicts and rates were those of OpenMM's own map up to here; less than the other needs no word.
+_DRIFTS, _CLOSED = 1e-8, 1e-11
+
 #: Where no such part of the way from the minimum to the orbit can be made, the orbit is taken to end.
 _SMALLEST_PART = 1 / 100
 
@@ -945,10 +996,10 @@ def monodromy(
             done, start, found = 1.0, other.positions, other
         else:
             part /= 2
-    if found.drift > _ARRIVED:
+    if found.drift > _DRIFTS:
         remedy = (
-            "does not close: motions without stiffness drift along it, as the bends of a chain of bonds alone; give "
-            "these a force, or about='minimum'"
+            f"does not close: its softest motions drift by {found.drift:.0e} of the extent in a period, as bends of "
+            "a chain of bonds alone, or a molecule that is loosely bound; give these a force, or about='minimum'"
         )
         raise KickdriftError("about", "orbit", remedy)
     half = found.half
@@ -969,9 +1020,9 @@ def monodromy(
             masses = root = np.ones(half.first.shape[1])
         potentials, accuracy = along(struck, dict(zip(forces, steps, strict=True)), root, ahead)
     except KickdriftError as refused:
-        return Monodromy(*measured, None, str(refused), time_unit)
+        return Monodromy(*measured, None, str(refused), time_unit, found.drift)
     made = System.along_orbit(masses, potentials, accuracy=accuracy, time_unit=time_unit, keep_rigid=keep, **sides)
-    return Monodromy(*measured, made, "", time_unit)
+    return Monodromy(*measured, made, "", time_unit, found.drift)
 
 
 def plain(
@@ -982,7 +1033,8 @@ def plain(
 
     Deviations are y = F_k a at the k-th kick, p = F_kᵀ v, for a basis F_k of what is free. RATTLE's drift with the
     factors l is a kick by -F_kᵀ (sum of l_c grad grad g_c) F_k/t and then F_{k+1} a' = F_k a + t v, but for what the
-    gradients at the k-th kick take up. Times F_kᵀ, where F_{k+1} is chosen so that F_kᵀ F_{k+1} = 1, this is
+    gradients at the k-th kick take up. Times F_kᵀ, where F_k is chosen so that F_kᵀ F_{k+1} = 1, the last one
+    orthonormal, this is
     a' = M_k a + t p with M_k = F_kᵀ F_k; and p' = F_{k+1}ᵀ (F_{k+1} a' - F_k a)/t = (M_{k+1} a' - a)/t. That is a kick
     by (1 - M_k)/t, the drift a' = a + t p, and a kick by (1 - M_{k+1})/t. All these are symmetric, and are added to the
     Hessians of the fastest clock. Where Newton's next step would move the atoms by ``ahead``, frames turn by that over
@@ -993,15 +1045,17 @@ def plain(
     KickdriftError
         Where some kick is none of the fastest clock's.
     """
-    fastest, frame, strikes = min(range(len(steps)), key=lambda k: steps[k]), half.first, iter(half.struck)
-    kicks, struck, nearest = schedule(steps), [], min(distance for _, _, distance in held.distances)
-    for place, kick in enumerate(kicks):
-        own = [next(strikes) for _ in kick.groups]
-        if fastest not in [strike.group for strike in own]:
-            raise KickdriftError("steps", "no multiples of the fastest", "choose such, for a proof along held bonds")
-        if place:
-            here = held.frame(own[0].positions)
-            frame = here @ np.linalg.inv(frame.T @ here)
+    fastest, strikes = min(range(len(steps)), key=lambda k: steps[k]), iter(half.struck)
+    # Half a period that ends between two kicks ends at rest where the last one was: no kick is made there.
+    kicks = [kick for kick in schedule(steps) if kick.groups]
+    made = [[next(strikes) for _ in kick.groups] for kick in kicks]
+    if any(fastest not in [strike.group for strike in own] for own in made):
+        raise KickdriftError("steps", "no multiples of the fastest", "choose such, for a proof along held bonds")
+    frames = [held.frame(own[0].positions) for own in made]
+    for k in reversed(range(len(frames) - 1)):
+        frames[k] = frames[k] @ np.linalg.inv(frames[k + 1].T @ frames[k])
+    struck, nearest = [], min(distance for _, _, distance in held.distances)
+    for place, (frame, own) in enumerate(zip(frames, made, strict=True)):
         apart = np.eye(frame.shape[1]) - frame.T @ frame
         times = [half.drifts[k][0] for k in (place - 1, place) if 0 <= k < len(half.drifts)]
         shape = np.asarray(sum(apart / time for time in times))
@@ -1012,14 +1066,14 @@ def plain(
             # Where it turns, the velocity does not vanish along the gradients, which deviations turn.
             shape = shape + frame.T @ held.bent(half.taken) @ frame
         for strike in own:
-            made = replace(strike, stiffness=frame.T @ strike.stiffness @ frame, error=strike.error * norm(frame) ** 2)
+            added: Doubles | float = 0.0
+            stiffness, error = frame.T @ strike.stiffness @ frame, strike.error * norm(frame) ** 2
             if strike.group == fastest:
                 pulls = sum(other.duration * other.size for other in own)
                 off = _SHAPED * sum(1 / time for time in times) + (norm(shape) + pulls) * ahead / nearest
-                added, error = (shape + shape.T) / 2 / strike.duration, made.error + off / strike.duration
-                made = replace(made, shape=added, error=error)
-            struck.append(made)
-    return struck, (half.first, frame)
+                added, error = (shape + shape.T) / 2 / strike.duration, error + off / strike.duration
+            struck.append(replace(strike, stiffness=stiffness, error=error, shape=added))
+    return struck, (frames[0], frames[-1])
 
 
 #: Frames and factors are rounded by this part of 1: some digits are lost where positions are large over what is held.

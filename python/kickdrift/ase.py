@@ -132,7 +132,10 @@ def _groups(atoms: Any, groups: Mapping[str, tuple[Any, Exact]]) -> Groups:
         raise KickdriftError("atoms", f"{len(atoms.constraints)} constraints", "constraints are not handled here")
     forces: dict[str, Force] = {}
     steps: list[Fraction] = []
-    for name, (calculator, step) in groups.items():
+    for name, own in groups.items():
+        if not (isinstance(own, tuple | list) and len(own) == 2):
+            raise KickdriftError(f"groups[{name}]", type(own).__name__, "give (calculator, step), as (EMT(), '0.5fs')")
+        calculator, step = own
         forces[name] = _force(atoms, calculator)
         steps.append(duration(f"groups[{name}]", step, "fs"))
     return Groups(

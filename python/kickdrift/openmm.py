@@ -33,6 +33,7 @@ from kickdrift._hessians import (
     Force,
     Monodromy,
     Work,
+    cooled,
     free,
     hessian,
     minimum,
@@ -113,6 +114,11 @@ class _Engine:
     def force(self, groups: int) -> _Forces:
         """The forces of some groups, bits of a mask."""
         return _Forces(self, groups)
+
+    def energy(self, where: Doubles) -> float:
+        """Of all forces, kJ/mol."""
+        self.context.setPositions(where)
+        return float(self.context.getState(getEnergy=True).getPotentialEnergy()._value)
 
     @cached_property
     def cuts(self) -> dict[int, list[Any]]:
@@ -371,9 +377,7 @@ def _sparse(
     from kickdrift import _forcefield
 
     if minimize:
-        engine.context.setPositions(where)
-        mm.LocalEnergyMinimizer.minimize(engine.context, tolerance=_REST)
-        where = np.array(engine.context.getState(getPositions=True).getPositions(asNumpy=True)._value)
+        where = _led_downhill(engine.context, where, tolerance=_REST)
     potentials: dict[str, tuple[Exact, Any]] = {}
     accuracy, size, pulls = 1e-12, 0.0, {}
     for step, groups in _levels(clocks).items():
@@ -744,9 +748,7 @@ def _near_minimum(
         except KickdriftError:
             # As where pairs cross a cutoff: no stiffness hangs on the last digits of a place.
             pass
-    engine.context.setPositions(where)
-    mm.LocalEnergyMinimizer.minimize(engine.context, maxIterations=_MINIMIZED)
-    where = np.array(engine.context.getState(getPositions=True).getPositions(asNumpy=True)._value)
+    where = _led_downhill(engine.context, where, maxIterations=_MINIMIZED)
     return where, f"at the positions after {_MINIMIZED} steps of OpenMM's minimizer at most, near a minimum, not at one"
 
 
@@ -891,8 +893,12 @@ def _levels(clocks: Mapping[int, Fraction]) -> dict[Fraction, list[int]]:
 def _clocks(system: Any, integrator: Any, steps: Mapping[int, Any] | None) -> dict[int, Fraction]:
     """The step of each force group, ps; all groups of the system are there."""
     if (steps is None) == (integrator is None):
-        raise KickdriftError("steps", "both" if steps is not None else None, "give either steps or an integrator")
+        remedy = "of OpenMM give either steps={group: step} or an integrator"
+        raise KickdriftError("steps", "both" if steps is not None else None, remedy)
     acting = _acting(system)
+    for group in steps or ():
+        if not isinstance(group, int | np.integer):
+            raise KickdriftError("steps", str(group), "is no number of a force group: write steps={0: ..., 1: ...}")
     if steps is None:
         clocks = _of_integrator(integrator, set(acting))
     else:
@@ -975,7 +981,10 @@ def _engine(system: Any, platform: str = "Reference") -> _Engine:
     integrator = mm.VerletIntegrator(0.001)
     if platform not in _platforms():
         raise KickdriftError("platform", platform, f"is not here: give one of {', '.join(_platforms())}")
-    context = mm.Context(system, integrator, mm.Platform.getPlatformByName(platform))
+    try:
+        context = mm.Context(system, integrator, mm.Platform.getPlatformByName(platform))
+    except mm.OpenMMException as error:
+        raise KickdriftError("system", "refused by OpenMM", str(error)) from error
     return _Engine(context, masses, count)
 
 
@@ -1048,14 +1057,18 @@ def _at_rest(
     try:
         found, smooth = newton(where, _CLOSE)
     except (KickdriftError, mm.OpenMMException, np.linalg.LinAlgError):
+        near = _relaxed(engine, where, chosen)
+        # A step of the minimizer may leave what bonds allow, as those of FENE, and has no way back.
+        is_lost = not engine.energy(near) <= engine.energy(where)
         try:
-            near = _relaxed(engine, where, chosen)
-            if engine.cuts and chosen is None:
-                near = _cooled(force, near, held)
+            near = where if is_lost else near
+            if (engine.cuts or is_lost) and chosen is None:
+                near = cooled(force, near, held, difference)
             found, smooth = newton(near, np.inf)
         except KickdriftError as error:
             if not engine.cuts:
-                raise
+                remedy = "lead to no minimum: minimize them first, if they are in nm"
+                raise KickdriftError("positions", error.value, remedy) from error
             remedy = (
                 f"is the least that was found, no minimum: forces jump at a cutoff; take {engine.smoother}; "
                 "or minimize=False"
@@ -1078,49 +1091,19 @@ def _relaxed(engine: _Engine, where: Doubles, chosen: Sequence[int] | None) -> D
             if set(own.getConstraintParameters(n)[:2]) & set(still):
                 own.removeConstraint(n)
         context = mm.Context(own, mm.VerletIntegrator(0.001), context.getPlatform())
+    return _led_downhill(context, where, tolerance=1e-4)
+
+
+def _led_downhill(context: Any, where: Doubles, **how: float) -> Doubles:
+    """Where OpenMM's minimizer ends; of an energy that is no number it would not."""
     context.setPositions(where)
-    mm.LocalEnergyMinimizer.minimize(context, tolerance=1e-4)
+    energy = context.getState(getEnergy=True).getPotentialEnergy()._value
+    if not np.isfinite(energy):
+        remedy = "is their energy: do two particles share a place, or does a bond exceed its longest length?"
+        raise KickdriftError("positions", f"{energy} kJ/mol", remedy)
+    mm.LocalEnergyMinimizer.minimize(context, **how)
     return np.array(context.getState(getPositions=True).getPositions(asNumpy=True)._value)
 
-
-def _cooled(force: Force, where: Doubles, held: Held) -> Doubles:
-    """Positions nearer to a minimum, by dynamics that lose what leads uphill (FIRE, Bitzek and others 2006).
-
-    It asks for forces alone, where energies that jump at a cutoff stop a minimizer that compares them. Far from a
-    minimum a step of Newton's method costs as much as a thousand of these, and is kept as short. It ends where its
-    steps get short, at a jump of the forces, or after ``_COOLED`` of them.
-    """
-    from kickdrift import _bands
-
-    product = _bands.by_differences(force, where, held.root, DIFFERENCE)
-    longest = 1.0 / float(np.sqrt(max(_bands.top(product, where.size, _ROUGH).found, 1e-300)))
-    # The numbers are those of the paper.
-    step, share, uphill, speed = longest, 0.1, 0, np.zeros(where.size)
-    best = (np.inf, where)
-    for _ in range(_COOLED):
-        pull = force(where).ravel() / held.root
-        pull -= held.gradients(where).T @ held.along(pull, where)
-        size = float(np.linalg.norm(pull))
-        best = min(best, (size, where), key=lambda own: own[0])
-        if step < longest / 1000 or size == 0.0:
-            break
-        if pull @ speed > 0:
-            speed, uphill = (1 - share) * speed + share * np.linalg.norm(speed) / size * pull, uphill + 1
-            if uphill > 5:
-                step, share = min(1.1 * step, longest), 0.99 * share
-        else:
-            step, share, uphill, speed = step / 2, 0.1, 0, np.zeros(where.size)
-        speed = speed + step * pull
-        speed *= min(1.0, _REACH / 8 / max(step * float(np.abs(speed / held.root).max()), 1e-300))
-        try:
-            where, speed, _ = held.drift(where, speed, step)
-        except KickdriftError:
-            break
-    return best[1]
-
-
-#: Products of Lanczos' method for the stiffest motion, to a tenth; and steps towards a minimum, by forces alone.
-_ROUGH, _COOLED = 12, 5000
 
 #: How far, nm, Newton's method alone may go: half a bond; and within which pairs are kept on their side of a cutoff.
 _CLOSE, _REACH = 0.05, 0.04

@@ -8,6 +8,7 @@ import pytest
 from ase import units
 from ase.calculators.calculator import Calculator, all_changes
 from ase.calculators.emt import EMT
+from ase.cluster import Octahedron
 from ase.constraints import FixAtoms
 
 import kickdrift as kd
@@ -91,7 +92,13 @@ def test_a_direct_force_grows_as_its_own_eigenvalues_say() -> None:
 
 
 @pytest.mark.parametrize(
-    ("groups", "field"), [({}, "groups"), ({"all": (EMT(), 0)}, "groups[all]"), ({"all": (EMT(), "x")}, "groups[all]")]
+    ("groups", "field"),
+    [
+        ({}, "groups"),
+        ({"all": (EMT(), 0)}, "groups[all]"),
+        ({"all": (EMT(), "x")}, "groups[all]"),
+        ({"all": EMT()}, "groups[all]"),
+    ],
 )
 def test_bad_groups_are_refused(groups: dict, field: str) -> None:
     with pytest.raises(kd.KickdriftError) as caught:
@@ -99,11 +106,26 @@ def test_bad_groups_are_refused(groups: dict, field: str) -> None:
     assert caught.value.field == field
 
 
+def test_advice_asks_for_the_groups() -> None:
+    with pytest.raises(kd.KickdriftError, match="of ASE give groups="):
+        kd.advise(ase.Atoms("Cu2", [[0, 0, 0], [2.2, 0, 0]]))
+
+
+def test_what_newton_alone_does_not_reach_comes_to_rest() -> None:
+    """An octahedron of copper turns into an icosahedron. Before: "not near a minimum"."""
+    copper = Octahedron("Cu", 3, 1)
+    copper.positions += 0.01 * np.random.default_rng(1).normal(size=copper.positions.shape)
+    found = ka.system(copper, {"all": (EMT(), 5)})
+    assert found.decide().stable
+    copper.positions, copper.calc = found.arrays["positions"], EMT()
+    assert np.abs(copper.get_forces()).max() < 1e-4
+
+
 def test_constraints_and_far_positions_are_refused() -> None:
     atoms = ase.Atoms("Cu2", [[0, 0, 0], [2.2, 0, 0]], constraint=FixAtoms([0]))
     with pytest.raises(kd.KickdriftError, match="constraints"):
         ka.system(atoms, {"all": (EMT(), 5)})
-    far = ase.Atoms("Cu2", [[0, 0, 0], [5.5, 0, 0]])
+    far = ase.Atoms("Cu2", [[0, 0, 0], [15, 0, 0]])
     with pytest.raises(kd.KickdriftError, match="minimum"):
         ka.system(far, {"all": (EMT(), 5)})
     assert np.allclose(ka.system(far, {"all": (EMT(), 5)}, minimize=False).arrays["positions"], far.positions)

@@ -207,6 +207,33 @@ def test_motions_without_stiffness_that_drift_are_no_orbit() -> None:
     assert caught.value.field == "about" and "minimum" in caught.value.remedy
 
 
+#: Five flexible waters of SPC/E near a minimum in vacuum, 1e-4 nm: one of them hangs on by a motion of 5e-8 of the
+#: stiffness of bonds.
+LOOSE = """
+-1429 1488 -1103 -2118 1976 -1641 -1255 2036 -250 -1005 2946 1096 -994 3868 1487 -486 2331 1738 168 -650 -943 -424 190
+-1007 -203 -1330 -1576 399 1398 2759 944 782 2142 437 1011 3682 1753 -265 1171 2666 -577 906 1123 -433 374
+"""
+
+
+def test_a_loosely_bound_molecule_drifts_a_little_and_is_left_apart() -> None:
+    """Before: no orbit from 4.25 fs on, as of "motions without stiffness"."""
+    topology = app.Topology()
+    chain = topology.addChain()
+    for _ in range(5):
+        residue = topology.addResidue("HOH", chain)
+        atoms = [topology.addAtom(name, app.Element.getBySymbol(name[0]), residue) for name in ("O", "H1", "H2")]
+        topology.addBond(atoms[0], atoms[1]), topology.addBond(atoms[0], atoms[2])
+    field = app.ForceField("amber14/spce.xml")
+    system = groups(field.createSystem(topology, nonbondedMethod=app.NoCutoff, rigidWater=False, removeCMMotion=False))
+    step = Fraction("4.55") / 1000
+    where = np.array(LOOSE.split(), dtype=float).reshape(-1, 3) / 1e4
+    found = ko.oscillations(system, where, steps={0: step / 10, 1: step})
+    assert 1e-9 < found.drift < 1e-8 and found.proven
+    assert "softest motions apart, which drift by" in found.words
+    own = own_multipliers(system, found, [(1, 1), (0, 10)])
+    assert found.growth_rate == pytest.approx(np.log(np.abs(own).max()) / float(step), rel=1e-5)
+
+
 def test_about_the_minimum_is_nearly_the_same_and_says_so() -> None:
     system, positions = waters()
     steps, inner = levels(Fraction("4.60") / 1000)
@@ -320,6 +347,22 @@ def test_bad_input_is_refused_by_name(change: dict[str, Any], field: str) -> Non
     with pytest.raises(kd.KickdriftError) as caught:
         ko.system(system, **given)
     assert caught.value.field == field
+
+
+def test_what_openmm_refuses_or_would_never_end_is_refused() -> None:
+    """Before: its own exceptions; and its minimizer did not come back from an energy that is no number."""
+    system, positions = waters()
+    steps = {0: "0.5fs", 1: "2fs"}
+    with pytest.raises(kd.KickdriftError, match="two particles share a place"):
+        ko.system(system, 0 * positions, steps=steps)
+    with pytest.raises(kd.KickdriftError, match="is no number of a force group"):
+        ko.system(system, positions, steps={"bonded": "0.5fs", **steps})
+    baths = mm.XmlSerializer.clone(system)
+    baths.addForce(mm.MonteCarloBarostat(1, 300))
+    with pytest.raises(kd.KickdriftError, match="refused by OpenMM: A barostat cannot be used"):
+        ko.system(baths, positions, steps=steps)
+    with pytest.raises(kd.KickdriftError, match="HBonds: write h-bonds"):
+        kd.advise(system, positions=positions, steps=steps, constraints=app.HBonds)
 
 
 def test_massless_particles_and_unknown_states_are_refused() -> None:
@@ -699,6 +742,31 @@ def test_a_minimum_that_is_given_is_kept_whatever_the_minimizer_would_do(monkeyp
     assert found.document["labels"] == [f"H {n}" for n in range(6)]
 
 
+def test_bonds_that_a_minimizer_would_tear_come_to_rest() -> None:
+    """A chain of FENE bonds away from its minimum: OpenMM's minimizer steps over the longest length, and left bonds of
+    9,000 nm; "force 3.9e-11: are not near a minimum" was what became of it."""
+    system, bonds, angles = mm.System(), mm.CustomBondForce(FENE), mm.HarmonicAngleForce()
+    for _ in range(9):
+        system.addParticle(14.0)
+    for n in range(8):
+        bonds.addBond(n, n + 1)
+    for n in range(7):
+        angles.addAngle(n, n + 1, n + 2, 2.0, 300.0)
+    angles.setForceGroup(1)
+    system.addForce(bonds), system.addForce(angles)
+    start = np.array([[0.12 * n, 0.07 * (n % 2), 0.02 * (n % 3)] for n in range(9)])
+    engine = ko._engine(system)
+    torn = ko._relaxed(engine, start, None)
+    at, notes = ko._at_rest(engine, start, [], ko.DIFFERENCE)
+    lengths = np.linalg.norm(np.diff(at, axis=0), axis=1)
+    assert lengths.max() < 0.225 and not notes and np.abs(engine.force(-1)(at)).max() < 1e-6
+    assert np.linalg.norm(np.diff(torn, axis=0), axis=1).max() > 0.225
+
+
+#: Kremer and Grest's, of some fluid: it ends at 0.225 nm.
+FENE = "-15000*0.225^2*log(1-(r/0.225)^2)+8*((0.15/r)^12-(0.15/r)^6)+2"
+
+
 def test_atoms_are_called_as_their_topology_calls_them() -> None:
     system, where = waters()
     topology = app.Topology()
@@ -956,6 +1024,19 @@ def test_held_bonds_swing_and_grow_as_the_engine_does(make: Any, outer: str, gro
     assert found.proven and found.along is not None and found.along.accuracy < 1e-7
     lo, hi = found.growth_bounds
     assert lo <= found.growth_rate <= hi and (hi > 0) == (grows > 0)
+
+
+def test_held_bonds_are_proven_where_half_a_period_ends_between_kicks() -> None:
+    """An odd number of inner steps. Before: an estimate, since "steps are no multiples of the fastest"."""
+    system, positions = tied_waters()
+    for outer, inner in [("12", 23), ("12", 1), ("6", 3)]:
+        step = Fraction(outer) / 1000
+        found = ko.oscillations(system, positions, steps={0: step / inner, 1: step})
+        assert found.proven and found.growth_bounds is not None, found.words
+        lo, hi = found.growth_bounds
+        own = np.log(np.abs(own_multipliers(system, found, [(1, 1), (0, inner)])).max()) / float(step)
+        # Rigid motions are defective eigenvalues at 1, of which differences leave some 10^-2/ps.
+        assert lo - 1e-2 < own < hi + 1e-2 and hi - lo < 1e-3 and (hi > 0) == (outer == "12")
 
 
 def test_drifts_too_long_for_held_distances_are_refused() -> None:

@@ -1,9 +1,11 @@
 //! Documents of intervals: the stretches as they are written, held against systems at numbers inside them.
 //!
-//! Kicks and drifts with steps in their ratios are followed over half a period in doubles, kick by kick, without the cells that made the document.
-//! The eigenvalues of S = Bᵀ C say whether anything grows at a step. Where nothing does, each mode v has a sign of Krein's, that of vᵀ Aᵀ C v, and
-//! multipliers leave the circle only where they meet one of the other sign, or ±1. So where the order of the signs differs at two steps of a stretch
-//! that is said to be stable, what was passed between them is looked for by halving.
+//! Kicks and drifts of measured levels are followed over half a period in doubles, kick by kick, without the cells that made the document, at an outer
+//! step or at another value of what is varied. The eigenvalues of S = Bᵀ C say whether anything grows there. Where nothing does, each mode v has a sign of Krein's, that of vᵀ Aᵀ C v, and
+//! multipliers leave the circle only where they meet one of the other sign, or ±1. So where the order of the signs differs at two places of a stretch
+//! that is said to be stable, what was passed between them is looked for by halving. Other methods have the growth of their dense step alone.
+
+use std::borrow::Cow;
 
 use faer::Mat;
 use num_traits::One;
@@ -11,7 +13,7 @@ use num_traits::One;
 use super::{ALONE, LEFT, RUN, local, outcome, run, seen};
 use crate::error::{Error, Kind as Reason, Result};
 use crate::number::Rational;
-use crate::number::rational::from_f64_exact;
+use crate::number::rational::{from_f64_exact, to_f64};
 use crate::parallel::try_map;
 use crate::question::{Found, System, SystemAnswer};
 use crate::recheck::again::{Left, Recheck, asked};
@@ -22,6 +24,9 @@ use crate::system::levels::Method;
 use crate::system::stretches::Stretch;
 use crate::system::vary::Intervals;
 use crate::system::{Holds, Jacobians, Limits, Model, SparseSystem, half_period};
+
+/// The longest step, all in their ratios.
+const OUTER: &str = "outer";
 
 /// Stretches that are looked at, unless all are asked for; all of measured levels where it costs no more than is allowed.
 const MOST: u64 = 24;
@@ -106,15 +111,17 @@ impl Claim {
         context: &Context,
     ) -> Result<Outcome> {
         let model = scene.model();
-        if found.number != "outer" || found.is_discrete {
+        let is_measured = matches!(model, Model::Measured(_));
+        if found.number != OUTER && !is_measured || found.is_discrete {
             return outcome(context, ALONE, Ok(()));
         }
         let all = (1..).zip(stretches).filter(|(_, own)| own.verdict != Holds::NotTold);
         let decided = Decided { of: stretches.len() as u64, drawn: all.collect(), context };
         let seed = scene.source().to_string();
         match model {
-            Model::Measured(_) if model.method() == Method::Respa => {
-                decided.by_half_periods(&Steps::of(model, self.input.width().unwrap_or_default())?, &seed)
+            Model::Measured(_) => {
+                let width = self.input.width().unwrap_or_default();
+                decided.by_half_periods(&Places::of(scene, &found.number, width)?, &seed)
             }
             Model::Sparse(own) => decided.sampled(&seed).by_running(own),
             Model::NoGradient(own) | Model::Subcycled(own, _) => decided.sampled(&seed).exactly(model, own),
@@ -151,17 +158,19 @@ impl Decided<'_> {
     }
 
     /// All, or a sample where that costs too much.
-    fn by_half_periods(self, steps: &Steps, seed: &str) -> Result<Outcome> {
+    fn by_half_periods(self, places: &Places, seed: &str) -> Result<Outcome> {
         let (context, limits) = (self.context, self.context.work().products());
-        let allow = |own: &Self| steps.allow(own.drawn.len(), &limits);
+        let allow = |own: &Self| places.allow(own.drawn.len(), &limits);
         let own = if allow(&self).is_ok() { self } else { self.sampled(seed) };
-        let mut found = outcome(context, HALF, Ok(()))?;
+        let (route, between) =
+            if places.has_signs() { (HALF, BETWEEN) } else { (STEP, "that nothing grows between these") };
+        let mut found = outcome(context, route, Ok(()))?;
         if let Err(error) = allow(&own) {
             found.not_rechecked.push(too_costly("the stretches", &error));
             return Ok(Outcome { route: ALONE, sample: Some((0, own.of)), ..found });
         }
-        found.not_rechecked.push(BETWEEN.into());
-        own.look(found, |stretch| steps.stretch(stretch))
+        found.not_rechecked.push(between.into());
+        own.look(found, |stretch| places.stretch(stretch))
     }
 
     fn by_running(self, model: &SparseSystem) -> Result<Outcome> {
@@ -190,22 +199,26 @@ impl Decided<'_> {
     }
 }
 
-/// The route of measured levels.
-const HALF: &str = "the half period in doubles, kick by kick, at five steps of each stretch; the order of Krein's signs between them";
+/// The routes of measured levels: of kicks and drifts, and of other methods.
+const HALF: &str = "the half period in doubles, kick by kick, at five places of each stretch; the order of Krein's signs between them";
+const STEP: &str = "the growth of the dense step in doubles, at five places of each stretch";
 
-/// And its limit.
+/// What the first leaves.
 const BETWEEN: &str =
-    "that nothing grows between these steps where the order of the signs is the same at both";
+    "that nothing grows between these places where the order of the signs is the same at both";
 
-/// A measured system at all outer steps, the others in their ratios.
-struct Steps {
-    system: crate::system::System,
+/// A measured system at all values of what is varied.
+struct Places<'a> {
+    scene: &'a SystemScene,
+    path: &'a str,
+    /// The system as it is, of kicks and drifts, and its longest step.
+    system: Option<crate::system::System>,
     outer: Rational,
     /// No interval as wide, relative to its end, hides where the order of signs differs.
     width: f64,
 }
 
-/// What doubles see at a step.
+/// What doubles see at a place.
 #[derive(Debug, PartialEq)]
 enum Motion {
     /// ln |λ| of a period, above [`STILL`].
@@ -215,24 +228,48 @@ enum Motion {
     Unclear,
 }
 
-impl Steps {
-    fn of(model: &Model, width: f64) -> Result<Steps> {
-        let outer = model.steps().into_iter().max().unwrap_or_default();
-        Ok(Steps { system: model.moving()?.into_owned(), outer, width })
+impl<'a> Places<'a> {
+    fn of(scene: &'a SystemScene, path: &'a str, width: f64) -> Result<Places<'a>> {
+        let outer = scene.model().steps().into_iter().max().unwrap_or_default();
+        let is_respa = scene.model().method() == Method::Respa;
+        let system = is_respa.then(|| scene.model().moving()).transpose()?.map(Cow::into_owned);
+        Ok(Places { scene, path, system, outer, width })
+    }
+
+    fn has_signs(&self) -> bool {
+        self.system.is_some()
     }
 
     /// Five half periods of each stretch, about as many halvings: kicks on 2n columns, eigenvalues and vectors.
     fn allow(&self, stretches: usize, limits: &Limits) -> Result<()> {
-        let (n, kicks) = (self.system.size() as u64, self.system.schedule().strikes() / 2 + 1);
+        let (n, kicks) = match &self.system {
+            Some(own) => (own.size() as u64, own.schedule().strikes() / 2 + 1),
+            None => (self.scene.model().size() as u64, 1),
+        };
         let each = n.saturating_pow(3).saturating_mul(30 + 2 * kicks);
         let cost = each.saturating_mul(10 * stretches as u64);
-        limits.allow(cost, || format!("half periods of {n} degrees of freedom at {} steps", 10 * stretches))
+        limits.allow(cost, || format!("half periods of {n} degrees of freedom at {} places", 10 * stretches))
     }
 
-    fn motion(&self, step: f64) -> Result<Motion> {
-        let Some(step) = from_f64_exact(step) else { return Ok(Motion::Unclear) };
-        let h = half_period::<f64>(&self.system.with(&Rational::one(), &(step / &self.outer))?);
-        let n = self.system.size();
+    fn motion(&self, place: f64) -> Result<Motion> {
+        let Some(place) = from_f64_exact(place) else { return Ok(Motion::Unclear) };
+        let at = || self.scene.with("intervals", &[(self.path, &place)]);
+        let Some(system) = &self.system else {
+            let scene = at()?;
+            let outer = scene.model().steps().into_iter().max().unwrap_or_default();
+            let rate = scene.model().growth_of_period(&Limits::default())?;
+            let growth = rate.map_or(f64::NAN, |rate| rate * to_f64(&outer));
+            return Ok(match growth {
+                own if own.is_nan() => Motion::Unclear,
+                own if own > STILL => Motion::Grows(own),
+                _ => Motion::Turns(Vec::new()),
+            });
+        };
+        let h = half_period::<f64>(&match self.path {
+            OUTER => system.with(&Rational::one(), &(place / &self.outer))?,
+            _ => at()?.model().moving()?.into_owned(),
+        });
+        let n = system.size();
         let block = |i: usize, j: usize| Mat::from_fn(n, n, |k, l| h[(i * n + k, j * n + l)]);
         let (a, c) = (block(0, 0), block(1, 0));
         let s = block(0, 1).transpose() * &c;
@@ -265,14 +302,14 @@ impl Steps {
     fn stretch(&self, said: &Stretch) -> Checked {
         let at = |part: f64| said.lo + (said.hi - said.lo) * part;
         let mut before = None;
-        for step in INSIDE.map(at) {
-            match (self.motion(step)?, said.verdict) {
-                (Motion::Grows(growth), Holds::Stable) => return Err(grows(step, growth)),
+        for place in INSIDE.map(at) {
+            match (self.motion(place)?, said.verdict) {
+                (Motion::Grows(growth), Holds::Stable) => return Err(grows(place, growth)),
                 (Motion::Turns(_), Holds::Unstable) => {
-                    return Err(Fault::Wrong(format!("at a step of {step} nothing grows: not unstable")));
+                    return Err(Fault::Wrong(format!("at {place} nothing grows: not unstable")));
                 }
                 (Motion::Turns(signs), Holds::Stable) => {
-                    let own = (step, signs);
+                    let own = (place, signs);
                     before.iter().try_for_each(|before| self.between(before, &own))?;
                     before = Some(own);
                 }
@@ -282,7 +319,7 @@ impl Steps {
         Ok(())
     }
 
-    /// That nothing grows where the order of signs changes between two steps of a stable stretch.
+    /// That nothing grows where the order of signs changes between two places of a stable stretch.
     fn between(&self, low: &(f64, Vec<bool>), high: &(f64, Vec<bool>)) -> Checked {
         if low.1 == high.1 || high.0 - low.0 <= self.width / 4.0 * high.0 {
             return Ok(());
@@ -299,28 +336,48 @@ impl Steps {
     }
 }
 
-fn grows(step: f64, growth: f64) -> Fault {
-    Fault::Wrong(format!("at a step of {step} a mode grows by exp({growth:.2e}) in a period: not stable"))
+fn grows(place: f64, growth: f64) -> Fault {
+    Fault::Wrong(format!("at {place} a mode grows by exp({growth:.2e}) in a period: not stable"))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn found(file: &str, range: &str, width: f64) -> (Steps, Vec<Stretch>) {
+    fn scene(file: &str, method: Option<&str>) -> SystemScene {
         let folder = std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/data/scenes"));
         let text = std::fs::read_to_string(folder.join(file)).unwrap();
-        let scene = SystemScene::from_json_in(folder, serde_json::from_str(&text).unwrap()).unwrap();
-        let all = scene.intervals(&format!("outer={range}").parse().unwrap(), width, &Limits::default());
-        (Steps::of(scene.model(), width).unwrap(), all.unwrap().stretches)
+        let mut source: serde_json::Value = serde_json::from_str(&text).unwrap();
+        source["potentials"][0]["scale"] = "1".into();
+        if let Some(method) = method {
+            source["method"] = method.into();
+        }
+        SystemScene::from_json_in(folder, source).unwrap()
+    }
+
+    fn found<'a>(
+        scene: &'a SystemScene,
+        path: &'a str,
+        range: &str,
+        width: f64,
+    ) -> (Places<'a>, Vec<Stretch>) {
+        let all = scene.intervals(&format!("{path}={range}").parse().unwrap(), width, &Limits::default());
+        (Places::of(scene, path, width).unwrap(), all.unwrap().stretches)
     }
 
     /// Stretches that hold; an unstable one moved by half of itself into a stable one, and one that is called stable with all up to the next stable ones.
     #[test]
     fn an_interval_that_was_moved_or_dropped_is_found_without_the_cells() {
-        for (file, range) in [("water4.json", "1/250..29/5000"), ("water4-levels.json", "1/250..29/5000")] {
-            let (steps, all) = found(file, range, 1e-3);
-            assert!(all.iter().all(|own| steps.stretch(own).is_ok()), "{file}");
+        for (file, method, path, range) in [
+            ("water4.json", None, OUTER, "1/250..29/5000"),
+            ("water4-levels.json", None, OUTER, "1/250..29/5000"),
+            ("water4.json", Some("molly-short"), OUTER, "1/250..29/5000"),
+            ("water4.json", None, "potentials.0.scale", "4/5..13/10"),
+            ("water4.json", Some("impulse"), "potentials.0.scale", "4/5..13/10"),
+        ] {
+            let scene = scene(file, method);
+            let (places, all) = found(&scene, path, range, 1e-3);
+            assert!(all.iter().all(|own| places.stretch(own).is_ok()), "{file}, {method:?}, {path}");
             let is_stable = |own: &Stretch| own.verdict == Holds::Stable;
             let (mut moved, mut dropped) = (0, 0);
             for (k, own) in all.iter().enumerate().filter(|(_, own)| own.verdict == Holds::Unstable) {
@@ -329,24 +386,28 @@ mod tests {
                 let lies_in = after.is_some_and(|next| next.lo < own.hi + by / 4.0 && own.hi + by < next.hi);
                 if lies_in {
                     let right = Stretch { lo: own.lo + by, hi: own.hi + by, ..*own };
-                    assert!(matches!(steps.stretch(&right), Err(Fault::Wrong(_))), "{file}: {right:?}");
+                    assert!(matches!(places.stretch(&right), Err(Fault::Wrong(_))), "{file}: {right:?}");
                     moved += 1;
                 }
                 let before = all[..k].iter().rfind(|last| is_stable(last));
-                if let (Some(before), Some(after)) = (before, after) {
+                if let (true, Some(before), Some(after)) = (places.has_signs(), before, after) {
                     let whole = Stretch { lo: before.lo, hi: after.hi, verdict: Holds::Stable };
-                    assert!(matches!(steps.stretch(&whole), Err(Fault::Wrong(_))), "{file}: {whole:?}");
+                    assert!(matches!(places.stretch(&whole), Err(Fault::Wrong(_))), "{file}: {whole:?}");
                     dropped += 1;
                 }
             }
-            assert!(moved > 0 && dropped > 1, "{file}: {moved} moved, {dropped} dropped");
+            assert!(
+                moved > 0 && (dropped > 1 || path != OUTER || !places.has_signs()),
+                "{file}, {method:?}, {path}: {moved} moved, {dropped} dropped of {all:?}"
+            );
         }
     }
 
     /// About a narrow interval of a molecule: at the five steps that are looked at nothing grows, and the order of signs finds it.
     #[test]
     fn a_narrow_interval_is_found_by_the_order_of_signs() {
-        let (steps, all) = found("alanine-dipeptide.json", "99/20000..203/40000", 1e-4);
+        let scene = scene("alanine-dipeptide.json", None);
+        let (steps, all) = found(&scene, OUTER, "99/20000..203/40000", 1e-4);
         let narrow = all.iter().position(|own| own.verdict == Holds::Unstable).unwrap();
         let (lo, hi) = (all[0].lo, all[narrow].hi + 1e-5);
         let whole = Stretch { lo, hi, verdict: Holds::Stable };

@@ -117,7 +117,7 @@ fn rounded(x: f64, digits: usize) -> String {
 /// The bound of the outer step.
 fn limit(name: &str, period: f64, own: &Finding) -> String {
     let first = own.first.map_or_else(String::new, |(lo, hi)| {
-        format!("; outer steps are unstable from {} fs on (proven)", nearest((lo, hi), 4))
+        format!("; the first unstable outer step is {} fs (proven)", nearest((lo, hi), 4))
     });
     format!("limit: {name}: outer steps near T/3 = {} fs drift (published){first}", rounded(period / 3.0, 3))
 }

@@ -66,7 +66,10 @@ pub(super) fn choice(
     (fastest, (lo, hi)): (&str, (f64, f64)),
 ) -> String {
     let step = scheme.last_but_one();
-    let times = |outer: &Rational| format!("{} ({} of {})", fs(outer), decimal(&(outer / step)), fs(step));
+    let times = |outer: &Rational| match scheme.steps() {
+        [_] => fs(outer),
+        _ => format!("{} ({} of {})", fs(outer), decimal(&(outer / step)), fs(step)),
+    };
     let part = |n: f64| nearest((lo / n, hi / n), 3);
     let third = part(3.0);
     match (safe, largest) {

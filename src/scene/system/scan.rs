@@ -179,7 +179,7 @@ impl SystemScene {
     }
 
     /// The same file with other numbers at some of its paths; `field` is what errors name.
-    pub(super) fn with(&self, field: &str, numbers: &[(&str, &Rational)]) -> Result<SystemScene> {
+    pub(crate) fn with(&self, field: &str, numbers: &[(&str, &Rational)]) -> Result<SystemScene> {
         let mut file = self.source.clone();
         for (path, value) in numbers.iter().filter(|(path, _)| *path != OUTER) {
             *place(&mut file, path, field)? = Value::String(value.to_string());
