@@ -23,7 +23,7 @@ use crate::scene::SystemScene;
 use crate::system::levels::Method;
 use crate::system::stretches::Stretch;
 use crate::system::vary::Intervals;
-use crate::system::{Holds, Jacobians, Limits, Model, SparseSystem, half_period};
+use crate::system::{Holds, Jacobians, Limits, Model, Route, SparseSystem, half_period};
 
 /// The longest step, all in their ratios.
 const OUTER: &str = "outer";
@@ -260,9 +260,10 @@ impl<'a> Places<'a> {
             let rate = scene.model().growth_of_period(&Limits::default())?;
             let growth = rate.map_or(f64::NAN, |rate| rate * to_f64(&outer));
             return Ok(match growth {
-                own if own.is_nan() => Motion::Unclear,
                 own if own > STILL => Motion::Grows(own),
-                _ => Motion::Turns(Vec::new()),
+                // Less may be growth all the same: the verdict at this place says.
+                own if own.is_finite() && is_proven_stable(scene.model())? => Motion::Turns(Vec::new()),
+                _ => Motion::Unclear,
             });
         };
         let h = half_period::<f64>(&match self.path {
@@ -334,6 +335,11 @@ impl<'a> Places<'a> {
             }
         }
     }
+}
+
+fn is_proven_stable(model: &Model) -> Result<bool> {
+    let found = model.decide(Route::Cheapest, &Limits::default())?;
+    Ok(found.is_proof() && found.is_stable())
 }
 
 fn grows(place: f64, growth: f64) -> Fault {
