@@ -77,7 +77,7 @@ impl SparseSubcycles {
         // Without substeps: so its fine block is the part of A that has any.
         let fine = levels.iter().find(|own| own.substeps > 1).map(|own| own.fine.clone()).unwrap_or_default();
         let plain = SparseSteps::within(masses, stiffness, vec![Level { fine, substeps: 1 }], off)?;
-        let (masses, stiffness, odd) = layers(masses, stiffness, &levels);
+        let Layered { masses, stiffness, odd } = layers(masses, stiffness, &levels);
         // And here that of the odd action.
         let odd = Level { fine: odd, substeps: 1 };
         let layered = SparseSteps::within(&masses, &stiffness, vec![odd], ROUNDED + off)?;
@@ -190,12 +190,15 @@ const SHARP: f64 = 1e-12;
 /// How far beside its enclosure the first unstable step may be proven, relative to it.
 const BESIDE: [f64; 7] = [1e-12, 1e-11, 1e-10, 1e-9, 1e-8, 1e-7, 1e-6];
 
-/// Masses and stiffness of the body in layers, coarsest level first and layer by layer, and those of its degrees of freedom that odd velocities have.
-fn layers(
-    masses: &[f64],
-    stiffness: &Triplets,
-    levels: &[Level],
-) -> (Vec<f64>, Vec<(usize, usize, f64)>, BTreeSet<usize>) {
+/// The body in layers, coarsest level first and layer by layer.
+struct Layered {
+    masses: Vec<f64>,
+    stiffness: Vec<(usize, usize, f64)>,
+    /// Its degrees of freedom that odd velocities have.
+    odd: BTreeSet<usize>,
+}
+
+fn layers(masses: &[f64], stiffness: &Triplets, levels: &[Level]) -> Layered {
     // Of each level the substeps in a step, its degrees of freedom, and where its first layer begins.
     let mut of: Vec<(u32, Vec<usize>, usize)> = vec![(1, Vec::new(), 0)];
     of.extend(levels.iter().scan(1, |all, own| {
@@ -235,7 +238,7 @@ fn layers(
             entries.push((a.max(b), a.min(b), weight * x));
         }
     }
-    (weighed, entries, odd)
+    Layered { masses: weighed, stiffness: entries, odd }
 }
 
 /// ω/π of the layers of a level with so many substeps in a step.
