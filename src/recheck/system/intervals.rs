@@ -162,8 +162,11 @@ impl Decided<'_> {
         let (context, limits) = (self.context, self.context.work().products());
         let allow = |own: &Self| places.allow(own.drawn.len(), &limits);
         let own = if allow(&self).is_ok() { self } else { self.sampled(seed) };
-        let (route, between) =
-            if places.has_signs() { (HALF, BETWEEN) } else { (STEP, "that nothing grows between these") };
+        let (route, between) = if places.has_signs() {
+            (HALF, BETWEEN)
+        } else {
+            (STEP, "that nothing grows between these places")
+        };
         let mut found = outcome(context, route, Ok(()))?;
         if let Err(error) = allow(&own) {
             found.not_rechecked.push(too_costly("the stretches", &error));
