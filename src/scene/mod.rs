@@ -6,6 +6,8 @@ pub(crate) mod json;
 #[cfg(feature = "system")]
 mod system;
 
+#[cfg(feature = "system")]
+pub(crate) use system::OUTER;
 #[cfg(feature = "advise")]
 pub use system::of_archive;
 #[cfg(feature = "system")]

@@ -19,14 +19,11 @@ use crate::question::{Found, System, SystemAnswer};
 use crate::recheck::again::{Left, Recheck, asked};
 use crate::recheck::context::{Checked, Context, Fault, Outcome, holds, same, too_costly};
 use crate::recheck::sample::sample;
-use crate::scene::SystemScene;
+use crate::scene::{OUTER, SystemScene};
 use crate::system::levels::Method;
 use crate::system::stretches::Stretch;
 use crate::system::vary::Intervals;
 use crate::system::{Holds, Jacobians, Limits, Model, Route, SparseSystem, half_period};
-
-/// The longest step, all in their ratios.
-const OUTER: &str = "outer";
 
 /// Stretches that are looked at, unless all are asked for; all of measured levels where it costs no more than is allowed.
 const MOST: u64 = 24;
@@ -111,6 +108,7 @@ impl Claim {
         context: &Context,
     ) -> Result<Outcome> {
         let model = scene.model();
+        // Other systems are looked at by their steps alone.
         let is_measured = matches!(model, Model::Measured(_));
         if found.number != OUTER && !is_measured || found.is_discrete {
             return outcome(context, ALONE, Ok(()));
@@ -187,8 +185,7 @@ impl Decided<'_> {
     }
 
     fn exactly(self, model: &Model, own: &Jacobians) -> Result<Outcome> {
-        let (limits, longest) = (self.context.work().products(), model.steps().into_iter().max());
-        let longest = longest.unwrap_or_default();
+        let (limits, longest) = (self.context.work().products(), model.outer_step());
         let route = "the verdict in the middle of a random sample of stretches in exact arithmetic";
         self.look(outcome(self.context, route, Ok(()))?, |stretch| {
             let middle = stretch.lo + (stretch.hi - stretch.lo) / 2.0;
@@ -233,7 +230,7 @@ enum Motion {
 
 impl<'a> Places<'a> {
     fn of(scene: &'a SystemScene, path: &'a str, width: f64) -> Result<Places<'a>> {
-        let outer = scene.model().steps().into_iter().max().unwrap_or_default();
+        let outer = scene.model().outer_step();
         let is_respa = scene.model().method() == Method::Respa;
         let system = is_respa.then(|| scene.model().moving()).transpose()?.map(Cow::into_owned);
         Ok(Places { scene, path, system, outer, width })
@@ -259,7 +256,7 @@ impl<'a> Places<'a> {
         let at = || self.scene.with("intervals", &[(self.path, &place)]);
         let Some(system) = &self.system else {
             let scene = at()?;
-            let outer = scene.model().steps().into_iter().max().unwrap_or_default();
+            let outer = scene.model().outer_step();
             let rate = scene.model().growth_of_period(&Limits::default())?;
             let growth = rate.map_or(f64::NAN, |rate| rate * to_f64(&outer));
             return Ok(match growth {

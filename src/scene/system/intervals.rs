@@ -262,7 +262,7 @@ impl SystemScene {
 
     /// The multiples of the shortest of the other steps.
     fn multiples_of(&self, span: &Span) -> Result<Vec<Rational>> {
-        let longest = self.model.steps().into_iter().max().unwrap_or_default();
+        let longest = self.model.outer_step();
         // A step that no other has: with it in place, the shortest of the rest.
         let far = longest * Rational::from_integer(2.into());
         let steps = self.with("intervals", &[(&span.path, &far)])?.model.steps();

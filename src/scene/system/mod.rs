@@ -86,6 +86,7 @@ use document::{Document, no_system};
 pub use intervals::{NEAREST, Span};
 #[cfg(feature = "advise")]
 pub use molecule::of_archive;
+pub(crate) use scan::OUTER;
 pub use scan::{Axis, Scan};
 
 /// The schema that this version reads.

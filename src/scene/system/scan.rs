@@ -20,7 +20,7 @@ use crate::system::Model;
 pub(super) const MOST_POINTS: usize = 100_000;
 
 /// The path that means all steps in their ratios, by the longest one.
-const OUTER: &str = "outer";
+pub(crate) const OUTER: &str = "outer";
 
 /// The values that one number of the file takes: lo, lo + by, ... up to hi, exactly.
 #[derive(Clone, Debug, PartialEq)]

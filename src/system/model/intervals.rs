@@ -206,7 +206,7 @@ impl Model {
     }
 
     /// The longest step.
-    fn outer_step(&self) -> Rational {
+    pub(crate) fn outer_step(&self) -> Rational {
         self.steps().into_iter().max().unwrap_or_default()
     }
 
