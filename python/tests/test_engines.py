@@ -148,15 +148,15 @@ def test_no_switching_function_is_recommended_where_openmm_leaves_it_out() -> No
     assert hints[1].startswith("a smaller Ewald tolerance") and "no switching function with LJPME" in hints[1]
 
 
-@pytest.mark.parametrize(("outer", "middle"), [("2", 2), ("4.6", 2), ("4.5", 1)])
-def test_a_box_with_a_reciprocal_group_grows_as_the_engine_has_it(outer: str, middle: int) -> None:
-    """Eight waters with PME, on three clocks and on two."""
+@pytest.mark.parametrize("outer", ["2", "4.6"])
+def test_a_box_with_a_reciprocal_group_grows_as_the_engine_has_it(outer: str) -> None:
+    """Eight waters with PME, on three clocks."""
     system, at = switched_box()
     step = Fraction(outer) / 1000
-    steps = {0: step / 10, 1: step / middle, 2: step}
+    steps = {0: step / 10, 1: step / 2, 2: step}
     found = ko.oscillations(system, at, steps=steps, minimize=False)
     # At 2 fs a pair of hydrogens stands 6e-5 nm outside of the cutoff at the first kick, within a difference of it.
-    agrees(found, of_engine(system, found, [(2, 1), (1, middle), (0, 10)]))
+    agrees(found, of_engine(system, found, [(2, 1), (1, 2), (0, 10)]))
     assert found.along is not None and found.along.accuracy < 1e-6
 
 
