@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, overload, runtime_ch
 
 from kickdrift import _plot
 from kickdrift._document import Asked, Document, Row, fields, frame
-from kickdrift._errors import KickdriftError, shown
+from kickdrift._errors import KickdriftError, known, shown
 from kickdrift._native import Number
 from kickdrift._numbers import Exact, items, text, written
 
@@ -377,10 +377,7 @@ def advise(
             levers=levers,
         )
         return told
-    if made:
-        raise KickdriftError(
-            next(iter(made)), shown(next(iter(made.values()))), "is for a system of OpenMM, ASE or LAMMPS"
-        )
+    known(made, advise, remedy=_ENGINES)
     given_alone = [periods] if isinstance(periods, str) else periods
     alone = items("periods", given_alone, "give a list of periods in fs, or texts as '10fs'; or periods by name")
     named = periods.items() if isinstance(periods, Mapping) else ((None, value) for value in alone)
@@ -395,13 +392,19 @@ def advise(
     return Advice(every.render("json"), every.render("text"), every)
 
 
+#: What keywords are that :func:`advise` does not name.
+_ENGINES = "is for a system of OpenMM, ASE or LAMMPS"
+
+
 def molecule(
     given: Any, steps: str | Sequence[Any] | Mapping[int, Any], made: Mapping[str, Any]
 ) -> tuple[Advisable | None, str | Sequence[Any]]:
     """The system that this is or makes, None where it is periods; and the schemes asked about beside its own."""
     if isinstance(given, Advisable):
+        known(made, advise, remedy=_ENGINES)
         return given, _no_groups(steps)
     if isinstance(given, str | PathLike) and fspath(given).endswith((".json", ".npz")):
+        known(made, advise, remedy=_ENGINES)
         from kickdrift._system import System
 
         return System.read(given), _no_groups(steps)
@@ -411,16 +414,19 @@ def molecule(
 
         if "groups" not in made:
             raise KickdriftError("groups", None, "of ASE give groups={'fast': (calculator, '0.5fs'), ...}")
+        known(made, ase.system, advise)
         return ase.system(given, **made), _no_groups(steps)
     if home == "lammps":
         from kickdrift import lammps
 
         if "respa" not in made:
             raise KickdriftError("respa", None, "of LAMMPS give respa='run_style respa ...', the line with its levels")
+        known(made, lammps.system, advise)
         return lammps.system(given, **made), _no_groups(steps)
     if home == "openmm":
         from kickdrift import openmm
 
+        known(made, openmm.system, advise)
         return openmm.given(given, steps, made)
     return None, _no_groups(steps)
 

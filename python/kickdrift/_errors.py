@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
+from difflib import get_close_matches
 from importlib import import_module
+from inspect import Parameter, signature
 from typing import Any
 
 
@@ -69,6 +72,27 @@ class BudgetError(KickdriftError):
 
     def __reduce__(self) -> tuple[Any, ...]:
         return type(self), (self.field, self.needed, self.remedy)
+
+
+def known(given: Iterable[str], *functions: Callable[..., object], remedy: str = "") -> None:
+    """That one of the functions takes each of these keywords.
+
+    Raises
+    ------
+    KickdriftError
+        One that none takes, with the nearest that there is, else the remedy, or all of them.
+    """
+    every = (own for function in functions for own in signature(function).parameters.values())
+    names = dict.fromkeys(own.name for own in every if own.kind in _NAMED)
+    for name in given:
+        if name not in names:
+            like = get_close_matches(name, names, n=2)
+            told = f"unknown; did you mean {' or '.join(like)}?" if like else remedy
+            raise KickdriftError("keyword", name, told or f"choose among {', '.join(names)}")
+
+
+#: Keywords, as signatures have them.
+_NAMED = (Parameter.KEYWORD_ONLY, Parameter.POSITIONAL_OR_KEYWORD)
 
 
 def shown(value: object) -> str:

@@ -856,6 +856,9 @@ def _damped(size_at: Callable[[float], float], size: float) -> float | None:
 #: Newton's method has arrived where its next step is this part of the extent of the atoms.
 _ARRIVED = 1e-9
 
+#: A step that is no longer is not made: along the orbit Hessians change by it less than differences of doubles see.
+_CLOSE_BY = 1e-12
+
 #: What is too soft for Newton's method may go so far in a period, relative to the extent: of clusters in which a water
 #: is loosely bound, verdicts and rates were those of OpenMM's own map up to here; less than the other needs no word.
 _DRIFTS, _CLOSED = 1e-8, 1e-11
@@ -891,43 +894,53 @@ def _newton(
     """Damped Newton's method for rest after half a period.
 
     It moves along the columns of ``firm``, and along them it seeks rest: of rigid motions there is none to begin with,
-    and what has no momentum gets none. Positions are put back on held distances as a drift is.
+    and what has no momentum gets none. Positions are put back on held distances as a drift is. Hessians are kept while
+    each step leaves less than a tenth of the velocity: half a period asks for some forces, they for thousands.
     """
     extent = float(np.ptp(start, axis=0).max()) or 1.0
+
+    def towards(left: Doubles) -> Doubles:
+        return np.asarray(half.first @ (half.first.T @ (firm @ np.linalg.lstsq(pulls, -left, rcond=None)[0])))
 
     def moved(part: float) -> Doubles:
         return held.drift(start, part * move, 1.0)[0]
 
+    def left_at(place: Doubles) -> Doubles:
+        return np.asarray(firm.T @ _swing(forces, steps, place, held))
+
     def size_at(part: float) -> float:
-        return float(np.abs(firm.T @ _swing(forces, steps, moved(part), held)).max())
+        return float(np.abs(left_at(moved(part))).max())
 
     while True:
         half = compose(forces, steps, start, held, difference, progress=progress)
         pulls = firm.T @ half.last @ half.matrix[half.first.shape[1] :, : half.first.shape[1]] @ half.first.T @ firm
         every = half.last @ half.speed
         speed = firm.T @ every
-        move = half.first @ (half.first.T @ (firm @ np.linalg.lstsq(pulls, -speed, rcond=None)[0]))
+        move, size = towards(speed), float(np.abs(speed).max())
         residual = float(np.abs(move / held.root).max()) / extent
-        part = _damped(size_at, float(np.abs(speed).max())) if residual > 1e-13 else None
+        part = _damped(size_at, size) if residual > _CLOSE_BY else None
         if part is None:
-            # How near rest is lost, and with it the orbit: at a fold a multiplier is 1.
             # The whole moves by itself where a mesh pulls at it, and by nothing else.
             whole, left = rigid_motions(start, held.masses, rotations=False), every - firm @ speed
             left = (left - whole @ (whole.T @ left)) / held.root
             drift = float(np.abs(left).max()) * float(_common(steps)) / extent
-            return _Orbit(start, half, residual, float(np.linalg.svd(pulls, compute_uv=False)[-1]), drift)
+            return _Orbit(start, half, residual, drift)
         start = moved(part)
+        while float(np.abs(speed := left_at(start)).max()) < 0.1 * size:
+            move, size = towards(speed), float(np.abs(speed).max())
+            if not size_at(1.0) < size:
+                break
+            start = moved(1.0)
 
 
 @dataclass(frozen=True, eq=False)
 class _Orbit:
     """Where Newton's method ended: positions, half a period from there, the step that would be next over the extent of
-    the atoms, the least singular value of what it solves with, and how far what has no stiffness goes in a period."""
+    the atoms, and how far what has no stiffness goes in a period."""
 
     positions: Doubles
     half: Half
     residual: float
-    least: float
     drift: float
 
 

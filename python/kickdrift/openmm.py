@@ -1061,10 +1061,15 @@ def _at_rest(
         # A step of the minimizer may leave what bonds allow, as those of FENE, and has no way back.
         is_lost = not engine.energy(near) <= engine.energy(where)
         try:
-            near = where if is_lost else near
-            if (engine.cuts or is_lost) and chosen is None:
-                near = cooled(force, near, held, difference)
-            found, smooth = newton(near, np.inf)
+            if is_lost:
+                near = cooled(force, where, held, difference) if chosen is None else where
+            try:
+                found, smooth = newton(near, _CLOSE if engine.cuts and chosen is None else np.inf)
+            except KickdriftError:
+                # Thousands of forces, where energies that jump stopped the minimizer far from rest.
+                if not engine.cuts or chosen is not None:
+                    raise
+                found, smooth = newton(cooled(force, near, held, difference), np.inf)
         except KickdriftError as error:
             if not engine.cuts:
                 remedy = "lead to no minimum: minimize them first, if they are in nm"

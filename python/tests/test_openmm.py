@@ -587,6 +587,24 @@ def box(side: int = 3) -> tuple[mm.System, np.ndarray]:
     return system, positions.reshape(-1, 3)
 
 
+@pytest.mark.parametrize(
+    ("given", "remedy", "of_made"),
+    [
+        ({"topolgy": None}, "did you mean topology", "is for a system of OpenMM"),
+        ({"frictoin": "1/ps"}, "did you mean friction", "did you mean friction"),
+        ({"zzz": 1}, "choose among", "is for a system of OpenMM"),
+    ],
+)
+def test_a_keyword_that_nobody_knows_gets_the_nearest(given: dict[str, Any], remedy: str, of_made: str) -> None:
+    system, positions = waters()
+    with pytest.raises(kd.KickdriftError, match=remedy) as caught:
+        kd.advise(system, positions=positions, steps={0: "0.5fs", 1: "2fs"}, **given)
+    assert (caught.value.field, caught.value.value) == ("keyword", next(iter(given)))
+    # A system that is made already takes none of those that make one: nothing is left out in silence.
+    with pytest.raises(kd.KickdriftError, match=of_made):
+        kd.advise(ko.system(system, positions, steps={0: "0.5fs", 1: "2fs"}), **given)
+
+
 def test_reciprocal_space_has_a_group_and_needs_a_step() -> None:
     system, positions = box(2)
     with pytest.raises(kd.KickdriftError, match="never integrated") as caught:

@@ -73,6 +73,10 @@ pub struct ManyLevels<'a> {
 /// of each entry and each mass, and enough for rigid motions to be found.
 const ROUNDED: f64 = 1e-12;
 
+/// A cell of a range of n degrees of freedom takes n² (n + this) products, as measured for 81 to 1,080 of them: eigenvalues, factorizations and
+/// norms in wide cells that decide much, and in narrow ones; what goes by entries is slower than products of matrices.
+const CELL: f64 = 1100.0;
+
 impl MeasuredSystem {
     /// From the step and the stiffness of each potential, at least one, all n x n finite doubles; masses and positions, where they are given,
     /// fit them.
@@ -305,8 +309,8 @@ impl MeasuredSystem {
     /// The products that these cost, roughly, where cells are narrow throughout.
     pub(super) fn cost_of_stretches(&self, range: (f64, f64), width: f64) -> Result<f64> {
         if self.is_of_two_levels() {
-            // A factorization or two in the eigenbasis.
-            return Ok(self.cost() as f64 + most_cells(range, width) * (self.size() as f64).powi(3));
+            let n = self.size() as f64;
+            return Ok(self.cost() as f64 + most_cells(range, width) * n * n * (n + CELL));
         }
         self.over_steps(|levels, steps| Ok(levels.at(steps)?.cost_of_stretches(range, width)))
     }

@@ -174,17 +174,18 @@ impl Spectrum {
         if components.iter().any(off) || (0..self.mu.len()).any(|i| self.is_encircled(i, &self.rows)) {
             return Some(Kind::Hyperbolic);
         }
-        self.untold_of(components, radius).is_empty().then_some(Kind::Elliptic)
+        // Up to the first: circles about all of them cost as much as the products where matrices are small.
+        self.untold_of(components, radius).next().is_none().then_some(Kind::Elliptic)
     }
 
     /// The eigenvalues that discs do not prove to be real, within (−1, 0) and simple; `None` where there are no discs.
     pub(super) fn untold(&self) -> Option<Vec<usize>> {
         let radius = 1.01 * self.radius?;
-        Some(self.untold_of(components(&self.mu, radius), radius))
+        Some(self.untold_of(components(&self.mu, radius), radius).collect())
     }
 
-    fn untold_of(&self, components: Vec<Vec<usize>>, radius: f64) -> Vec<usize> {
-        let inside = |component: &Vec<usize>| match component.as_slice() {
+    fn untold_of(&self, components: Vec<Vec<usize>>, radius: f64) -> impl Iterator<Item = usize> {
+        let inside = move |component: &Vec<usize>| match component.as_slice() {
             [i] => {
                 let z = self.mu[*i];
                 z.im == 0.0 && z.re + radius < 0.0 && z.re - radius > -1.0
@@ -193,10 +194,9 @@ impl Spectrum {
         };
         components
             .into_iter()
-            .filter(|own| !inside(own))
+            .filter(move |own| !inside(own))
             .flatten()
             .filter(|&i| !self.is_alone(i, &self.rows))
-            .collect()
     }
 
     /// Bounds on the rows of T⁻¹ F T, T = 1/τ at `open` and 1 elsewhere, τ = `weight`, where these columns of F are together no longer than `column`.
@@ -235,13 +235,16 @@ impl Spectrum {
 
     /// Whether one of some circles about μ_i, of at most this radius, holds no eigenvalue of D + tF.
     fn is_free(&self, i: usize, largest: f64, rows: &[f64]) -> bool {
+        let distances = |z: &c64| {
+            let own = (z - self.mu[i]).norm();
+            [own, if z.im == 0.0 { own } else { (z.conj() - self.mu[i]).norm() }]
+        };
+        let all: Vec<_> = self.mu.iter().map(distances).zip(rows).collect();
         let escape = |radius: f64| {
-            let term = |(z, row): (&c64, &f64)| {
-                let distance = |z: c64| ((z - self.mu[i]).norm() - radius).abs();
-                let nearer = distance(*z).min(distance(z.conj()));
-                (row / nearer).powi(2)
+            let term = |([own, other], row): &([f64; 2], &f64)| {
+                (*row / (own - radius).abs().min((other - radius).abs())).powi(2)
             };
-            rows.len() == self.mu.len() && self.mu.iter().zip(rows).map(term).sum::<f64>() < 0.99
+            rows.len() == self.mu.len() && all.iter().map(term).sum::<f64>() < 0.99
         };
         (0..20).map(|k| largest * 0.8f64.powi(k)).any(escape)
     }
