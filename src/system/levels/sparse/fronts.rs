@@ -7,7 +7,6 @@
 
 use std::collections::BTreeMap;
 use std::ops::Range;
-use std::sync::{Mutex, PoisonError};
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::{ldlt, llt};
@@ -47,14 +46,9 @@ pub(super) struct Fronts<'a> {
     columns: Vec<usize>,
     entries: Vec<(u32, f64)>,
     kind: Elimination,
-    spare: Spare,
 }
 
-/// Room of fronts that are done, by its size: the system takes some time for each page that it hands out.
-#[derive(Default)]
-struct Spare(Mutex<BTreeMap<usize, Vec<Vec<f64>>>>);
-
-/// What a supernode leaves on the rows below it: the lower triangle column by column, in room for as much or more.
+/// What a supernode leaves on the rows below it: the lower triangle column by column.
 struct Left {
     pivots: Pivots,
     update: Vec<f64>,
@@ -109,17 +103,7 @@ impl<'a> Fronts<'a> {
             }
         }
         let total = roots.iter().map(|&k: &usize| products[k]).sum();
-        Some(Fronts {
-            own,
-            children,
-            products,
-            total,
-            roots,
-            columns,
-            entries,
-            kind,
-            spare: Spare::default(),
-        })
+        Some(Fronts { own, children, products, total, roots, columns, entries, kind })
     }
 
     /// All pivots; `None` where one is not positive in L Lᵀ or vanishes in L D Lᵀ, or memory runs out.
@@ -189,11 +173,8 @@ impl<'a> Fronts<'a> {
         let (columns, rows) = supernode(self.own, k);
         let (width, rest) = (columns.len(), rows.len());
         let height = width + rest;
-        let mut panel = self.spare.room(height * width)?;
-        let mut update = self.spare.room(rest * rest)?;
-        panel[..height * width].fill(0.0);
-        // Of the rows that follow the lower triangle alone is written and read.
-        (0..rest).for_each(|j| update[j * rest + j..(j + 1) * rest].fill(0.0));
+        let mut panel = zeros(height * width, 0.0)?;
+        let mut update = zeros(rest * rest, 0.0)?;
         let place = |row: usize| match row.checked_sub(columns.end) {
             None => row - columns.start,
             Some(_) => width + rows.partition_point(|&other| other < row),
@@ -218,21 +199,11 @@ impl<'a> Fronts<'a> {
                 };
                 places[j..].iter().zip(own).for_each(|(i, x)| column[i - top] += x);
             }
-            self.spare.keep(left.update);
         }
-        let top = MatMut::from_column_major_slice_mut(&mut panel[..height * width], height, width);
-        let square = MatMut::from_column_major_slice_mut(&mut update[..rest * rest], rest, rest);
-        let own = self.eliminate(top, square)?;
-        self.spare.keep(panel);
-        let mut packed = self.spare.room(rest * (rest + 1) / 2)?;
-        let mut to = &mut packed[..];
-        for j in 0..rest {
-            let (column, others) = std::mem::take(&mut to).split_at_mut(rest - j);
-            column.copy_from_slice(&update[j * rest + j..(j + 1) * rest]);
-            to = others;
-        }
-        self.spare.keep(update);
-        Some(Left { pivots: pivots.and(own), update: packed })
+        let panel = MatMut::from_column_major_slice_mut(&mut panel, height, width);
+        let own = self.eliminate(panel, MatMut::from_column_major_slice_mut(&mut update, rest, rest))?;
+        pack(&mut update, rest);
+        Some(Left { pivots: pivots.and(own), update })
     }
 
     /// Eliminates the columns of a panel: the lower triangle of `update` loses what they take.
@@ -267,9 +238,8 @@ impl<'a> Fronts<'a> {
                 ldlt::factor::cholesky_in_place(own, none, threads, stack, Default::default()).ok()?;
                 solve_unit_lower_triangular_in_place(top.as_ref(), below.as_mut(), threads);
                 let mut found = Pivots::default();
-                let mut room = self.spare.room(width * below.ncols())?;
-                let size = width * below.ncols();
-                let mut scaled = MatMut::from_column_major_slice_mut(&mut room[..size], width, below.ncols());
+                let mut scaled = zeros(width * below.ncols(), 0.0)?;
+                let mut scaled = MatMut::from_column_major_slice_mut(&mut scaled, width, below.ncols());
                 for k in 0..width {
                     let pivot = top[(k, k)];
                     let beside = (k + 1..width).map(|i| top[(i, k)].powi(2)).sum::<f64>();
@@ -282,33 +252,8 @@ impl<'a> Fronts<'a> {
                     found.size += pivot.abs() * (1.0 + beside + rows);
                 }
                 take(update, scaled.rb(), below.rb());
-                self.spare.keep(room);
                 Some(found)
             }
-        }
-    }
-}
-
-impl Spare {
-    /// So many numbers or more, whatever they are; `None` where memory runs out.
-    fn room(&self, n: usize) -> Option<Vec<f64>> {
-        let found = self
-            .0
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .range_mut(n..=2 * n)
-            .find_map(|(_, own)| own.pop());
-        // Sizes in steps of an eighth to a quarter, so that room of one front suits another one of about its size.
-        let step = (n.next_power_of_two() / 8).max(1);
-        found.or_else(|| if n > FRESH { zeros(n, 0.0) } else { zeros(n.next_multiple_of(step), 0.0) })
-    }
-
-    /// Room that is done with, up to so much as is handed out at once.
-    fn keep(&self, own: Vec<f64>) {
-        let mut all = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let kept: usize = all.iter().map(|(size, own)| size * own.len()).sum();
-        if (SMALL..=FRESH).contains(&own.len()) && kept + own.len() <= FRESH {
-            all.entry(own.len()).or_default().push(own);
         }
     }
 }
@@ -323,6 +268,17 @@ impl Pivots {
 fn take(from: MatMut<'_, f64>, a: MatRef<'_, f64>, b: MatRef<'_, f64>) {
     let (whole, half) = (BlockStructure::Rectangular, BlockStructure::TriangularLower);
     matmul(from, half, Accum::Add, a.transpose(), whole, b, whole, -1.0, faer::get_global_parallelism());
+}
+
+/// The lower triangle of n rows alone, column by column, in place.
+fn pack(square: &mut Vec<f64>, n: usize) {
+    let mut to = 0;
+    for j in 0..n {
+        square.copy_within(j * n + j..(j + 1) * n, to);
+        to += n - j;
+    }
+    square.truncate(to);
+    square.shrink_to_fit();
 }
 
 /// The columns of a supernode, and the rows below them.
@@ -345,9 +301,6 @@ pub(super) fn products_of(columns: usize, below: usize) -> f64 {
 
 /// From so many numbers on that is worth the time that the system takes to hand out each page when it is first written to.
 const FRESH: usize = 1 << 26;
-
-/// Below it the allocator has room at hand.
-const SMALL: usize = 1 << 10;
 
 /// So many zeros; `None` where memory runs out.
 pub(super) fn zeros<T: Clone>(n: usize, zero: T) -> Option<Vec<T>> {
