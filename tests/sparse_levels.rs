@@ -1,7 +1,7 @@
 //! Sparse levels of many degrees of freedom against the dense kernel of the same numbers.
 
 use kickdrift::scene::{Array, Scan, SystemScene};
-use kickdrift::system::levels::sparse::SparseLevels;
+use kickdrift::system::levels::sparse::{Growing, SparseLevels};
 use kickdrift::system::levels::{Hessians, Kernel, Outer, rigid_motions};
 use kickdrift::system::{Holds, Limits, Route};
 use nalgebra::DMatrix;
@@ -286,6 +286,7 @@ fn the_modes_that_grow_are_those_of_the_dense_kernel() {
             let truth = dense.verdict_within(&outer, 0.0);
             assert!(holds == truth || holds == Holds::NotTold, "{side} {above} {holds:?} {truth:?}");
             assert_eq!(sparse.verdict(&outer, 0.0), holds, "{side} {above}");
+            same_without_counts(&sparse, &outer, (holds, growing.as_ref()));
             let Some(growing) = growing else {
                 assert_ne!(holds, Holds::Unstable, "{side} {above}");
                 beyond[0] += usize::from(holds == Holds::Stable);
@@ -390,10 +391,19 @@ fn sparse_and_dense(
     (sparse, Kernel::new(&hessians).unwrap())
 }
 
+/// What a scan asks for has the same verdict and encloses the same growth.
+fn same_without_counts(sparse: &SparseLevels, outer: &Outer, (holds, growing): (Holds, Option<&Growing>)) {
+    let (told, alone) = sparse.growth(outer);
+    assert_eq!(told, holds, "{}", outer.step());
+    let fastest = |own: Option<&Growing>| own.and_then(|own| own.fastest);
+    assert_eq!(fastest(alone.as_ref()), fastest(growing), "{}", outer.step());
+}
+
 /// The verdict, which is the dense one or none, and what growth there is, which holds the dense one's.
 fn enclosed(sparse: &SparseLevels, dense: &Kernel, outer: &Outer) -> (Holds, (f64, f64)) {
     let ((holds, growing), truth) = (sparse.beyond(outer), dense.verdict_within(outer, 0.0));
     assert!(holds == truth || holds == Holds::NotTold, "{} {holds:?} {truth:?}", outer.step());
+    same_without_counts(sparse, outer, (holds, growing.as_ref()));
     let rate = outer.step() * dense.growth(outer);
     let (lo, hi) = growing.as_ref().and_then(|own| own.fastest).unwrap_or((0.0, f64::INFINITY));
     assert!(lo < rate + 1e-7 && rate < hi + 1e-7, "{} {lo} {rate} {hi}", outer.step());

@@ -171,7 +171,7 @@ impl System {
         let seconds = scene.model().seconds_of(cost);
         work.announce(&format!("{points} points, each {:.2} s on average", seconds / points as f64), seconds);
         let bar = work.count(points as u64, "points");
-        let decide = |x: &_, y: &_| axes.at(x, y)?.model().decide(self.route(), &limits);
+        let decide = |x: &_, y: &_| axes.at(x, y)?.model().at_point(self.route(), &limits);
         let points = scan(&xs, &ys, decide, || bar.advance(1))?;
         Ok(SystemMap { names: axes.names(), xs, ys, points, time_unit: scene.time_unit().map(String::from) })
     }

@@ -52,6 +52,8 @@ pub struct SchemeSummary {
     pub plain_limit: Option<(f64, f64)>,
     /// \[lo, hi\]: every step in (0, lo] is proven stable, some step up to hi is proven unstable (of large subcycling, or has the multiplier −1); `None` where that is not known.
     pub first_unstable: Option<(f64, f64)>,
+    /// Whether all that is proven of a step up to hi is the multiplier −1.
+    pub is_minus_one: bool,
 }
 
 impl Level {

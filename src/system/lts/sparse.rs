@@ -319,6 +319,7 @@ impl SparseSteps {
             levels: self.levels.iter().map(|own| (own.fine.len(), own.substeps)).collect(),
             plain_limit: self.plain_limit(),
             first_unstable: self.first_unstable(),
+            is_minus_one: false,
         }
     }
 }
@@ -537,6 +538,7 @@ impl LocalSteps {
             levels: self.levels().iter().map(|own| (own.fine.len(), own.substeps)).collect(),
             plain_limit: self.plain_limit(),
             first_unstable: None,
+            is_minus_one: false,
         }
     }
 }

@@ -113,6 +113,11 @@ impl Subcycles {
 
     /// Of subcycling, as [`SparseSubcycles::first_unstable`] of this system rounded, the roundings within its proof; `None` also where its layers would be large.
     pub fn first_unstable(&self) -> Option<(f64, f64)> {
+        self.first().map(|own| own.0)
+    }
+
+    /// The same, and whether all that is proven at its upper end is the multiplier −1.
+    fn first(&self) -> Option<((f64, f64), bool)> {
         let (clock, mass) = (self.plain.clocks().first()?, self.plain.mass());
         let stiffness = &clock.stiffness;
         let layers: usize = self.levels.iter().map(|own| own.substeps as usize).product();
@@ -123,17 +128,19 @@ impl Subcycles {
         let row = |i: usize| stiffness.row(i).iter().map(move |(&j, x)| (i, j, to_f64(x)));
         let entries: Vec<_> = (0..self.size).flat_map(row).collect();
         // Of an entry and of two masses, half of each.
-        SparseSubcycles::within(&masses, &entries, self.levels.clone(), 3.0 * U).ok()?.first_unstable()
+        SparseSubcycles::within(&masses, &entries, self.levels.clone(), 3.0 * U).ok()?.first()
     }
 
     /// The scheme as answers state it: its levels, and plain leapfrog's limit beside them.
     pub fn summary(&self) -> SchemeSummary {
+        let first = self.first();
         SchemeSummary {
             scheme: self.scheme,
             size: self.size,
             levels: self.levels.iter().map(|own| (own.fine.len(), own.substeps)).collect(),
             plain_limit: plain_limit(&self.plain),
-            first_unstable: self.first_unstable(),
+            first_unstable: first.map(|own| own.0),
+            is_minus_one: first.is_some_and(|own| own.1),
         }
     }
 }

@@ -293,6 +293,19 @@ impl SparseSystem {
         Ok(Analysis { measured, ..Analysis::of_part(part, 2, notes) })
     }
 
+    /// The verdict and the growth, no more: what a scan shows of each point.
+    pub(super) fn at_point(&self, limits: &Limits) -> Result<Analysis> {
+        let Of::Levels { levels, outer, .. } = &self.of else { return self.decide(limits) };
+        self.allow(limits)?;
+        levels.look(outer.inner_steps());
+        let (verdict, growing) = levels.growth(outer);
+        let period = Laurent::from_rational(self.step.clone());
+        let largest = growing.as_ref().and_then(|own| own.fastest);
+        let modes = growing.into_iter().flat_map(|own| own.modes).map(|own| explained(own, &period)).unzip();
+        let part = Part { largest, ..Part::new(levels.size(), period, decided(verdict), modes) };
+        Ok(Analysis::of_part(part, 2, Vec::new()))
+    }
+
     /// The proven verdict and nothing else.
     pub(super) fn verdict(&self, limits: &Limits) -> Result<Holds> {
         self.allow(limits)?;

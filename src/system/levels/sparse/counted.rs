@@ -50,6 +50,8 @@ pub(super) struct Counted<'a> {
     turned: Vec<Mat<f64>>,
     /// and the largest e of a mode, as if none were joined to another, rounded.
     top: f64,
+    /// About the largest real one, as products with the stiffnesses have it (file `growing`).
+    pub by_products: OnceLock<Option<f64>>,
 }
 
 impl SparseLevels {
@@ -260,6 +262,7 @@ impl<'a> Counted<'a> {
             known: Mutex::default(),
             turned,
             top,
+            by_products: OnceLock::new(),
         })
     }
 

@@ -82,6 +82,9 @@ const BESIDE: [f64; 5] = [1e-3, 0.03, 0.1, 0.3, 0.7];
 /// How often a larger or a smaller one is asked for.
 const MOST_TURNS: i32 = 12;
 
+/// And where it is not known that anything grows.
+const MOST_UNKNOWN: usize = 2;
+
 /// Steps of a recursion that finds about the largest excess, and what part above it a Krylov space of an inverse begins.
 const STEPS: usize = 160;
 const ABOVE: f64 = 1.1;
@@ -109,13 +112,44 @@ impl SparseLevels {
         if told != Holds::Unstable {
             return (told, None);
         }
-        let growing = self.growing(outer, counted.as_ref());
-        let growing = growing.or_else(|| self.growing_past(outer, &counted?, at_least));
-        (Holds::Unstable, growing)
+        (Holds::Unstable, self.growing(outer, counted.as_ref(), Some(at_least)))
+    }
+
+    /// The verdict at an outer step and the growth, as [`SparseLevels::beyond`] has them, without how many modes grow: what a scan shows, at half the cost. Of
+    /// steps below the first region's end nothing is factorized.
+    pub fn growth(&self, outer: &Outer) -> (Holds, Option<Growing>) {
+        if self.unheld() == Some(0) && self.is_below_first(outer, 0.0) {
+            return (Holds::Stable, None);
+        }
+        // What proves a step proves those below it, and nothing proves where the region ends.
+        let is_near = self.first_resonance(outer.inner_steps()).is_none_or(|(_, hi)| outer.step() < hi);
+        if is_near && self.is_proven(outer, 0.0) {
+            return (Holds::Stable, None);
+        }
+        let counted = self.counted(outer, 0.0);
+        // Modes that are proven to grow are a verdict; to look for them where nothing shows any costs more than a count.
+        let by_products = |own: &Counted| {
+            let low = self.ends(0.0).map(|[low, _]| low);
+            low.is_some_and(|low| Period::new(self, *outer, low).by_products(own).is_some())
+        };
+        let is_shown = self.is_unstable(outer, 0.0) || counted.as_ref().is_some_and(by_products);
+        let growing = is_shown.then(|| self.growing(outer, counted.as_ref(), None)).flatten();
+        if growing.is_some() {
+            return (Holds::Unstable, growing);
+        }
+        let (told, at_least) = self.told_by(outer, 0.0, counted.as_ref());
+        let is_unstable = told == Holds::Unstable;
+        (told, is_unstable.then(|| self.growing(outer, counted.as_ref(), Some(at_least))).flatten())
+    }
+
+    /// What grows, by modes that are proven to or by counts; without `at_least`, how many grow for sure, they are not counted.
+    fn growing(&self, outer: &Outer, counted: Option<&Counted>, at_least: Option<usize>) -> Option<Growing> {
+        let first = self.growing_first(outer, counted, at_least.is_some());
+        first.or_else(|| self.growing_past(outer, counted?, at_least))
     }
 
     /// Where p θ < π for every fast mode, by the chord.
-    fn growing(&self, outer: &Outer, counted: Option<&Counted>) -> Option<Growing> {
+    fn growing_first(&self, outer: &Outer, counted: Option<&Counted>, are_counted: bool) -> Option<Growing> {
         let [low, high] = self.ends(0.0)?;
         let line = chord(outer, low, high)?;
         let period = Period::new(self, *outer, low);
@@ -134,17 +168,21 @@ impl SparseLevels {
                 }
             })
             .collect();
-        let at_most = counted.and_then(|own| own.at_most_above(0.0)).or_else(|| {
+        let counts = counted.filter(|_| are_counted);
+        let at_most = counts.and_then(|own| own.at_most_above(0.0)).or_else(|| {
+            if !are_counted {
+                return None;
+            }
             let ([fast, slow], slack) = self.form(outer, line, 0.0);
             self.both.at_most_negative(line[0], &[(fast, &self.fast), (slow, &self.slow)], slack)
         });
         let fastest = self.fastest(outer, line, &claims, radius, counted);
-        let at_least = modes.len().max(counted.map_or(0, |own| own.at_least_above(0.0)));
+        let at_least = modes.len().max(counts.map_or(0, |own| own.at_least_above(0.0)));
         Some(Growing { at_least, modes, at_most, fastest })
     }
 
     /// Where some fast mode has p θ > π: modes are rounded, and the fastest multiplier below −1 is enclosed by counts.
-    fn growing_past(&self, outer: &Outer, counted: &Counted, at_least: usize) -> Option<Growing> {
+    fn growing_past(&self, outer: &Outer, counted: &Counted, at_least: Option<usize>) -> Option<Growing> {
         let period = Period::new(self, *outer, self.ends(0.0)?[0]);
         let rate = |e: f64| rate::about(Complex64::new(-1.0 - e, 0.0), 2.0 * U);
         let (about, mut found) = period.farthest(counted);
@@ -164,7 +202,9 @@ impl SparseLevels {
         let parts = || std::iter::once(nearest).chain(BESIDE.into_iter().filter(move |part| *part > nearest));
         let beside = |sign: f64| parts().map(move |part| 1.0 + sign * part);
         let farther = |turn: f64| (1..=MOST_TURNS).map(move |k| turn.powi(k));
-        let least = beside(-1.0).chain(farther(0.2)).map(|by| by * own);
+        // Where nothing is known to grow few are asked for: that there is none costs less.
+        let tries = if at_least.is_some() { usize::MAX } else { MOST_UNKNOWN };
+        let least = beside(-1.0).chain(farther(0.2)).map(|by| by * own).take(tries);
         let least = least.into_iter().find(|&e| counted.at_least_above(e) > 0)?;
         let most = beside(1.0).chain(farther(2.0)).map(|by| by * own).filter(|_| is_held);
         let most = most.into_iter().find(|&e| counted.at_most_above(e) == Some(0));
@@ -179,8 +219,9 @@ impl SparseLevels {
             GrowingMode { mu: -1.0 - e, radius: None, growth, shape, quadrature }
         };
         let modes = found.iter().enumerate().map(mode).collect();
-        let at_most = if is_held { counted.at_most_above(0.0) } else { None };
-        Some(Growing { modes, at_least, at_most, fastest: Some(bounds) })
+        let at_most = at_least.filter(|_| is_held).and_then(|_| counted.at_most_above(0.0));
+        // One has been counted above `least`.
+        Some(Growing { modes, at_least: at_least.unwrap_or(1), at_most, fastest: Some(bounds) })
     }
 
     /// Where F + S > 0 off the rigid motions, so that nothing else grows (section 9).
@@ -260,15 +301,19 @@ impl Period<'_> {
         }
     }
 
-    /// About the largest real excess: what products tell of it.
+    /// About the largest real excess.
     fn about(&self, counted: &Counted) -> f64 {
-        let found = || {
+        self.by_products(counted).unwrap_or_else(|| counted.about())
+    }
+
+    /// About the largest real excess, by products; `None` where they show none. They are made once.
+    fn by_products(&self, counted: &Counted) -> Option<f64> {
+        *counted.by_products.get_or_init(|| {
             let (_, form) = arnoldi(self.levels.size(), STEPS, |z| Some(self.of(z).excess))?;
             let eigen = form.eigen().ok()?;
             let real = (0..form.ncols()).map(|i| eigen.S()[i]).filter(|e| e.im == 0.0);
             real.map(|e| e.re).max_by(f64::total_cmp).filter(|e| *e > LEAST)
-        };
-        found().unwrap_or_else(|| counted.about())
+        })
     }
 
     /// The largest eigenvalues of the excess and their z, rounded: those above 0 whose residuals are small. `None` where there is none.

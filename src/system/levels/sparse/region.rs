@@ -349,7 +349,7 @@ impl SparseLevels {
     }
 
     /// Whether the first region is proven, rigid motions apart.
-    fn is_proven(&self, outer: &Outer, epsilon: f64) -> bool {
+    pub(super) fn is_proven(&self, outer: &Outer, epsilon: f64) -> bool {
         // (3) of proofs/REGION.md follows where F + S > 0.
         let off: f64 = (0..2).map(|k| self.errors[k] + epsilon * self.sizes[k]).sum();
         self.is_total_definite(off) && self.is_above(outer, epsilon)
@@ -376,7 +376,7 @@ impl SparseLevels {
     ///
     /// There α₁ + a₁F + b₁S > 0 with b₁ < 0, so S < (α₁ + a₁F)/−b₁, and with r = b/b₁ > 0
     /// α + aF + bS > (α − r α₁) + (a − r a₁)F: a line over the spectrum of F, no lower than at its ends.
-    fn is_below_first(&self, outer: &Outer, epsilon: f64) -> bool {
+    pub(super) fn is_below_first(&self, outer: &Outer, epsilon: f64) -> bool {
         let found = || {
             let first = Outer::new(self.first(outer.inner_steps)?.step.0, outer.inner_steps).ok()?;
             let ends = self.ends(0.0)?;
