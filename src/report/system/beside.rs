@@ -131,9 +131,8 @@ pub(super) fn local_lines(own: &SchemeSummary, unit: &str) -> Vec<String> {
         let first = decimal::enclosure(lo, hi);
         format!("  first unstable step: {first}{unit}; every smaller one is proven stable")
     });
-    let minus_one = own.is_minus_one.then(|| {
-        "  that step has the multiplier -1, growth there is not proven: if nothing else moves with its motion it is stable".into()
-    });
+    let minus_one =
+        own.is_minus_one.then(|| "  that step has the multiplier -1, and no growth is proven there".into());
     let name = format!("  {name}: {}", levels.join("; of these "));
     [name].into_iter().chain(limit).chain(first).chain(minus_one).collect()
 }

@@ -116,7 +116,7 @@ impl SparseLevels {
     }
 
     /// The verdict at an outer step and the growth, as [`SparseLevels::beyond`] has them, without how many modes grow: what a scan shows, at half the cost. Of
-    /// steps below the first region's end nothing is factorized.
+    /// steps below the first region's end nothing is factorized. Where counts about 0 cancel, and `beyond` is not told, a mode may be proven to grow here.
     pub fn growth(&self, outer: &Outer) -> (Holds, Option<Growing>) {
         if self.unheld() == Some(0) && self.is_below_first(outer, 0.0) {
             return (Holds::Stable, None);
