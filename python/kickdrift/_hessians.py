@@ -1138,6 +1138,10 @@ def along(
 #: The steps at which an orbit ends are told to this part of those asked about.
 _ENDS = Fraction(1, 1024)
 
+#: So near a fold, in shares of the steps, it is named: beside it what pulls back vanishes, and rounded forces end
+#: Newton's method first.
+_BESIDE_FOLD = Fraction(1, 256)
+
 
 def _longer(
     forces: Sequence[Force],
@@ -1190,7 +1194,7 @@ def _longer(
             most = part / 2
     share, fold = known[-1][0], _folds(known)
     words = f". From shorter steps at the same ratios it is followed to {outer * float(share):.6g} {unit}"
-    if fold < share + _ENDS:
+    if fold < share + _BESIDE_FOLD:
         words += f" and folds at {outer * fold:.5g} {unit}, where it meets another orbit"
     return None, words
 
