@@ -377,7 +377,7 @@ def advise(
             levers=levers,
         )
         return told
-    known(made, advise, remedy=_ENGINES)
+    known(made, advise, elsewhere=_ENGINES)
     given_alone = [periods] if isinstance(periods, str) else periods
     alone = items("periods", given_alone, "give a list of periods in fs, or texts as '10fs'; or periods by name")
     named = periods.items() if isinstance(periods, Mapping) else ((None, value) for value in alone)
@@ -401,10 +401,10 @@ def molecule(
 ) -> tuple[Advisable | None, str | Sequence[Any]]:
     """The system that this is or makes, None where it is periods; and the schemes asked about beside its own."""
     if isinstance(given, Advisable):
-        known(made, advise, remedy=_ENGINES)
+        known(made, advise, elsewhere=_ENGINES)
         return given, _no_groups(steps)
     if isinstance(given, str | PathLike) and fspath(given).endswith((".json", ".npz")):
-        known(made, advise, remedy=_ENGINES)
+        known(made, advise, elsewhere=_ENGINES)
         from kickdrift._system import System
 
         return System.read(given), _no_groups(steps)

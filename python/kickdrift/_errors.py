@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Mapping
 from difflib import get_close_matches
 from importlib import import_module
 from inspect import Parameter, signature
@@ -74,21 +74,24 @@ class BudgetError(KickdriftError):
         return type(self), (self.field, self.needed, self.remedy)
 
 
-def known(given: Iterable[str], *functions: Callable[..., object], remedy: str = "") -> None:
+def known(given: Mapping[str, object], *functions: Callable[..., object], elsewhere: str = "") -> None:
     """That one of the functions takes each of these keywords.
 
     Raises
     ------
     KickdriftError
-        One that none takes, with the nearest that there is, else the remedy, or all of them.
+        One that none takes, with the nearest that there is, else with where it belongs, or with all of them.
     """
     every = (own for function in functions for own in signature(function).parameters.values())
     names = dict.fromkeys(own.name for own in every if own.kind in _NAMED)
-    for name in given:
-        if name not in names:
-            like = get_close_matches(name, names, n=2)
-            told = f"unknown; did you mean {' or '.join(like)}?" if like else remedy
-            raise KickdriftError("keyword", name, told or f"choose among {', '.join(names)}")
+    for name, value in given.items():
+        if name in names:
+            continue
+        if like := get_close_matches(name, names, n=2):
+            raise KickdriftError("keyword", name, f"unknown; did you mean {' or '.join(like)}?")
+        if elsewhere:
+            raise KickdriftError(name, shown(value), elsewhere)
+        raise KickdriftError("keyword", name, f"choose among {', '.join(names)}")
 
 
 #: Keywords, as signatures have them.
