@@ -926,11 +926,14 @@ def _newton(
             drift = float(np.abs(left).max()) * float(_common(steps)) / extent
             return _Orbit(start, half, residual, drift)
         start = moved(part)
-        while float(np.abs(speed := left_at(start)).max()) < 0.1 * size:
+        speed = left_at(start)
+        while float(np.abs(speed).max()) < 0.1 * size:
             move, size = towards(speed), float(np.abs(speed).max())
-            if not size_at(1.0) < size:
+            there = moved(1.0)
+            speed = left_at(there)
+            if not float(np.abs(speed).max()) < size:
                 break
-            start = moved(1.0)
+            start = there
 
 
 @dataclass(frozen=True, eq=False)

@@ -50,7 +50,7 @@ pub(super) struct Counted<'a> {
     turned: Vec<Mat<f64>>,
     /// and the largest e of a mode, as if none were joined to another, rounded.
     top: f64,
-    /// About the largest real one, as products with the stiffnesses have it (file `growing`).
+    /// The largest real e, estimated by products with the stiffnesses (file `growing`).
     pub by_products: OnceLock<Option<f64>>,
 }
 

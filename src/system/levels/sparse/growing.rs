@@ -82,7 +82,7 @@ const BESIDE: [f64; 5] = [1e-3, 0.03, 0.1, 0.3, 0.7];
 /// How often a larger or a smaller one is asked for.
 const MOST_TURNS: i32 = 12;
 
-/// And where it is not known that anything grows.
+/// How many bounds from below are tried where it is not known that anything grows.
 const MOST_UNKNOWN: usize = 2;
 
 /// Steps of a recursion that finds about the largest excess, and what part above it a Krylov space of an inverse begins.
@@ -115,8 +115,9 @@ impl SparseLevels {
         (Holds::Unstable, self.growing(outer, counted.as_ref(), Some(at_least)))
     }
 
-    /// The verdict at an outer step and the growth, as [`SparseLevels::beyond`] has them, without how many modes grow: what a scan shows, at half the cost. Of
-    /// steps below the first region's end nothing is factorized. Where counts about 0 cancel, and `beyond` is not told, a mode may be proven to grow here.
+    /// The verdict at an outer step and the growth, without the number of modes that grow: what a scan shows, at about half the cost of
+    /// [`SparseLevels::beyond`]. Steps below the end of the first region need no factorization. Modes that grow are looked for before they are
+    /// counted, so growth may be proven here where `beyond` gives `NotTold`.
     pub fn growth(&self, outer: &Outer) -> (Holds, Option<Growing>) {
         if self.unheld() == Some(0) && self.is_below_first(outer, 0.0) {
             return (Holds::Stable, None);
@@ -169,13 +170,12 @@ impl SparseLevels {
             })
             .collect();
         let counts = counted.filter(|_| are_counted);
-        let at_most = counts.and_then(|own| own.at_most_above(0.0)).or_else(|| {
-            if !are_counted {
-                return None;
-            }
+        let by_chord = || {
             let ([fast, slow], slack) = self.form(outer, line, 0.0);
             self.both.at_most_negative(line[0], &[(fast, &self.fast), (slow, &self.slow)], slack)
-        });
+        };
+        let at_most =
+            are_counted.then(|| counts.and_then(|own| own.at_most_above(0.0)).or_else(by_chord)).flatten();
         let fastest = self.fastest(outer, line, &claims, radius, counted);
         let at_least = modes.len().max(counts.map_or(0, |own| own.at_least_above(0.0)));
         Some(Growing { at_least, modes, at_most, fastest })
