@@ -1131,11 +1131,41 @@ def _positions(positions: Any, system: Any) -> Doubles:
     array = doubles("positions", own if isinstance(own, np.ndarray) else [list(row) for row in own])
     count, moving = system.getNumParticles(), _moving(system)
     if array.shape == (count, 3):
-        return array[moving]
-    if array.shape != (len(moving), 3):
+        array = array[moving]
+    elif array.shape != (len(moving), 3):
         or_so = f", or ({len(moving)}, 3) without the virtual sites" if len(moving) < count else ""
         raise KickdriftError("positions", f"shape {array.shape}", f"give shape ({count}, 3){or_so}")
+    _are_in_nm(system, array)
     return array
+
+
+def _are_in_nm(system: Any, where: Doubles) -> None:
+    """That most bonds and held distances are not nearer to ten times, or to a tenth of, their length at rest.
+
+    No force field has a state with most bonds three times as long: that is a unit. Bonds across a periodic box are left
+    out, where the positions do not say which image is meant.
+
+    Raises
+    ------
+    KickdriftError
+        Before hours are spent.
+    """
+    place = {int(n): k for k, n in enumerate(_moving(system))}
+    terms = [system.getConstraintParameters(n) for n in range(system.getNumConstraints())]
+    for force in system.getForces():
+        if isinstance(force, mm.HarmonicBondForce) and not force.usesPeriodicBoundaryConditions():
+            terms += [force.getBondParameters(n)[:3] for n in range(force.getNumBonds())]
+    known = [(place[i], place[j], rest._value) for i, j, rest in terms if {i, j} <= place.keys() and rest._value > 0]
+    if not known:
+        return
+    i, j, rest = np.array(known).T
+    apart = np.linalg.norm(where[i.astype(int)] - where[j.astype(int)], axis=1) / rest
+    for tens, told in ((10.0, "are they in angstrom? Give positions / 10"), (0.1, "are they in units of 10 nm?")):
+        # Nearer to that than to 1, and to 100 times that: by powers of ten.
+        like = (apart > tens / 10**0.5) & (apart < tens * 10**0.5)
+        if 2 * like.sum() > len(like):
+            remedy = f"of their length at rest have {like.sum()} of {len(like)} bonds: {told}, in nm, or a Quantity"
+            raise KickdriftError("positions", f"{np.median(apart[like]):.3g} times", remedy)
 
 
 def _notes(system: Any, integrator: Any, clocks: Mapping[int, Fraction]) -> list[str]:

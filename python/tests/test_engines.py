@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from fractions import Fraction
 from functools import cache
 from pathlib import Path
+from time import perf_counter
 from typing import Any
 
 import numpy as np
@@ -146,6 +147,22 @@ def test_no_switching_function_is_recommended_where_openmm_leaves_it_out() -> No
         hints.append(ko._engine(system).smoother)
     assert hints[0].startswith("a switching function, a smaller Ewald tolerance")
     assert hints[1].startswith("a smaller Ewald tolerance") and "no switching function with LJPME" in hints[1]
+
+
+@pytest.mark.parametrize(("outer", "inner"), [("4", 8), ("4.6", 10)])
+def test_a_reciprocal_group_on_two_clocks_grows_as_the_engine_has_it(outer: str, inner: int) -> None:
+    """Bonds and angles often, pairs and the reciprocal space, of one step, seldom; and all pairs' fast part with the
+    bonds, as ``MTSIntegrator`` splits PME."""
+    system, at = switched_box()
+    step = Fraction(outer) / 1000
+    for steps, levels in (
+        ({0: step / inner, 1: step, 2: step}, [(1, 1), (2, 1), (0, inner)]),
+        ({0: step / inner, 1: step / inner, 2: step}, [(2, 1), (0, inner), (1, inner)]),
+    ):
+        begin = perf_counter()
+        found = ko.oscillations(system, at, steps=steps, minimize=False)
+        agrees(found, of_engine(system, found, levels))
+        print(outer, found.words, perf_counter() - begin)
 
 
 @pytest.mark.parametrize("outer", ["2", "4.6"])

@@ -553,6 +553,30 @@ def test_what_openmm_refuses_or_would_never_end_is_refused() -> None:
         kd.advise(system, positions=positions, steps=steps, constraints=app.HBonds)
 
 
+@pytest.mark.parametrize("rigid", [False, True])
+def test_positions_in_another_unit_are_seen_at_once(rigid: bool) -> None:
+    """Before: hours of Newton's method, or "lead to no minimum". What is strained, or stretched twice, is let through."""
+    system, positions = waters(rigid)
+    steps = {0: "1/2000", 1: "1/500"}
+    for ask in (ko.system, ko.oscillations, ko.bands):
+        with pytest.raises(kd.KickdriftError, match=r"angstrom\? Give positions / 10.* in nm") as caught:
+            ask(system, positions * 10, steps=steps)
+        assert caught.value.field == "positions"
+        with pytest.raises(kd.KickdriftError, match="units of 10 nm"):
+            ask(system, positions / 10, steps=steps)
+    # A quantity has its own.
+    quantity = (positions * 10) * unit.angstrom
+    assert np.allclose(ko._positions(quantity, system), positions)
+    for scale in (0.5, 0.9, 1.1, 2.0, 3.0):
+        assert ko._positions(positions * scale, system).shape == positions.shape
+    # Few bonds of many, as where a molecule reaches across a box that is not said to be one.
+    torn = positions.copy()
+    torn[:3] += np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]])
+    assert ko._positions(torn, system).shape == positions.shape
+    # One place for all is no unit, nor are bonds that rest at no length.
+    assert ko._positions(np.zeros_like(positions), system).shape == positions.shape
+
+
 def test_massless_particles_and_unknown_states_are_refused() -> None:
     system, positions = bonds(1)
     with pytest.raises(kd.KickdriftError, match="choose orbit or minimum"):
