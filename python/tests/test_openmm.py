@@ -555,7 +555,7 @@ def test_what_openmm_refuses_or_would_never_end_is_refused() -> None:
 
 @pytest.mark.parametrize("rigid", [False, True])
 def test_positions_in_another_unit_are_seen_at_once(rigid: bool) -> None:
-    """Before: hours of Newton's method, or "lead to no minimum". What is strained, or stretched twice, is let through."""
+    """Before: "lead to no minimum", after long. What is strained, or stretched twice, is let through."""
     system, positions = waters(rigid)
     steps = {0: "1/2000", 1: "1/500"}
     for ask in (ko.system, ko.oscillations, ko.bands):
