@@ -149,7 +149,7 @@ def test_no_switching_function_is_recommended_where_openmm_leaves_it_out() -> No
 
 
 @pytest.mark.parametrize(
-    ("outer", "inner", "pairs", "grows"), [("2", 4, 1, False), ("4.6", 5, 1, True), ("4.6", 5, 5, False)]
+    ("outer", "inner", "pairs", "grows"), [("2", 4, 1, False), ("4.6", 5, 1, True), ("4.6", 5, 5, True)]
 )
 def test_a_reciprocal_group_on_two_clocks_grows_as_the_engine_has_it(
     outer: str, inner: int, pairs: int, grows: bool
