@@ -62,7 +62,8 @@ def hessian(
     Raises
     ------
     KickdriftError
-        A force whose terms are not known here: Ewald sums, custom pairs, bonds of many bodies.
+        A force whose terms are not known here: Ewald sums, custom pairs, bonds of many bodies; pairs of virtual sites
+        that are no averages of their atoms.
     """
     own = [force for force in system.getForces() if force.getForceGroup() in groups]
     bonded = [force for force in own if type(force).__name__ in _BONDED]
@@ -72,6 +73,8 @@ def hessian(
         name = type(others[0]).__name__
         remedy = "has no sparse Hessian here: leave sparse=True out, or give Hessians to System.from_hessians"
         raise KickdriftError("system", name, remedy)
+    onto = _placing(system, bonded + pairs)
+    positions = np.asarray(onto @ positions.ravel()).reshape(-1, 3)
     total = sparse.csr_matrix((positions.size, positions.size))
     error = 0.0
     formal = [force for force in bonded if type(force).__name__ in _terms_of.LAWS and _is_plain(force)]
@@ -89,7 +92,39 @@ def hessian(
         matrix, smooth = nonbonded(force, system, positions)
         error += _seen(matrix, _alone(system, [force]), positions, smooth)
         total = total + matrix
-    return total.tocsr(), error
+    # No vector is stretched by more than the root of the largest sums of a row and of a column.
+    return (onto.T @ total @ onto).tocsr(), error * _largest_row(onto) * _largest_row(onto.T)
+
+
+def _placing(system: Any, forces: Sequence[Any]) -> Any:
+    """The coordinates of all particles by those of the particles that are no virtual sites.
+
+    Sites that are averages of their atoms are linear in these, so a Hessian of all is one of the atoms by it. Other
+    sites are left at 0 where no term of the forces knows them.
+
+    Raises
+    ------
+    KickdriftError
+        Where such a site has forces.
+    """
+    count = system.getNumParticles()
+    moving = [n for n in range(count) if not system.isVirtualSite(n)]
+    place, entries, bent = {n: k for k, n in enumerate(moving)}, [(n, k, 1.0) for k, n in enumerate(moving)], set()
+    for n in sorted(set(range(count)) - set(moving)):
+        site = system.getVirtualSite(n)
+        parents = [site.getParticle(k) for k in range(site.getNumParticles())]
+        if hasattr(site, "getWeight") and place.keys() >= set(parents):
+            entries += [(n, place[parent], site.getWeight(k)) for k, parent in enumerate(parents)]
+        else:
+            bent.add(n)
+    is_known = are_bonded(forces) and not any(bent & set(atoms) for force in forces for atoms in _terms(force))
+    if bent and not is_known:
+        site = system.getVirtualSite(min(bent))
+        remedy = "is no average of its atoms, and has no sparse Hessian here: leave sparse=True out"
+        raise KickdriftError("system", f"particle {min(bent)}, a {type(site).__name__}", remedy)
+    rows, columns, weights = np.array(entries).reshape(-1, 3).T
+    one = sparse.csr_matrix((weights, (rows.astype(np.int64), columns.astype(np.int64))), shape=(count, len(moving)))
+    return sparse.kron(one, sparse.identity(3), format="csr")
 
 
 def are_bonded(forces: Sequence[Any]) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -286,7 +287,7 @@ class System(Frozen):
         return System(MappingProxyType(document), arrays, tuple(notes))
 
     def save(self, folder: str | PathLike[str]) -> Path:
-        """Write ``system.json`` and ``arrays.npz`` to a folder; return the path of the former.
+        """Write ``system.json`` and ``arrays.npz`` to a folder, each as a whole; return the path of the former.
 
         Parameters
         ----------
@@ -309,11 +310,19 @@ class System(Frozen):
         """
         own = Path(folder)
         own.mkdir(parents=True, exist_ok=True)
-        if self.arrays:
-            np.savez(own / _ARRAYS, allow_pickle=False, **self.arrays)
-        path = own / _FILE
-        path.write_text(self._text())
-        return path
+        # Beside their places until they are whole; the text last, without which nothing is read.
+        ready = [(own / f".{name}.{os.getpid()}", own / name) for name in (_ARRAYS, _FILE)]
+        try:
+            if self.arrays:
+                with ready[0][0].open("wb") as file:
+                    np.savez(file, allow_pickle=False, **self.arrays)
+            ready[1][0].write_text(self._text())
+            for part, place in ready[not self.arrays :]:
+                part.replace(place)
+        finally:
+            for part, _ in ready:
+                part.unlink(missing_ok=True)
+        return own / _FILE
 
     def _text(self) -> str:
         document = {"schema": _SCHEMA} | {key: value for key, value in self.document.items() if key != "schema"}

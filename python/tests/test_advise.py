@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import signal
+import subprocess
+import sys
 from collections.abc import Callable
 from fractions import Fraction
 from pathlib import Path
@@ -128,3 +131,32 @@ def test_advice_on_hessians_is_that_of_the_program(program: Callable[..., str], 
     with pytest.raises(kd.KickdriftError) as caught:
         kd.System.from_hessians([1.0, 1.0], {"fast": ("1/2", fast), "slow": (4, slow)}).advise()
     assert caught.value.field == "time_unit"
+
+
+def test_a_process_killed_while_it_saves_leaves_the_files_of_before(tmp_path: Path) -> None:
+    """SIGKILL in the middle of the arrays: nothing half stands under their name, and nothing is left to be read."""
+    code = """
+import os, signal, sys
+import numpy as np
+import kickdrift as kd
+made = kd.System.from_hessians(np.ones(2), {"a": ("1/10", np.eye(6)), "b": ("1/5", 2 * np.eye(6))}, keep_rigid=True)
+if sys.argv[2] == "killed":
+    def half(file, **_):
+        (file.write if hasattr(file, "write") else open(file, "wb").write)(b"PK half")
+        getattr(file, "flush", lambda: None)()
+        os.kill(os.getpid(), signal.SIGKILL)
+    np.savez = half
+made.save(sys.argv[1])
+"""
+
+    def run(how: str) -> int:
+        return subprocess.run([sys.executable, "-c", code, str(tmp_path), how], check=False).returncode
+
+    assert run("killed") == -signal.SIGKILL
+    assert not (tmp_path / "system.json").exists() and not (tmp_path / "arrays.npz").exists()
+    assert run("whole") == 0
+    before = kd.System.read(tmp_path / "system.json").decide().to_json()
+    assert run("killed") == -signal.SIGKILL
+    assert kd.System.read(tmp_path / "system.json").decide().to_json() == before
+    assert run("whole") == 0
+    assert kd.System.read(tmp_path / "system.json").decide().to_json() == before

@@ -148,6 +148,21 @@ def test_no_switching_function_is_recommended_where_openmm_leaves_it_out() -> No
     assert hints[1].startswith("a smaller Ewald tolerance") and "no switching function with LJPME" in hints[1]
 
 
+@pytest.mark.parametrize(
+    ("outer", "inner", "pairs", "grows"), [("2", 4, 1, False), ("4.6", 5, 1, True), ("4.6", 5, 5, True)]
+)
+def test_a_reciprocal_group_on_two_clocks_grows_as_the_engine_has_it(
+    outer: str, inner: int, pairs: int, grows: bool
+) -> None:
+    """PME's pairs go with the reciprocal space, or with bonds and angles: ``pairs`` steps of theirs in a long one."""
+    system, at = switched_box()
+    step = Fraction(outer) / 1000
+    found = ko.oscillations(system, at, steps={0: step / inner, 1: step / pairs, 2: step}, minimize=False)
+    slow = [(1, 1), (2, 1)] if pairs == 1 else [(2, 1), (1, pairs)]
+    agrees(found, of_engine(system, found, [*slow, (0, inner)]))
+    assert found.stable is not grows
+
+
 @pytest.mark.parametrize("outer", ["2", "4.6"])
 def test_a_box_with_a_reciprocal_group_grows_as_the_engine_has_it(outer: str) -> None:
     """Eight waters with PME, on three clocks."""

@@ -311,6 +311,194 @@ def test_multipliers_of_random_bonds_are_those_of_the_measured_map(seed: int) ->
         assert min(np.abs(values - value).min(), np.abs(values - np.conj(value)).min()) < 1e-7
 
 
+@cache
+def waters_with_sites(model: str, count: int = 3, **options: Any) -> tuple[mm.System, np.ndarray, Any]:
+    """Neighbouring waters of OpenMM's own box in vacuum, flexible unless options say more: their sites come last."""
+    pdb = app.PDBFile(str(Path(app.__file__).parent / "data" / "tip3p.pdb"))
+    every = np.array(pdb.positions.value_in_unit(unit.nanometer)).reshape(-1, 3, 3)
+    near = np.argsort(np.linalg.norm(every[:, 0] - every[:, 0].mean(axis=0), axis=1))[:count]
+    topology = app.Topology()
+    chain = topology.addChain()
+    for _ in near:
+        residue = topology.addResidue("HOH", chain)
+        atoms = [topology.addAtom(name, app.Element.getBySymbol(name[0]), residue) for name in ("O", "H1", "H2")]
+        topology.addBond(atoms[0], atoms[1]), topology.addBond(atoms[0], atoms[2])
+    field = app.ForceField(f"{model}.xml")
+    whole = app.Modeller(topology, every[near].reshape(-1, 3) * unit.nanometer)
+    whole.addExtraParticles(field)
+    given = {"nonbondedMethod": app.NoCutoff, "rigidWater": False, "removeCMMotion": False} | options
+    system = groups(field.createSystem(whole.topology, **given))
+    return system, np.array(whole.positions.value_in_unit(unit.nanometer)), whole.topology
+
+
+def lone_pairs() -> tuple[mm.System, np.ndarray, Any]:
+    """As force fields of CHARMM have sites: in axes of their atoms, here in the plane of each water and above it."""
+    system, positions, topology = waters_with_sites("amber14/tip4pew")
+    system = mm.XmlSerializer.clone(system)
+    for n in range(3):
+        atoms = [4 * n, 4 * n + 1, 4 * n + 2]
+        axes = [1.0, 0.0, 0.0], [-1.0, 0.5, 0.5], [-1.0, 1.0, 0.0]
+        system.setVirtualSite(4 * n + 3, mm.LocalCoordinatesSite(atoms, *axes, [0.011, 0.002, 0.004]))
+    return system, positions, topology
+
+
+SITES: dict[str, Callable[[], tuple[mm.System, np.ndarray, Any]]] = {
+    "TIP4P-Ew": lambda: waters_with_sites("amber14/tip4pew"),
+    "OPC": lambda: waters_with_sites("amber14/opc"),
+    "TIP5P": lambda: waters_with_sites("tip5p"),
+    "lone pairs": lone_pairs,
+    "TIP4P-Ew, bonds held": lambda: waters_with_sites("amber14/tip4pew", constraints=app.HBonds),
+    "TIP4P-Ew, rigid": lambda: waters_with_sites("amber14/tip4pew", rigidWater=True),
+}
+
+
+@pytest.mark.parametrize(
+    ("model", "outer", "inner", "grows"),
+    [
+        ("TIP4P-Ew", "4", 9, False),
+        ("TIP4P-Ew", "4.6", 9, True),
+        ("OPC", "8", 9, True),
+        ("TIP5P", "4.6", 9, True),
+        ("lone pairs", "4.5", 9, True),
+        ("TIP4P-Ew, bonds held", "10", 9, True),
+        ("TIP4P-Ew, rigid", "4", 1, False),
+    ],
+)
+def test_virtual_sites_follow_their_atoms_as_the_engine_has_it(
+    model: str, outer: str, inner: int, grows: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    system, positions, _ = SITES[model]()
+    step = Fraction(outer) / 1000
+    found = ko.oscillations(system, positions, steps={0: step / inner, 1: step})
+    assert found.proven and found.stable is not grows
+    assert found.positions.shape == (9, 3) and len(found.mu) == 27 - system.getNumConstraints()
+    own = own_multipliers(system, found, [(1, 1), (0, inner)])
+
+    def apart(told: Any) -> float:
+        # Rigid motions are defective eigenvalues at 1.
+        return max(np.abs(own - value).min() for value in told.multipliers[np.abs(told.multipliers - 1) > 1e-2])
+
+    # 2e-10 is what differences leave; of what SETTLE leaves 1e-7.
+    assert apart(found) < 1e-6
+    if grows:
+        assert found.growth_rate == pytest.approx(np.log(np.abs(own).max()) / float(step), rel=1e-5)
+    # Sites that stand where the orbit begins are seen.
+    at = ko._engine(system).placed(found.positions)
+
+    def left(engine: Any, where: np.ndarray, context: Any = None) -> None:
+        every = at.copy()
+        every[engine.moving] = where
+        (context or engine.context).setPositions(every)
+
+    monkeypatch.setattr(ko._Engine, "place", left)
+    steps = {0: step / inner, 1: step}
+    wrong = ko.oscillations(system, found.positions, steps=steps, about="minimum", minimize=False)
+    monkeypatch.undo()
+    right = ko.oscillations(system, found.positions, steps=steps, about="minimum", minimize=False)
+    # About one place both are alike but for the sites.
+    assert np.abs(np.sort(wrong.mu.real) - np.sort(right.mu.real)).max() > 1e-3
+
+
+def test_what_virtual_sites_do_in_openmm_is_told() -> None:
+    """On the Reference platform an MTSIntegrator kicks with sites where they were a step ago: another map, which grows
+    at 2 fs."""
+    system, positions, _ = SITES["TIP4P-Ew"]()
+    step = Fraction("0.002")
+    made = ko.system(system, positions, steps={0: step / 9, 1: step})
+    assert "3 virtual sites" in made.notes[0] and "another map" in made.notes[0]
+    found = ko.oscillations(system, positions, steps={0: step / 9, 1: step})
+    assert found.stable and found.proven
+    engine = ko._engine(system)
+    integrator = mm.MTSIntegrator(float(step), [(1, 1), (0, 9)])
+    context = mm.Context(system, integrator, REFERENCE)
+    root, speeds = np.sqrt(np.repeat(engine.masses, 3)), np.zeros((12, 3))
+
+    def after(state: np.ndarray) -> np.ndarray:
+        engine.place(found.positions + (state[:27] / root).reshape(-1, 3), context)
+        speeds[engine.moving] = (state[27:] / root).reshape(-1, 3)
+        context.setVelocities(speeds)
+        integrator.step(1)
+        now = context.getState(getPositions=True, getVelocities=True)
+        at, going = (own(asNumpy=True)._value[engine.moving] for own in (now.getPositions, now.getVelocities))
+        return np.concatenate([((at - found.positions).ravel() * root), going.ravel() * root])
+
+    own = multipliers(after, 27, 1e-4, 2e-6)
+    # The note's rate. Should OpenMM place them at each drift some day, this is 0 and the note is wrong.
+    assert np.log(np.abs(own).max()) / float(step) == pytest.approx(0.34, abs=0.01)
+    # One clock alone has each platform's sites in place.
+    assert "another map" not in ko.system(system, positions, integrator=mm.VerletIntegrator(0.0005)).notes[0]
+
+
+@pytest.mark.parametrize("model", ["TIP4P-Ew", "TIP5P", "lone pairs"])
+def test_virtual_sites_that_cross_a_cutoff_are_kept_on_their_side(model: str) -> None:
+    """A pair of sites within a difference's step of the cutoff: the Hessian is that of a cutoff somewhat longer."""
+    system, positions, _ = SITES[model]()
+    engine = ko._engine(system)
+    where = engine.placed(ko._positions(positions, system))
+    sites = [n for n in engine.sites if n > 4]
+    ends = sorted(float(np.linalg.norm(where[engine.sites[0]] - where[n])) for n in sites)
+    found = []
+    for beyond in (2e-5, 1e-3):
+        own = mm.XmlSerializer.clone(system)
+        for force in own.getForces():
+            if isinstance(force, mm.NonbondedForce):
+                force.setNonbondedMethod(mm.NonbondedForce.CutoffNonPeriodic)
+                force.setCutoffDistance(ends[0] + beyond)
+                # No reaction field, which knows the cutoff.
+                force.setReactionFieldDielectric(1.0)
+        force = ko._engine(own).force(2)
+        found.append(hessians.hessian(force, where[engine.moving], engine.masses, 1e-4))
+        if beyond == 2e-5:
+            _, jumped = hessians.hessian(lambda at, force=force: force(at), where[engine.moving], engine.masses, 1e-4)
+    (near, error), (far, _) = found
+    size = np.linalg.norm(far, 2)
+    # Rounding of forces of some 1e3 kJ/mol/nm over 1e-4 nm, of 1e4 kJ/mol/nm²; of forces as they jump nothing is left.
+    assert np.linalg.norm(near - far, 2) < 1e-11 * size and error < 1e-5 * size < size < jumped
+
+
+def test_sparse_hessians_and_bands_know_virtual_sites() -> None:
+    """Averages of their atoms by formulas; others are refused where pairs know them, and left alone where none does."""
+    from kickdrift import _forcefield
+
+    steps = {0: "0.5fs", 1: "4fs"}
+    for model in ("TIP4P-Ew", "OPC"):
+        system, positions, topology = SITES[model]()
+        engine, where = ko._engine(system), ko._positions(positions, system)
+        root = np.sqrt(np.repeat(engine.masses, 3))
+        for group in (0, 1):
+            matrix, error = _forcefield.hessian(system, [group], where, 1e-5)
+            dense, other = hessians.hessian(engine.force(1 << group), where, engine.masses, 1e-4)
+            assert error < 1e-6 * abs(matrix).max()
+            apart = np.linalg.norm(matrix.toarray() / np.outer(root, root) - dense, 2)
+            assert apart < other + error / engine.masses.min()
+        thin = ko.system(system, positions, steps=steps, sparse=True, topology=topology)
+        assert thin.decide().stable
+    system, positions, topology = SITES["TIP5P"]()
+    with pytest.raises(kd.KickdriftError, match=r"OutOfPlaneSite.*leave sparse=True out"):
+        ko.system(system, positions, steps=steps, sparse=True)
+    for model in ("TIP4P-Ew", "TIP5P"):
+        system, positions, topology = SITES[model]()
+        told = ko.bands(system, positions, steps=steps, topology=topology).levels[0]
+        assert told.is_whole and "O-H stretch of HOH (6 modes, 8.9" in str(told)
+        heavy = ko.bands(system, positions, steps=steps, topology=topology, hmr="3", constraints="h-bonds").levels[0]
+        assert "H-O-H bend of HOH" in str(heavy)
+        advice = str(kd.advise(system, positions=positions, topology=topology, steps=steps, levers=False))
+        assert "limit: O-H stretch of HOH (6 modes, 8.9" in advice
+
+
+def test_particles_that_only_follow_are_named_where_they_cannot_be_chosen() -> None:
+    system, positions, topology = SITES["TIP4P-Ew"]()
+    steps = {0: "0.5fs", 1: "4fs"}
+    with pytest.raises(kd.KickdriftError, match="is a virtual site: give the atoms") as caught:
+        ko.system(system, positions, steps=steps, atoms=[0, 3])
+    assert caught.value.field == "atoms" and caught.value.value == "3"
+    with pytest.raises(kd.KickdriftError, match=r"give shape \(12, 3\), or \(9, 3\) without the virtual sites"):
+        ko.system(system, positions[:5], steps=steps)
+    # Of the second water alone; its number among the massive is another than OpenMM's.
+    alone = ko.system(system, positions, steps=steps, atoms=[4, 5, 6], topology=topology, minimize=True)
+    assert alone.arrays["masses"].shape == (3,)
+
+
 def test_groups_that_are_never_integrated_are_an_error() -> None:
     system, positions = waters()
     with pytest.raises(kd.KickdriftError, match="never integrated") as caught:
@@ -365,12 +553,36 @@ def test_what_openmm_refuses_or_would_never_end_is_refused() -> None:
         kd.advise(system, positions=positions, steps=steps, constraints=app.HBonds)
 
 
+@pytest.mark.parametrize("rigid", [False, True])
+def test_positions_in_another_unit_are_seen_at_once(rigid: bool) -> None:
+    """Before: "lead to no minimum", after long. What is strained, or stretched twice, is let through."""
+    system, positions = waters(rigid)
+    steps = {0: "1/2000", 1: "1/500"}
+    for ask in (ko.system, ko.oscillations, ko.bands):
+        with pytest.raises(kd.KickdriftError, match=r"angstrom\? Give positions / 10.* in nm") as caught:
+            ask(system, positions * 10, steps=steps)
+        assert caught.value.field == "positions"
+        with pytest.raises(kd.KickdriftError, match="units of 10 nm"):
+            ask(system, positions / 10, steps=steps)
+    # A quantity has its own.
+    quantity = (positions * 10) * unit.angstrom
+    assert np.allclose(ko._positions(quantity, system), positions)
+    for scale in (0.5, 0.9, 1.1, 2.0, 3.0):
+        assert ko._positions(positions * scale, system).shape == positions.shape
+    # Few bonds of many, as where a molecule reaches across a box that is not said to be one.
+    torn = positions.copy()
+    torn[:3] += np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]])
+    assert ko._positions(torn, system).shape == positions.shape
+    # One place for all is no unit, nor are bonds that rest at no length.
+    assert ko._positions(np.zeros_like(positions), system).shape == positions.shape
+
+
 def test_massless_particles_and_unknown_states_are_refused() -> None:
     system, positions = bonds(1)
     with pytest.raises(kd.KickdriftError, match="choose orbit or minimum"):
         ko.oscillations(system, positions, steps={0: "1/2000", 1: "1/2000"}, about="here")
     system.addParticle(0.0)
-    with pytest.raises(kd.KickdriftError, match="has no mass"):
+    with pytest.raises(kd.KickdriftError, match=r"has no mass and is no virtual site.*atoms=\[...\]"):
         ko.system(system, np.vstack([positions, [0, 0, 0]]), steps={0: "1/2000", 1: "1/2000"})
     rigid, where = waters(rigid=True)
     engine = ko._engine(rigid)
@@ -971,6 +1183,52 @@ def multipliers(after: Callable[[np.ndarray], np.ndarray], size: int, width: flo
     return np.linalg.eigvals(measured)
 
 
+def own_steps(system: mm.System, period: float, levels: Sequence[tuple[int, int]]) -> tuple[Any, Callable[[], None]]:
+    """OpenMM's MTSIntegrator, and what makes a step of it.
+
+    Of virtual sites its kicks and drifts are integrators of their own: the Reference platform places sites at the end
+    of a step alone, others at each drift."""
+    if not any(system.isVirtualSite(n) for n in range(system.getNumParticles())):
+        plain = mm.MTSIntegrator(period, list(levels))
+        plain.setConstraintTolerance(1e-13)
+        return plain, lambda: plain.step(1)
+    whole, numbers = mm.CompoundIntegrator(), {}
+
+    def piece(group: int | None, time: float) -> int:
+        if (group, time) not in numbers:
+            own = mm.CustomIntegrator(time)
+            if group is None:
+                own.addPerDofVariable("x1", 0)
+                own.addComputePerDof("x", "x+dt*v")
+                own.addComputePerDof("x1", "x")
+                own.addConstrainPositions()
+                own.addComputePerDof("v", "v+(x-x1)/dt")
+            else:
+                # Forces are asked for anew: none of these integrators knows that another has moved the atoms.
+                own.addComputePerDof("x", "x")
+                own.addComputePerDof("v", f"v+dt*f{group}/m")
+            own.addConstrainVelocities()
+            own.setConstraintTolerance(1e-13)
+            numbers[group, time] = whole.addIntegrator(own)
+        return numbers[group, time]
+
+    def made(left: Sequence[tuple[int, int]], done: int) -> list[int]:
+        if not left:
+            return [piece(None, period / done)]
+        (group, count), *inner = left
+        half = piece(group, period / count / 2)
+        return [half, *made(inner, count), half] * (count // done)
+
+    parts = made(levels, 1)
+
+    def step() -> None:
+        for part in parts:
+            whole.setCurrentIntegrator(part)
+            whole.step(1)
+
+    return whole, step
+
+
 def own_multipliers(
     system: mm.System, found: Any, levels: Sequence[tuple[int, int]], closed: float = 2e-6
 ) -> np.ndarray:
@@ -979,22 +1237,25 @@ def own_multipliers(
     OpenMM's SETTLE keeps distances to 1e-9 nm, and speeds to that over an inner step; SHAKE keeps them to rounding: so
     orbits close to 2e-6.
     """
-    integrator = mm.MTSIntegrator(float(found.period), list(levels))
-    integrator.setConstraintTolerance(1e-13)
+    engine = ko._engine(system)
+    moving = engine.moving
+    integrator, step = own_steps(system, float(found.period), list(levels))
     context = mm.Context(system, integrator, REFERENCE)
-    held = Held(ko._engine(system).masses, ko._constraints(system))
+    held = Held(engine.masses, ko._constraints(system))
     frame = held.frame(found.positions)
     n = frame.shape[1]
+    speeds = np.zeros((system.getNumParticles(), 3))
 
     def after(state: np.ndarray) -> np.ndarray:
-        context.setPositions(found.positions + (frame @ state[:n] / held.root).reshape(-1, 3))
+        engine.place(found.positions + (frame @ state[:n] / held.root).reshape(-1, 3), context)
         context.applyConstraints(1e-13)
-        context.setVelocities((frame @ state[n:] / held.root).reshape(-1, 3))
+        speeds[moving] = (frame @ state[n:] / held.root).reshape(-1, 3)
+        context.setVelocities(speeds)
         context.applyVelocityConstraints(1e-13)
-        integrator.step(1)
+        step()
         now = context.getState(getPositions=True, getVelocities=True)
-        parts = (now.getPositions(asNumpy=True)._value - found.positions, now.getVelocities(asNumpy=True)._value)
-        return np.concatenate([frame.T @ (part.ravel() * held.root) for part in parts])
+        at, going = now.getPositions(asNumpy=True)._value[moving], now.getVelocities(asNumpy=True)._value[moving]
+        return np.concatenate([frame.T @ (part.ravel() * held.root) for part in (at - found.positions, going)])
 
     return multipliers(after, n, 1e-4, closed)
 
