@@ -251,7 +251,7 @@ impl SparseSystem {
         };
         levels.look(outer.inner_steps());
         let margin = if levels.is_unstable(outer, 0.0) { None } else { levels.margin(outer) };
-        let (verdict, growing) = margin.map_or_else(|| levels.beyond(outer), |_| (Holds::Stable, None));
+        let (verdict, growing) = margin.map_or_else(|| levels.beyond(outer, true), |_| (Holds::Stable, None));
         // Of the first region nothing is proven of all stiffnesses within more than the margin.
         let holds = match margin {
             Some(margin) if accuracy <= margin => Holds::Stable,
