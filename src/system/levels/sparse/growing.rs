@@ -122,7 +122,11 @@ impl SparseLevels {
     /// Cost: some hundred to some thousand products with S, p times as many with F, and one to a dozen factorizations.
     pub fn beyond(&self, outer: &Outer, are_counted: bool) -> (Holds, Option<Growing>) {
         let counted = self.counted(outer, 0.0);
-        let growing = |is_known| self.growing(outer, counted.as_ref(), [are_counted, is_known]);
+        // By modes that are proven to grow, or by counts: of these few where it is not known that any does.
+        let growing = |is_known| {
+            let first = self.growing_first(outer, counted.as_ref(), are_counted);
+            first.or_else(|| self.growing_past(outer, counted.as_ref()?, [are_counted, is_known]))
+        };
         // Modes that are proven to grow are a verdict; to look for them where nothing shows any costs more than a count.
         let by_products = |own: &Counted| {
             let low = self.ends(0.0).map(|[low, _]| low);
@@ -134,17 +138,6 @@ impl SparseLevels {
         }
         let told = self.told_by(outer, 0.0, counted.as_ref());
         (told, (told == Holds::Unstable).then(|| growing(true)).flatten())
-    }
-
-    /// What grows, by modes that are proven to or by counts: how many do where these `are_counted`, `is_known` where it is proven that any does.
-    fn growing(
-        &self,
-        outer: &Outer,
-        counted: Option<&Counted>,
-        [are_counted, is_known]: [bool; 2],
-    ) -> Option<Growing> {
-        let first = self.growing_first(outer, counted, are_counted);
-        first.or_else(|| self.growing_past(outer, counted?, [are_counted, is_known]))
     }
 
     /// Where p θ < π for every fast mode, by the chord.
