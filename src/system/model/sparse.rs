@@ -251,7 +251,7 @@ impl SparseSystem {
         };
         levels.look(outer.inner_steps());
         let margin = if levels.is_unstable(outer, 0.0) { None } else { levels.margin(outer) };
-        let (verdict, growing) = margin.map_or_else(|| levels.beyond(outer), |_| (Holds::Stable, None));
+        let (verdict, growing) = margin.map_or_else(|| levels.beyond(outer, true), |_| (Holds::Stable, None));
         // Of the first region nothing is proven of all stiffnesses within more than the margin.
         let holds = match margin {
             Some(margin) if accuracy <= margin => Holds::Stable,
@@ -259,14 +259,11 @@ impl SparseSystem {
             _ => Holds::NotTold,
         };
         let first_unstable = levels.first_unstable(outer.inner_steps());
-        let period = Laurent::from_rational(self.step.clone());
-        let largest = growing.as_ref().and_then(|own| own.fastest);
         let note = growing
             .as_ref()
             .map(listed)
             .unwrap_or(if verdict == Holds::Unstable { NO_MODE } else { FIRST }.into());
-        let modes = growing.into_iter().flat_map(|own| own.modes).map(|own| explained(own, &period)).unzip();
-        let part = Part { largest, ..Part::new(levels.size(), period, decided(verdict), modes) };
+        let part = self.growing(verdict, growing);
         let measured = Some(Measured {
             method: Method::default().name(),
             accuracy,
@@ -299,11 +296,15 @@ impl SparseSystem {
         self.allow(limits)?;
         levels.look(outer.inner_steps());
         let (verdict, growing) = levels.growth(outer);
+        Ok(Analysis::of_part(self.growing(verdict, growing), 2, Vec::new()))
+    }
+
+    /// A verdict on two levels with what grows.
+    fn growing(&self, verdict: Holds, growing: Option<Growing>) -> Part {
         let period = Laurent::from_rational(self.step.clone());
         let largest = growing.as_ref().and_then(|own| own.fastest);
         let modes = growing.into_iter().flat_map(|own| own.modes).map(|own| explained(own, &period)).unzip();
-        let part = Part { largest, ..Part::new(levels.size(), period, decided(verdict), modes) };
-        Ok(Analysis::of_part(part, 2, Vec::new()))
+        Part { largest, ..Part::new(self.clocks.size(), period, decided(verdict), modes) }
     }
 
     /// The proven verdict and nothing else.

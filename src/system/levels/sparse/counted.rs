@@ -69,18 +69,16 @@ impl SparseLevels {
         Counted::new(self, blocks, &Period::new(self, *outer, low), epsilon)
     }
 
-    /// The verdict past the first region's line for all stiffnesses within `epsilon` times their norms, by one vector or by a count of these; and so many modes
-    /// grow for sure.
-    pub(super) fn told_by(&self, outer: &Outer, epsilon: f64, counted: Option<&Counted>) -> (Holds, usize) {
-        let at_least = counted.map_or(0, |own| own.at_least_above(0.0));
-        if at_least > 0 || self.is_unstable(outer, epsilon) {
-            return (Holds::Unstable, at_least.max(1));
+    /// The verdict past the first region's line for all stiffnesses within `epsilon` times their norms, by one vector or by a count of these.
+    pub(super) fn told_by(&self, outer: &Outer, epsilon: f64, counted: Option<&Counted>) -> Holds {
+        if self.is_unstable(outer, epsilon) || counted.is_some_and(|own| own.at_least_above(0.0) > 0) {
+            return Holds::Unstable;
         }
         // Where p θ < π, F + S > 0 is asked for of the matrices given alone; the first region's line has been asked there.
         let is_stable = counted
             .filter(|own| epsilon == 0.0 || !own.is_first())
             .is_some_and(|own| own.at_most_above(0.0) == Some(0) && own.grows_by_resonance_alone(self));
-        (if is_stable { Holds::Stable } else { Holds::NotTold }, 0)
+        if is_stable { Holds::Stable } else { Holds::NotTold }
     }
 
     /// F and S in blocks, as they are asked for first.

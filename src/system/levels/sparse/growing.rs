@@ -102,22 +102,8 @@ struct Ritz {
 }
 
 impl SparseLevels {
-    /// The verdict at an outer step where the first region's line proves nothing, and what grows: the fastest modes, up to a dozen. `Unstable` without any where
-    /// none is found beside the vector that proves it.
-    ///
-    /// Cost: some hundred to some thousand products with S, p times as many with F, and one to a dozen factorizations.
-    pub fn beyond(&self, outer: &Outer) -> (Holds, Option<Growing>) {
-        let counted = self.counted(outer, 0.0);
-        let (told, at_least) = self.told_by(outer, 0.0, counted.as_ref());
-        if told != Holds::Unstable {
-            return (told, None);
-        }
-        (Holds::Unstable, self.growing(outer, counted.as_ref(), Some(at_least)))
-    }
-
     /// The verdict at an outer step and the growth, without the number of modes that grow: what a scan shows, at about half the cost of
-    /// [`SparseLevels::beyond`]. Steps below the end of the first region need no factorization. Modes that grow are looked for before they are
-    /// counted, so growth may be proven here where `beyond` gives `NotTold`.
+    /// [`SparseLevels::beyond`]. Steps below the end of the first region need no factorization.
     pub fn growth(&self, outer: &Outer) -> (Holds, Option<Growing>) {
         if self.unheld() == Some(0) && self.is_below_first(outer, 0.0) {
             return (Holds::Stable, None);
@@ -127,26 +113,31 @@ impl SparseLevels {
         if is_near && self.is_proven(outer, 0.0) {
             return (Holds::Stable, None);
         }
+        self.beyond(outer, false)
+    }
+
+    /// The verdict at an outer step where the first region's line proves nothing, and what grows: the fastest modes, up to a dozen, and how many do where these
+    /// `are_counted`. `Unstable` without any where none is found beside the vector that proves it.
+    ///
+    /// Cost: some hundred to some thousand products with S, p times as many with F, and one to a dozen factorizations.
+    pub fn beyond(&self, outer: &Outer, are_counted: bool) -> (Holds, Option<Growing>) {
         let counted = self.counted(outer, 0.0);
+        // By modes that are proven to grow, or by counts: of these few where it is not known that any does.
+        let growing = |is_known| {
+            let first = self.growing_first(outer, counted.as_ref(), are_counted);
+            first.or_else(|| self.growing_past(outer, counted.as_ref()?, [are_counted, is_known]))
+        };
         // Modes that are proven to grow are a verdict; to look for them where nothing shows any costs more than a count.
         let by_products = |own: &Counted| {
             let low = self.ends(0.0).map(|[low, _]| low);
             low.is_some_and(|low| Period::new(self, *outer, low).by_products(own).is_some())
         };
         let is_shown = self.is_unstable(outer, 0.0) || counted.as_ref().is_some_and(by_products);
-        let growing = is_shown.then(|| self.growing(outer, counted.as_ref(), None)).flatten();
-        if growing.is_some() {
-            return (Holds::Unstable, growing);
+        if let Some(found) = is_shown.then(|| growing(false)).flatten() {
+            return (Holds::Unstable, Some(found));
         }
-        let (told, at_least) = self.told_by(outer, 0.0, counted.as_ref());
-        let is_unstable = told == Holds::Unstable;
-        (told, is_unstable.then(|| self.growing(outer, counted.as_ref(), Some(at_least))).flatten())
-    }
-
-    /// What grows, by modes that are proven to or by counts; without `at_least`, how many grow for sure, they are not counted.
-    fn growing(&self, outer: &Outer, counted: Option<&Counted>, at_least: Option<usize>) -> Option<Growing> {
-        let first = self.growing_first(outer, counted, at_least.is_some());
-        first.or_else(|| self.growing_past(outer, counted?, at_least))
+        let told = self.told_by(outer, 0.0, counted.as_ref());
+        (told, (told == Holds::Unstable).then(|| growing(true)).flatten())
     }
 
     /// Where p θ < π for every fast mode, by the chord.
@@ -182,7 +173,12 @@ impl SparseLevels {
     }
 
     /// Where some fast mode has p θ > π: modes are rounded, and the fastest multiplier below −1 is enclosed by counts.
-    fn growing_past(&self, outer: &Outer, counted: &Counted, at_least: Option<usize>) -> Option<Growing> {
+    fn growing_past(
+        &self,
+        outer: &Outer,
+        counted: &Counted,
+        [are_counted, is_known]: [bool; 2],
+    ) -> Option<Growing> {
         let period = Period::new(self, *outer, self.ends(0.0)?[0]);
         let rate = |e: f64| rate::about(Complex64::new(-1.0 - e, 0.0), 2.0 * U);
         let (about, mut found) = period.farthest(counted);
@@ -203,7 +199,7 @@ impl SparseLevels {
         let beside = |sign: f64| parts().map(move |part| 1.0 + sign * part);
         let farther = |turn: f64| (1..=MOST_TURNS).map(move |k| turn.powi(k));
         // Where nothing is known to grow few are asked for: that there is none costs less.
-        let tries = if at_least.is_some() { usize::MAX } else { MOST_UNKNOWN };
+        let tries = if is_known { usize::MAX } else { MOST_UNKNOWN };
         let least = beside(-1.0).chain(farther(0.2)).map(|by| by * own).take(tries);
         let least = least.into_iter().find(|&e| counted.at_least_above(e) > 0)?;
         let most = beside(1.0).chain(farther(2.0)).map(|by| by * own).filter(|_| is_held);
@@ -219,9 +215,10 @@ impl SparseLevels {
             GrowingMode { mu: -1.0 - e, radius: None, growth, shape, quadrature }
         };
         let modes = found.iter().enumerate().map(mode).collect();
-        let at_most = at_least.filter(|_| is_held).and_then(|_| counted.at_most_above(0.0));
+        let at_most = (are_counted && is_held).then(|| counted.at_most_above(0.0)).flatten();
         // One has been counted above `least`.
-        Some(Growing { modes, at_least: at_least.unwrap_or(1), at_most, fastest: Some(bounds) })
+        let at_least = if are_counted { counted.at_least_above(0.0).max(1) } else { 1 };
+        Some(Growing { modes, at_least, at_most, fastest: Some(bounds) })
     }
 
     /// Where F + S > 0 off the rigid motions, so that nothing else grows (section 9).

@@ -204,7 +204,7 @@ impl SparseLevels {
 
     /// As [`SparseLevels::verdict`] where the first region's line is known to prove nothing.
     pub fn verdict_past(&self, outer: &Outer, epsilon: f64) -> Holds {
-        self.told_by(outer, epsilon, self.counted(outer, epsilon).as_ref()).0
+        self.told_by(outer, epsilon, self.counted(outer, epsilon).as_ref())
     }
 
     /// Whether the mode that is unstable first is proven to grow at an outer step, for all stiffnesses within `epsilon` times their norms.
