@@ -1,7 +1,7 @@
 (** What every theorem of Main.v says and rests on; this output is kept in Assumptions.golden. *)
 
 From Coq Require Import Reals.
-From Kickdrift Require Import Vocabulary Algebra Stability Floquet TanCriterion Respa ImplicitExplicit Proposition Plane Cone Returns Between.
+From Kickdrift Require Import Vocabulary Algebra Stability Floquet TanCriterion Respa ImplicitExplicit Proposition Plane Cone Returns Between Labels.
 From Kickdrift Require Main.
 Open Scope R_scope.
 Set Printing Width 110.
@@ -84,6 +84,12 @@ Check Main.clockwise_shear. Print Assumptions Main.clockwise_shear.
 Check Main.further_shear. Print Assumptions Main.further_shear.
 Check Main.between_shears. Print Assumptions Main.between_shears.
 Check Main.between_steps. Print Assumptions Main.between_steps.
+Check Main.label_exists. Print Assumptions Main.label_exists.
+Check Main.label_unique. Print Assumptions Main.label_unique.
+Check Main.label_side. Print Assumptions Main.label_side.
+Check Main.label_grows. Print Assumptions Main.label_grows.
+Check Main.label_between. Print Assumptions Main.label_between.
+Check Main.two_clocks_between. Print Assumptions Main.two_clocks_between.
 Check Main.certificate. Print Assumptions Main.certificate.
 Check Main.certificate_pi. Print Assumptions Main.certificate_pi.
 Check Main.edge_between. Print Assumptions Main.edge_between.

@@ -7,7 +7,7 @@
 From Coq Require Import Reals ZArith List QArith Qreals.
 From Kickdrift Require Import
   Vocabulary Algebra TwoClocks Stability SignTable Floquet TanCriterion Respa ImplicitExplicit Closings Proposition Plane Perturbation
-  Cone Returns Between Certificate PiCertificate EdgeCertificate.
+  Cone Returns Between Labels Certificate PiCertificate EdgeCertificate.
 From Kickdrift Require WordCertificate.
 Open Scope R_scope.
 
@@ -448,7 +448,7 @@ Theorem turning_along : forall (T T' : R -> mat) a b kicked n x,
   = T (turns a b n x) ** along a b kicked n x ** T' x.
 Proof. exact Returns.turning_along. Qed.
 
-(** ** 8. Unstable at two steps with one label (Between.v has the words: lifts, arcs, the shears of a period) *)
+(** ** 8. Unstable at two steps with one label (Between.v and Labels.v have the words: lifts, arcs, shears, labels) *)
 
 (** The step in between (f) turns less far than the smaller one (g), further than the larger one (h), clockwise being
     downwards. Where g turns beta by N half turns at least and h turns alpha by N at most, in chains of inequalities that are
@@ -526,6 +526,40 @@ Theorem between_steps : forall kicks s low high x y n N j,
   2 < Rabs (tr Q) /\ exponential_growth Q /\
   (Z.Even N -> 2 < tr Q) /\ (Z.Odd N -> tr Q < -2).
 Proof. exact Between.between_steps. Qed.
+
+(** A list of kicks and drifts of strength >= 0 has a label where it keeps a line: the half turns which that line makes. *)
+Theorem label_exists : forall l, forward l -> (exists N, label l N) <-> 2 <= Rabs (tr (propagator l)).
+Proof. exact Labels.label_exists. Qed.
+
+Theorem label_unique : forall l M N, forward l -> label l M -> label l N -> M = N.
+Proof. exact Labels.label_unique. Qed.
+
+Theorem label_side : forall l N, forward l -> label l N ->
+  (0 <= N)%Z /\ 2 <= (if Z.even N then 1 else -1) * tr (propagator l).
+Proof. exact Labels.label_side. Qed.
+
+(** All strengths in proportion to the step: the label does not fall, ... *)
+Theorem label_grows : forall w low high M N, forward w -> 0 <= low <= high ->
+  label (at_step low w) M -> label (at_step high w) N -> (M <= N)%Z.
+Proof. exact Labels.label_grows. Qed.
+
+(** ... and where it is the same at two steps, all steps in between have it, and are hyperbolic. *)
+Theorem label_between : forall w low h high N,
+  forward w -> touching w -> 0 <= low < h -> h < high ->
+  label (at_step low w) N -> label (at_step high w) N ->
+  let Q := propagator (at_step h w) in
+  label (at_step h w) N /\ 2 < Rabs (tr Q) /\ exponential_growth Q /\
+  (Z.Even N -> 2 < tr Q) /\ (Z.Odd N -> tr Q < -2).
+Proof. exact Labels.label_between. Qed.
+
+(** Two clocks with h1 = h, h2 = (p/q) h and stiffnesses >= 0, not both 0. *)
+Theorem two_clocks_between : forall p q L1 L2 low h high N,
+  (1 <= p)%nat -> (1 <= q)%nat -> 0 <= L1 -> 0 <= L2 -> 0 < L1 + L2 -> 0 <= low < h -> h < high ->
+  label (period p q L1 L2 low) N -> label (period p q L1 L2 high) N ->
+  let Q := full_period p q h L1 (INR p / INR q * h) L2 in
+  label (period p q L1 L2 h) N /\ 2 < Rabs (tr Q) /\ exponential_growth Q /\
+  (Z.Even N -> 2 < tr Q) /\ (Z.Odd N -> tr Q < -2).
+Proof. exact Labels.two_clocks_between. Qed.
 
 (** ** 9. Certificates *)
 
