@@ -169,8 +169,8 @@ Qed.
 
 (** ** One list at several steps *)
 
-Definition at_step (h : R) (w : list step) :=
-  map (fun e => match e with Kick k => Kick (h * k) | Drift t => Drift (h * t) end) w.
+Definition times (h : R) (e : step) := match e with Kick k => Kick (h * k) | Drift t => Drift (h * t) end.
+Definition at_step (h : R) (w : list step) := map (times h) w.
 
 Definition touching (w : list step) := exists u e e' v,
   w = u ++ e :: e' :: v /\ is_kick e' = negb (is_kick e) /\ 0 < strength e /\ 0 < strength e'.
@@ -186,8 +186,7 @@ Proof.
   apply (label_order (angles (at_step low w)) (angles (at_step high w)) x y); try assumption.
   clear x y X Y L; induction F as [|e w S F IH]; intros z; simpl; [lra|].
   destruct (angles_lift (at_step high w)) as (_ & L & _); [apply forward_at_step; [lra | exact F]|].
-  apply Rle_trans with (angles (at_step high w) (turned (matrix_of
-    match e with Kick k => Kick (low * k) | Drift t => Drift (low * t) end) z)); [|apply IH].
+  apply Rle_trans with (angles (at_step high w) (turned (matrix_of (times low e)) z)); [|apply IH].
   apply lift_le; [exact L|].
   destruct e as [k|t]; simpl in *; [apply (further_shear true) | apply (further_shear false)]; split; nra.
 Qed.
@@ -198,7 +197,7 @@ Definition weight (w : list step) k := strength (nth k w (Drift 0)).
 
 Lemma nth_at_step h w k : matrix_of (nth k (at_step h w) (Drift (h * 0))) = shear (kind_of w k) (h * weight w k).
 Proof.
-  unfold at_step, kind_of, weight; rewrite (map_nth (fun e => match e with Kick k => Kick (h * k) | Drift t => Drift (h * t) end) w (Drift 0) k).
+  unfold at_step, kind_of, weight; change (Drift (h * 0)) with (times h (Drift 0)); rewrite map_nth.
   now destruct nth.
 Qed.
 
