@@ -1,7 +1,7 @@
 (** What every theorem of Main.v says and rests on; this output is kept in Assumptions.golden. *)
 
 From Coq Require Import Reals.
-From Kickdrift Require Import Vocabulary Algebra Stability Floquet TanCriterion Respa ImplicitExplicit Proposition Plane Cone Returns.
+From Kickdrift Require Import Vocabulary Algebra Stability Floquet TanCriterion Respa ImplicitExplicit Proposition Plane Cone Returns Between Labels.
 From Kickdrift Require Main.
 Open Scope R_scope.
 Set Printing Width 110.
@@ -75,6 +75,21 @@ Check Main.walk_product. Print Assumptions Main.walk_product.
 Check Main.band_growth. Print Assumptions Main.band_growth.
 Check Main.band_unstable. Print Assumptions Main.band_unstable.
 Check Main.turning_along. Print Assumptions Main.turning_along.
+Check Main.between. Print Assumptions Main.between.
+Check Main.arc_hyperbolic. Print Assumptions Main.arc_hyperbolic.
+Check Main.between_unstable. Print Assumptions Main.between_unstable.
+Check Main.turned_lift. Print Assumptions Main.turned_lift.
+Check Main.further_turned. Print Assumptions Main.further_turned.
+Check Main.clockwise_shear. Print Assumptions Main.clockwise_shear.
+Check Main.further_shear. Print Assumptions Main.further_shear.
+Check Main.between_shears. Print Assumptions Main.between_shears.
+Check Main.between_steps. Print Assumptions Main.between_steps.
+Check Main.label_exists. Print Assumptions Main.label_exists.
+Check Main.label_unique. Print Assumptions Main.label_unique.
+Check Main.label_side. Print Assumptions Main.label_side.
+Check Main.label_grows. Print Assumptions Main.label_grows.
+Check Main.label_between. Print Assumptions Main.label_between.
+Check Main.two_clocks_between. Print Assumptions Main.two_clocks_between.
 Check Main.certificate. Print Assumptions Main.certificate.
 Check Main.certificate_pi. Print Assumptions Main.certificate_pi.
 Check Main.edge_between. Print Assumptions Main.edge_between.

@@ -7,7 +7,7 @@
 From Coq Require Import Reals ZArith List QArith Qreals.
 From Kickdrift Require Import
   Vocabulary Algebra TwoClocks Stability SignTable Floquet TanCriterion Respa ImplicitExplicit Closings Proposition Plane Perturbation
-  Cone Returns Certificate PiCertificate EdgeCertificate.
+  Cone Returns Between Labels Certificate PiCertificate EdgeCertificate.
 From Kickdrift Require WordCertificate.
 Open Scope R_scope.
 
@@ -448,7 +448,120 @@ Theorem turning_along : forall (T T' : R -> mat) a b kicked n x,
   = T (turns a b n x) ** along a b kicked n x ** T' x.
 Proof. exact Returns.turning_along. Qed.
 
-(** ** 8. Certificates *)
+(** ** 8. Unstable at two steps with one label (Between.v and Labels.v have the words: lifts, arcs, shears, labels) *)
+
+(** The step in between (f) turns less far than the smaller one (g), further than the larger one (h), clockwise being
+    downwards. Where g turns beta by N half turns at least and h turns alpha by N at most, in chains of inequalities that are
+    strict for f once, the period of f maps an arc into itself after N half turns. *)
+Theorem between : forall f g h alpha beta n N,
+  (forall k, (k < n)%nat -> lift (f k) /\ forall x, h k x <= f k x <= g k x) ->
+  (forall k, (k < n)%nat -> g k (beta k) <= beta (S k)) ->
+  (forall k, (k < n)%nat -> alpha (S k) <= h k (alpha k)) ->
+  (exists k, (k < n)%nat /\ f k (beta k) < beta (S k)) ->
+  (exists k, (k < n)%nat /\ alpha (S k) < f k (alpha k)) ->
+  beta n <= beta O - IZR N * PI -> alpha O - IZR N * PI <= alpha n ->
+  exists j, let a := alpha O + IZR j * PI in let b := beta O in let F := compose f n in
+    a < b < a + PI /\ a < F a + IZR N * PI /\ F a < F b /\ F b + IZR N * PI < b.
+Proof. exact Between.between. Qed.
+
+(** A matrix that does so is hyperbolic, and the parity of N says on which side. *)
+Theorem arc_hyperbolic : forall Q a b x y c d N,
+  det Q = 1 -> a < b < a + PI ->
+  0 < c -> Q @ direction a = smul c (direction x) ->
+  0 < d -> Q @ direction b = smul d (direction y) ->
+  a < x + IZR N * PI < b -> a < y + IZR N * PI < b ->
+  2 < Rabs (tr Q) /\ exponential_growth Q /\
+  (Z.Even N -> 2 < tr Q) /\ (Z.Odd N -> tr Q < -2).
+Proof. exact Between.arc_hyperbolic. Qed.
+
+Theorem between_unstable : forall M f g h alpha beta n N,
+  (forall k, (k < n)%nat -> det (M k) = 1 /\ sends (M k) (f k)) ->
+  (forall k, (k < n)%nat -> lift (f k) /\ forall x, h k x <= f k x <= g k x) ->
+  (forall k, (k < n)%nat -> g k (beta k) <= beta (S k)) ->
+  (forall k, (k < n)%nat -> alpha (S k) <= h k (alpha k)) ->
+  (exists k, (k < n)%nat /\ f k (beta k) < beta (S k)) ->
+  (exists k, (k < n)%nat /\ alpha (S k) < f k (alpha k)) ->
+  beta n <= beta O - IZR N * PI -> alpha O - IZR N * PI <= alpha n ->
+  let Q := Cone.product M n in
+  2 < Rabs (tr Q) /\ exponential_growth Q /\
+  (Z.Even N -> 2 < tr Q) /\ (Z.Odd N -> tr Q < -2).
+Proof. exact Between.between_unstable. Qed.
+
+(** The maps of angles exist, ... *)
+Theorem turned_lift : forall M, det M = 1 -> clockwise M ->
+  sends M (turned M) /\ lift (turned M) /\ forall x, x - PI < turned M x <= x.
+Proof. exact Between.turned_lift. Qed.
+
+Theorem further_turned : forall M M' x, clockwise M -> clockwise M' ->
+  0 <= cross (M' @ direction x) (M @ direction x) -> turned M' x <= turned M x.
+Proof. exact Between.further_turned. Qed.
+
+(** ... also of kicks and drifts, and the larger ones turn further. *)
+Theorem clockwise_shear : forall kicks s, 0 <= s -> det (shear kicks s) = 1 /\ clockwise (shear kicks s).
+Proof. exact Between.clockwise_shear. Qed.
+
+Theorem further_shear : forall kicks s s' x, 0 <= s <= s' ->
+  turned (shear kicks s') x <= turned (shear kicks s) x.
+Proof. exact Between.further_shear. Qed.
+
+Theorem between_shears : forall kicks s low high alpha beta n N,
+  (forall k, (k < n)%nat -> 0 <= low k <= s k /\ s k <= high k) ->
+  (forall k, (k < n)%nat -> at_strength kicks low k (beta k) <= beta (S k)) ->
+  (forall k, (k < n)%nat -> alpha (S k) <= at_strength kicks high k (alpha k)) ->
+  (exists k, (k < n)%nat /\ at_strength kicks s k (beta k) < beta (S k)) ->
+  (exists k, (k < n)%nat /\ alpha (S k) < at_strength kicks s k (alpha k)) ->
+  beta n <= beta O - IZR N * PI -> alpha O - IZR N * PI <= alpha n ->
+  let Q := Cone.product (fun k => shear (kicks k) (s k)) n in
+  2 < Rabs (tr Q) /\ exponential_growth Q /\
+  (Z.Even N -> 2 < tr Q) /\ (Z.Odd N -> tr Q < -2).
+Proof. exact Between.between_shears. Qed.
+
+(** One direction x at the smaller step, one direction y at the larger one, a kick next to a drift that both grow. *)
+Theorem between_steps : forall kicks s low high x y n N j,
+  (forall k, (k < n)%nat -> 0 <= low k <= s k /\ s k <= high k) ->
+  (S j < n)%nat -> kicks (S j) = negb (kicks j) -> low j < s j < high j -> low (S j) < s (S j) < high (S j) ->
+  compose (at_strength kicks low) n x <= x - IZR N * PI ->
+  y - IZR N * PI <= compose (at_strength kicks high) n y ->
+  let Q := Cone.product (fun k => shear (kicks k) (s k)) n in
+  2 < Rabs (tr Q) /\ exponential_growth Q /\
+  (Z.Even N -> 2 < tr Q) /\ (Z.Odd N -> tr Q < -2).
+Proof. exact Between.between_steps. Qed.
+
+(** A list of kicks and drifts of strength >= 0 has a label where it keeps a line: the half turns which that line makes. *)
+Theorem label_exists : forall l, forward l -> (exists N, label l N) <-> 2 <= Rabs (tr (propagator l)).
+Proof. exact Labels.label_exists. Qed.
+
+Theorem label_unique : forall l M N, forward l -> label l M -> label l N -> M = N.
+Proof. exact Labels.label_unique. Qed.
+
+Theorem label_side : forall l N, forward l -> label l N ->
+  (0 <= N)%Z /\ 2 <= (if Z.even N then 1 else -1) * tr (propagator l).
+Proof. exact Labels.label_side. Qed.
+
+(** All strengths in proportion to the step: the label does not fall, ... *)
+Theorem label_grows : forall w low high M N, forward w -> 0 <= low <= high ->
+  label (at_step low w) M -> label (at_step high w) N -> (M <= N)%Z.
+Proof. exact Labels.label_grows. Qed.
+
+(** ... and where it is the same at two steps, all steps in between have it, and are hyperbolic. *)
+Theorem label_between : forall w low h high N,
+  forward w -> touching w -> 0 <= low < h -> h < high ->
+  label (at_step low w) N -> label (at_step high w) N ->
+  let Q := propagator (at_step h w) in
+  label (at_step h w) N /\ 2 < Rabs (tr Q) /\ exponential_growth Q /\
+  (Z.Even N -> 2 < tr Q) /\ (Z.Odd N -> tr Q < -2).
+Proof. exact Labels.label_between. Qed.
+
+(** Two clocks with h1 = h, h2 = (p/q) h and stiffnesses >= 0, not both 0. *)
+Theorem two_clocks_between : forall p q L1 L2 low h high N,
+  (1 <= p)%nat -> (1 <= q)%nat -> 0 <= L1 -> 0 <= L2 -> 0 < L1 + L2 -> 0 <= low < h -> h < high ->
+  label (period p q L1 L2 low) N -> label (period p q L1 L2 high) N ->
+  let Q := full_period p q h L1 (INR p / INR q * h) L2 in
+  label (period p q L1 L2 h) N /\ 2 < Rabs (tr Q) /\ exponential_growth Q /\
+  (Z.Even N -> 2 < tr Q) /\ (Z.Odd N -> tr Q < -2).
+Proof. exact Labels.two_clocks_between. Qed.
+
+(** ** 9. Certificates *)
 
 Theorem certificate : forall k p q (h1 L1 h2 L2 : Q) x1 l1 x2 l2,
   x1 = Q2R h1 -> l1 = Q2R L1 -> x2 = Q2R h2 -> l2 = Q2R L2 ->
