@@ -80,7 +80,7 @@
 //! | 6 | [`map`] | the verdicts of whole grids of steps, pairs side by side |
 //! | 6 | [`tongue`] | every unstable interval of a ratio, its edges, and where tongues close |
 //! | 6 | [`system`] | many clocks, many degrees of freedom |
-//! | 6 | [`band`] | boxes of steps in which every ratio is unstable |
+//! | 6 | [`band`] | steps at which every ratio is unstable |
 //! | 6 | [`avi`] | Algorithm 1 run as a simulation |
 //! | 7 | [`advise`] | units, periods and bonds, engines' notations → which steps are safe |
 //! | 8 | [`scene`] | systems' files → library types |

@@ -126,7 +126,7 @@ const LINES: [&str; 75] = [
     "word --method mts-baoab-4 --lambda1 pi^2/25 --lambda2 pi^2/400 --h 4 --friction 1/100",
     "word --method molly-long --lambda1 pi^2/25 --lambda2 pi^2/400 --h 5",
     "compare --methods respa-4,impulse --h1-range 0..4 --h2-range 0..2 --step 1/2",
-    "bands --lambda1 pi^2 --lambda2 pi^2/25 --h1-range 0..2/pi --h2-range 0..7/2 --area 1/200 --boxes 9000",
+    "bands --lambda1 pi^2 --lambda2 pi^2/25 --h1-range 0..2/pi --h2-range 0..7/2 --area 1/200 --sectors 9000",
     "closings --max-sum 9 --samples 50",
     "advise --period OH=10fs --period 40fs --steps 0.5fs,4fs --steps 0.5fs,4.8fs --steps 0.5fs,5fs --length 10ns",
     "advise --bond OH:K=450kcal/mol/A^2,15.999,1.008 --bond CH:k=680kcal/mol/A^2,12.011,1.008,3 --period 3000/cm --hmr 3.024 --on 3000/cm=1 --steps 1fs,2fs",

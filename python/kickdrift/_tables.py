@@ -559,13 +559,13 @@ def state(
 
 
 class Bands(Answer):
-    """Boxes of steps in which every ratio h2/h1, rational or not, is proven unstable.
+    """Sectors of steps in which every ratio h2/h1, rational or not, is proven unstable.
 
     Examples
     --------
     >>> import kickdrift as kd
-    >>> found = kd.bands(lambda1="pi^2", lambda2="pi^2/25", h1="1/5..1/4", h2="9/10..1", boxes=500)
-    >>> found.data["share"]["value"]["lo"] > 0.3
+    >>> found = kd.bands(lambda1="pi^2", lambda2="pi^2/25", h1="1/5..1/4", h2="9/10..1", sectors=500)
+    >>> found.data["share"]["lo"] > 0.3
     True
     """
 
@@ -577,49 +577,51 @@ def bands(
     h1: Range,
     h2: Range,
     area: Exact | None = None,
-    boxes: int | None = None,
+    sectors: int | None = None,
     budget: int | None = None,
 ) -> Bands:
-    """Find boxes of (h1, h2) in which every ratio h2/h1, rational or not, is proven unstable.
+    """Find sectors of (h1, h2) in which every ratio h2/h1, rational or not, is proven unstable.
 
-    Nothing is claimed of steps in no box: they may be stable or not.
+    A sector is a part of the tongue of the paper's curve (a, b): ratios from ``ratio_from`` to ``ratio_to``, and h1
+    between a lower and an upper side, each affine in the ratio from ``lower_from`` to ``lower_to`` and from
+    ``upper_from`` to ``upper_to``. Nothing is claimed of steps in no sector: they may be stable or not.
 
     Parameters
     ----------
     lambda1, lambda2 : Exact
-        The stiffnesses of the fast and of the slow force.
+        The stiffnesses of the fast and of the slow force, both positive.
     h1, h2 : Range
         The closed ranges of both steps.
     area : Exact, optional
         End where this share of the window is certified.
-    boxes : int, optional
-        The most boxes that are tried; 100000 unless given.
+    sectors : int, optional
+        The most sectors that are tried; 100000 unless given.
     budget : int, optional
-        The largest number of boxes that may be asked for.
+        The largest number of sectors that may be asked for.
 
     Raises
     ------
     KickdriftError, BudgetError
-        Bad input; more boxes than the budget allows.
+        Bad input; more sectors than the budget allows.
 
     Examples
     --------
     >>> import kickdrift as kd
-    >>> found = kd.bands(lambda1="pi^2", lambda2="pi^2/25", h1="1/5..1/4", h2="9/10..1", boxes=500)
-    >>> found[0]["h1_lower"]
-    '1/5'
+    >>> found = kd.bands(lambda1="pi^2", lambda2="pi^2/25", h1="1/5..1/4", h2="9/10..1", sectors=500)
+    >>> found[0]["a"], found[0]["b"]
+    (0, 1)
     """
     return answered(
         Bands,
         "bands",
-        "boxes",
+        "sectors",
         budget,
         lambda1=_text("lambda1", lambda1),
         lambda2=_text("lambda2", lambda2),
         h1_range=_range("h1", h1),
         h2_range=_range("h2", h2),
         area=_text("area", area),
-        boxes=boxes,
+        sectors=sectors,
     )
 
 

@@ -10,32 +10,6 @@ pub struct Cone {
     pub second: [f64; 2],
 }
 
-/// Lower bounds, not positive where nothing is proven.
-#[derive(Clone, Copy, Debug)]
-pub struct Margins {
-    /// In the middle of the box, without what is not known.
-    pub of_middle: f64,
-    /// In all of it.
-    pub of_box: f64,
-    /// The parts of their difference that are of the second and of the third order in the box.
-    pub bent: [f64; 2],
-}
-
-impl Margins {
-    /// About how many bisections until a part of the box is proven, where its sides are a share x: m > l x + q x² + e x³.
-    pub fn bisections(&self) -> u32 {
-        let [q, e] = self.bent;
-        let l = (self.of_middle - self.of_box - q - e).max(0.0);
-        let mut to_go = 0;
-        let mut x: f64 = 1.0;
-        while to_go < 60 && self.of_middle <= x * (l + x * (q + x * e)) {
-            to_go += 1;
-            x *= std::f64::consts::FRAC_1_SQRT_2;
-        }
-        to_go
-    }
-}
-
 /// The vectors (x, y) along the attracting and the repelling direction of a hyperbolic matrix of determinant 1.
 fn directions([a, b, c, d]: Matrix) -> Option<[[f64; 2]; 2]> {
     let trace = a + d;
@@ -61,7 +35,7 @@ const PLACES: u32 = 8;
 /// inwards is counterclockwise.
 fn boundary(maps: [&Family; 2], turn: f64, v: [f64; 2], w: [f64; 2]) -> [f64; 2] {
     let (v, w) = (unit(v), unit(w));
-    let unsure = maps.map(|map| map.error + map.moved_by(0) + map.moved_by(1) + 1e-6);
+    let unsure = maps.map(|map| map.error + map.moved() + 1e-6);
     let values = maps.map(|map| [-1.0, 0.0, 1.0].map(|t| map.at(t)));
     let (mut best, mut safest) = (v, f64::NEG_INFINITY);
     for place in 1..PLACES {
@@ -114,8 +88,8 @@ impl Cone {
         Some(Cone { first, second })
     }
 
-    /// Lower bounds on the entries of the function, all of one sign, in the coordinates of the cone.
-    pub fn margins(&self, map: &Family) -> Margins {
+    /// Whether the function has entries of one sign, none of them zero, in the coordinates of the cone: for all offsets and all ratios.
+    pub fn serves(&self, map: &Family) -> bool {
         let ([p, r], [q, s]) = (self.first, self.second);
         let determinant = p * s - q * r;
         // Columns u, w; the inverse has rows (s, −q), (−r, p) over the determinant.
@@ -126,29 +100,21 @@ impl Cone {
         };
         // Norms of both changes: |P|² ≤ 2, |P⁻¹| = |P|/|det|. Entries of a matrix are at most its norm.
         let condition = 2.0 / (determinant.abs() - 1e-15).max(0.0);
-        let first = change(map.values()[0]);
-        let sign = 1f64.copysign(first[0]);
-        let mut least = first.map(|x| sign * x);
-        for (j, m) in map.values().iter().enumerate().skip(1) {
-            // t^j in [−1, 1], or in [0, 1].
-            let lost = |x: f64| if j % 2 == 0 { (sign * x).min(0.0) } else { -x.abs() };
-            least.iter_mut().zip(change(*m)).for_each(|(least, x)| *least += lost(x));
-        }
-        let worst = |least: [f64; 4]| least.into_iter().fold(f64::INFINITY, f64::min);
-        let of_middle = worst(least);
-        for m in map.slopes().into_iter().flatten() {
-            least.iter_mut().zip(change(*m)).for_each(|(least, x)| *least -= x.abs());
-        }
-        let of_affine = worst(least);
-        for (k, terms) in map.squares().into_iter().enumerate() {
-            for (j, m) in terms.iter().enumerate() {
-                let lost = |x: f64| if j % 2 == 0 && k != 1 { (sign * x).min(0.0) } else { -x.abs() };
-                least.iter_mut().zip(change(*m)).for_each(|(least, x)| *least += lost(x));
+        let sign = 1f64.copysign(change(map.of(0)[0])[0]);
+        let mut least = [0.0; 4];
+        for k in 0..3 {
+            for (j, m) in map.of(k).iter().enumerate() {
+                // t^j u^k is 1, in [0, 1], or in [−1, 1].
+                let at_least = |x: f64| match (k, j) {
+                    (0, 0) => x,
+                    _ if j % 2 == 0 && k % 2 == 0 => x.min(0.0),
+                    _ => -x.abs(),
+                };
+                least.iter_mut().zip(change(*m)).for_each(|(least, x)| *least += at_least(sign * x));
             }
         }
-        let of_second = worst(least);
         let rounding = 1e-14 * map.size();
         let error = condition * (map.error + rounding) * UP;
-        Margins { of_middle, of_box: of_second - error, bent: [of_affine - of_second, error] }
+        least.into_iter().all(|least| least > error)
     }
 }

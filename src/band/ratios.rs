@@ -1,10 +1,10 @@
-//! The ratios about one of them that are unstable, at a step of the first clock: boxes of no width in h1.
+//! The ratios about one of them that are unstable, at a step of the first clock: the cone of one step and a range of ratios.
 
 use num_traits::ToPrimitive;
 
-use super::search::{BITS, bases, enclosed, prove};
+use super::frame::Frame;
+use super::search::{BITS, base, enclosed};
 use super::taylor::Taylor;
-use super::walk::Found;
 use crate::number::{Laurent, Rational, Real, U};
 
 /// Ends of ranges are multiples of 1/UNIT.
@@ -12,6 +12,15 @@ const UNIT: i64 = 1_000_000;
 
 /// Ranges of ratios that are tried on either side.
 const TRIES: usize = 100;
+
+/// Families |a| ≤ this have a frame.
+const FAMILIES: i64 = 8;
+
+/// Forks of Euclid's algorithm: simple ratios within the range.
+const FORKS: usize = 4;
+
+/// The base, and the family in whose frame it is followed, if it turns.
+type Way = (usize, Option<i64>);
 
 /// Ratios from this one on are not looked at: in doubles they would not be exact multiples of 1/[`UNIT`].
 const LARGEST: i64 = 1 << 30;
@@ -40,19 +49,25 @@ pub fn unstable_ratios(
     let scaled = ratio * Rational::from_integer(UNIT.into());
     let [from, to] = [scaled.floor(), scaled.ceil()].map(|x| x.to_integer().to_i64());
     let (from, to) = from.zip(to).filter(|(from, to)| *from > 0 && *to < LARGEST * UNIT)?;
-    let (bases, h1) = (bases(lambdas), enclosed(&h1.enclosure(BITS)));
-    let is_unstable = |from: i64, to: i64| {
+    let [first, second] = lambdas;
+    let (bases, h1) = ([base(first, second), base(second, first)], enclosed(&h1.enclosure(BITS)));
+    let is_unstable = |from: i64, to: i64, (own, family): Way| {
         let [middle, half] = [from + to, to - from].map(|x| x as f64 / (2 * UNIT) as f64);
-        let off = 2.0 * U * (middle + half);
-        let step = |step: usize, slope: usize| match step {
-            0 => h1,
-            _ => h1.times(&Taylor::constant(middle, off).with_slope(slope, half)),
+        let ratio = Taylor::constant(middle, 2.0 * U * (middle + half)).with_slope(half);
+        let steps = [h1, h1.times(&ratio)];
+        let range = [[(from, UNIT), (to, UNIT)], [(UNIT, to), (UNIT, from)]][own];
+        let frame = || {
+            let tau = if own == 0 { ratio } else { ratio.reciprocal()? };
+            Frame::new(&steps[own], &steps[1 - own], &tau, bases[own].as_ref()?)
         };
-        from > 0 && prove(&bases, 0, step) == Found::Certified
+        from > 0 && frame().is_some_and(|frame| frame.proves(family, range, FORKS))
     };
-    if from < to && !is_unstable(from, to) {
-        return None;
-    }
+    // The way that proves the narrowest range proves the others.
+    let narrow = ((from - 1).max(1), to + 1);
+    let families = || (0..=FAMILIES).flat_map(|a| [a, -a]).map(Some).chain([None]);
+    let ways = families().flat_map(|family| [(0, family), (1, family)]);
+    let way = ways.into_iter().find(|way| is_unstable(narrow.0, narrow.1, *way))?;
+    let is_unstable = |from: i64, to: i64| is_unstable(from, to, way);
     // Ranges are doubled where they are proven, and halved where not.
     let reached = |from: i64, side: i64| {
         let (mut end, mut length) = (from, 1024);

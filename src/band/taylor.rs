@@ -1,23 +1,18 @@
-//! Numbers that depend on a box of steps: Taylor models of the second order (proofs/BANDS.md).
+//! Numbers that depend on the ratio of the steps: Taylor models of the second order (proofs/BANDS.md).
 
 use super::trig::{TRIG, arcsine, sine_cosine};
 use super::{FLOOR, UP};
 use crate::number::U;
 
-/// c + d₁ u₁ + d₂ u₂ + q₁ u₁² + q₂ u₁ u₂ + q₃ u₂² + E(u) on the box |u₁|, |u₂| ≤ 1, |E| ≤ ε.
+/// c + d u + q u² + E(u) for |u| ≤ 1, |E| ≤ ε.
 ///
 /// Every operation encloses its result: what it rounds, and what is of the third order, goes to ε.
 #[derive(Clone, Copy, Debug)]
 pub struct Taylor {
     pub center: f64,
-    pub slopes: [f64; 2],
-    pub squares: [f64; 3],
+    pub slope: f64,
+    pub square: f64,
     pub error: f64,
-}
-
-/// The coefficients of (d₁ u₁ + d₂ u₂) (e₁ u₁ + e₂ u₂).
-pub fn product_of_slopes([a, b]: [f64; 2], [c, d]: [f64; 2]) -> [f64; 3] {
-    [a * c, a * d + b * c, b * d]
 }
 
 /// f at a point c.
@@ -33,34 +28,27 @@ struct Function {
 impl Taylor {
     /// A number within `error` of `center`.
     pub fn constant(center: f64, error: f64) -> Self {
-        Taylor { center, slopes: [0.0; 2], squares: [0.0; 3], error }
+        Taylor { center, slope: 0.0, square: 0.0, error }
     }
 
-    /// This model with another slope in one of the two directions.
-    pub fn with_slope(mut self, direction: usize, slope: f64) -> Self {
-        self.slopes[direction] = slope;
-        self
+    /// This model with another slope.
+    pub fn with_slope(self, slope: f64) -> Self {
+        Taylor { slope, ..self }
     }
 
     /// All of its coefficients, from the center on.
-    pub fn coefficients(&self) -> [f64; 6] {
-        let ([d, e], [p, q, r]) = (self.slopes, self.squares);
-        [self.center, d, e, p, q, r]
+    pub fn coefficients(&self) -> [f64; 3] {
+        [self.center, self.slope, self.square]
     }
 
-    /// |d₁| + |d₂|.
-    pub fn first(&self) -> f64 {
-        (self.slopes[0].abs() + self.slopes[1].abs()) * UP
-    }
-
-    /// |q₁| + |q₂| + |q₃| + ε: all that is not affine.
+    /// |q| + ε: all that is not affine.
     pub fn bent(&self) -> f64 {
-        (self.squares.iter().map(|x| x.abs()).sum::<f64>() + self.error) * UP
+        (self.square.abs() + self.error) * UP
     }
 
     /// How far it lies from its center at most.
     pub fn reach(&self) -> f64 {
-        (self.first() + self.bent()) * UP
+        (self.slope.abs() + self.bent()) * UP
     }
 
     /// No value exceeds it.
@@ -70,14 +58,14 @@ impl Taylor {
 
     /// By how much the square of what lies beside the center differs from that of its affine part at most.
     pub fn square_beside_affine(&self) -> f64 {
-        self.bent() * (self.reach() + self.first()) * UP
+        self.bent() * (self.reach() + self.slope.abs()) * UP
     }
 
     pub fn plus(&self, other: &Self) -> Self {
         Taylor {
             center: self.center + other.center,
-            slopes: [0, 1].map(|i| self.slopes[i] + other.slopes[i]),
-            squares: [0, 1, 2].map(|i| self.squares[i] + other.squares[i]),
+            slope: self.slope + other.slope,
+            square: self.square + other.square,
             error: (self.error + other.error + U * (self.size() + other.size())) * UP,
         }
     }
@@ -97,26 +85,20 @@ impl Taylor {
     }
 
     fn scaled(&self, by: f64) -> Self {
-        let Taylor { center, slopes, squares, error } = *self;
-        Taylor {
-            center: center * by,
-            slopes: slopes.map(|x| x * by),
-            squares: squares.map(|x| x * by),
-            error: error * by.abs(),
-        }
+        let Taylor { center, slope, square, error } = *self;
+        Taylor { center: center * by, slope: slope * by, square: square * by, error: error * by.abs() }
     }
 
     pub fn times(&self, other: &Self) -> Self {
         let (x, y) = (self, other);
-        let of_slopes = product_of_slopes(x.slopes, y.slopes);
-        let [x_squares, y_squares] = [x, y].map(|own| (own.bent() - own.error).max(0.0) * UP);
-        let third = x.first() * y_squares + x_squares * y.first() + x_squares * y_squares;
+        let [x_square, y_square] = [x, y].map(|own| own.square.abs());
+        let third = x.slope.abs() * y_square + x_square * y.slope.abs() + x_square * y_square;
         let carried = x.size() * y.error + y.size() * x.error;
         let rounding = 5.0 * U * x.size() * y.size();
         Taylor {
             center: x.center * y.center,
-            slopes: [0, 1].map(|i| x.slopes[i] * y.center + x.center * y.slopes[i]),
-            squares: [0, 1, 2].map(|i| x.squares[i] * y.center + x.center * y.squares[i] + of_slopes[i]),
+            slope: x.slope * y.center + x.center * y.slope,
+            square: x.square * y.center + x.center * y.square + x.slope * y.slope,
             error: (third + carried + rounding) * UP + FLOOR,
         }
     }
@@ -140,7 +122,6 @@ impl Taylor {
     fn image(&self, f: &Function) -> Self {
         let [value, slope, curvature] = f.values;
         let reach = self.reach();
-        let bent = product_of_slopes(self.slopes, self.slopes).map(|x| 0.5 * curvature * x);
         let left = slope.abs() * self.error
             + 0.5 * curvature.abs() * self.square_beside_affine()
             + f.third / 6.0 * reach * reach * reach;
@@ -148,8 +129,8 @@ impl Taylor {
         let rounding: f64 = (0..3).map(|i| (f.off[i] + 6.0 * U * f.values[i].abs()) * powers[i]).sum();
         Taylor {
             center: value,
-            slopes: self.slopes.map(|own| own * slope),
-            squares: [0, 1, 2].map(|i| self.squares[i] * slope + bent[i]),
+            slope: self.slope * slope,
+            square: self.square * slope + 0.5 * curvature * self.slope * self.slope,
             error: (left + rounding) * UP + FLOOR,
         }
     }
@@ -207,29 +188,23 @@ mod tests {
 
     use super::*;
 
-    /// Its polynomial at a point of the box, moved by a share of its error.
-    fn value(x: &Taylor, [u, v]: [f64; 2], share: f64) -> f64 {
-        let [c, d, e, p, q, r] = x.coefficients();
-        c + d * u + e * v + p * u * u + q * u * v + r * v * v + share * x.error
+    /// Its polynomial, moved by a share of its error.
+    fn value(x: &Taylor, u: f64, share: f64) -> f64 {
+        x.center + x.slope * u + x.square * u * u + share * x.error
     }
 
     fn model(center: std::ops::Range<f64>) -> impl Strategy<Value = Taylor> {
-        let rest = (prop::array::uniform2(-1.0..1.0), prop::array::uniform3(-1.0..1.0), 0.0..1e-3, -9..0);
-        (center, rest).prop_map(|(center, (slopes, squares, error, k))| {
+        let rest = (-1.0..1.0, -1.0..1.0, 0.0..1e-3, -9..0);
+        (center, rest).prop_map(|(center, (slope, square, error, k)): (f64, (f64, f64, f64, i32))| {
             let unit = 0.3 * 2f64.powi(k);
-            Taylor {
-                center,
-                slopes: slopes.map(|x: f64| x * unit),
-                squares: squares.map(|x: f64| x * unit * unit),
-                error: error * unit,
-            }
+            Taylor { center, slope: slope * unit, square: square * unit * unit, error: error * unit }
         })
     }
 
     proptest! {
         #[test]
         fn every_value_is_enclosed(
-            x in model(0.2..0.6), y in model(-2.0..2.0), at in prop::array::uniform2(-1.0..=1.0f64), shares in prop::array::uniform2(-1.0..=1.0f64),
+            x in model(0.2..0.6), y in model(-2.0..2.0), at in -1.0..=1.0f64, shares in prop::array::uniform2(-1.0..=1.0f64),
         ) {
             let (a, b) = (value(&x, at, shares[0]), value(&y, at, shares[1]));
             let [sine, cosine] = y.sine_cosine().unwrap();

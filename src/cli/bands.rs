@@ -1,4 +1,4 @@
-//! `kickdrift bands`: boxes of steps in which every ratio is unstable.
+//! `kickdrift bands`: sectors of steps in which every ratio is unstable.
 
 use super::args::{Columns, Common};
 use super::paper::Paper;

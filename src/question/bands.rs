@@ -1,4 +1,4 @@
-//! Boxes of steps in which every ratio is unstable.
+//! Where every ratio is unstable.
 
 use num_traits::{One, Signed};
 
@@ -13,7 +13,7 @@ use crate::report::bands;
 use crate::report::document::Document;
 
 question! {
-    /// Boxes of (h1, h2) in which every ratio h2/h1, rational or not, is proven unstable.
+    /// Sectors of (h1, h2) in which every ratio h2/h1, rational or not, is proven unstable.
     args struct Bands {
         /// The stiffness of the fast force.
         #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
@@ -30,17 +30,17 @@ question! {
         /// End where this share of the window is certified, as 17/200.
         #[arg(long, value_name = "A", allow_hyphen_values = true, value_parser = flag::<Rational>)]
         area: Option<Rational>,
-        /// The most boxes that are tried: each costs some tens of microseconds.
+        /// The most sectors that are tried: each costs some tens of microseconds.
         #[arg(long, value_name = "N", value_parser = flag::<u64>)]
-        boxes: u64 = "100000",
+        sectors: u64 = "100000",
     }
 }
 
-/// The most boxes unless a budget says otherwise: the half of an hour on two cores, and some gigabytes.
-const MOST_BOXES: u64 = 100_000_000;
+/// The most sectors unless a budget says otherwise: an hour on two cores, and some gigabytes.
+const MOST_SECTORS: u64 = 30_000_000;
 
-/// Seconds of one core that a box costs, about.
-const BOX: f64 = 3e-5;
+/// Seconds of one core that a sector costs, about.
+const SECTOR: f64 = 1e-4;
 
 impl Bands {
     /// The window.
@@ -56,15 +56,17 @@ impl Bands {
 impl Question for Bands {
     const NAME: &'static str = "bands";
     const EXAMPLES: &'static [&'static str] = &[
-        "bands --lambda1 pi^2 --lambda2 pi^2/25 --h1-range 1/5..1/4 --h2-range 9/10..1 --boxes 2000",
-        "bands --lambda1 pi^2 --lambda2 pi^2/25 --h1-range 0..2/pi --h2-range 0..7/2 --area 1/25 --output bands.png",
+        "bands --lambda1 pi^2 --lambda2 pi^2/25 --h1-range 1/5..1/4 --h2-range 9/10..1 --sectors 2000",
+        "bands --lambda1 pi^2 --lambda2 pi^2/25 --h1-range 0..2/pi --h2-range 0..7/2 --area 3/40 --output bands.png",
     ];
     type Answer = band::Bands;
 
     fn answer(&self, work: &Work) -> Result<band::Bands> {
-        if self.boxes > work.budget.unwrap_or(MOST_BOXES) {
-            let cost = format!("{} boxes are too many", self.boxes);
-            return Err(Error::budget(cost, self.boxes).or(format!("choose --boxes {MOST_BOXES} at most")));
+        if self.sectors > work.budget.unwrap_or(MOST_SECTORS) {
+            let cost = format!("{} sectors are too many", self.sectors);
+            return Err(
+                Error::budget(cost, self.sectors).or(format!("choose --sectors {MOST_SECTORS} at most"))
+            );
         }
         if let Some(share) = self.area.as_ref().filter(|share| !share.is_positive() || **share > One::one()) {
             return Err(Error::input(
@@ -74,9 +76,9 @@ impl Question for Bands {
             ));
         }
         let window = self.window()?;
-        work.announce("the bands", self.boxes as f64 * BOX);
-        let bar = work.count(self.boxes, "boxes");
-        window.search(self.boxes, self.area.as_ref(), &|more| bar.advance(more))
+        work.announce("the bands", self.sectors as f64 * SECTOR);
+        let bar = work.count(self.sectors, "sectors");
+        window.search(self.sectors, self.area.as_ref(), &|more| bar.advance(more))
     }
 
     fn show(&self, answer: &band::Bands) -> Document {

@@ -1,69 +1,66 @@
-//! Boxes in which every ratio is unstable: pairs of steps in them, each decided by the ladder.
+//! Sectors in which every ratio is unstable: pairs of steps in them, each decided by the ladder.
+
+use num_traits::Zero;
 
 use super::again::{Recheck, asked};
-use super::context::{Checked, Context, Fault, Outcome, Place, holds};
+use super::context::{Checked, Context, Outcome, Place, holds};
 use super::sample::sample;
 use super::written::{Ends, Written};
 use crate::error::Result;
-use crate::number::{Laurent, Rational, Real, rational};
+use crate::number::{Ball, ExactSign, Laurent, Rational, Real, Sign, rational};
 use crate::propagator::Oscillator;
 use crate::question::{Bands, Fields};
-use crate::verdict::{Kind, decide_steps};
+use crate::verdict::{Kind, decide};
 
-const ROUTE: &str = "nine pairs of steps in each box, worst placed, with ratios as simple as there are: all are hyperbolic by the ladder";
+const ROUTE: &str = "nine pairs of steps in each sector, worst placed, with ratios as simple as there are: all are hyperbolic by the ladder, in the tongue named";
 
-/// Boxes that the slower route takes unless it takes all.
-const BOXES: u64 = 200;
+/// Sectors that the slower route takes unless it takes all.
+const SECTORS: u64 = 200;
 
-/// Where in a box h1 is, and between which shares of the ratios that are left h2/h1 is the simplest one.
+/// Where between both sides h1 is, in thousandths.
 const PLACES: [i64; 3] = [1, 500, 999];
+
+/// Bits of areas.
+const BITS: u32 = 128;
 
 rows! {
     /// `kickdrift/bands/1`.
     pub struct Claim {
         input: Bands,
         certified: u64,
-        share: Share,
-        area: Area,
-        boxes: Vec<Row>,
-    }
-
-    struct Share {
-        value: Ends,
-        exact: Written<Rational>,
-    }
-
-    struct Area {
-        value: Ends,
-        exact: Written<Laurent>,
+        share: Ends,
+        area: Ends,
+        sectors: Vec<Row>,
     }
 
     struct Row {
-        h1_lower: Written<Laurent>,
-        h1_upper: Written<Laurent>,
-        h2_lower: Written<Laurent>,
-        h2_upper: Written<Laurent>,
-        share: Written<Rational>,
+        a: i64,
+        b: i64,
+        ratio_from: Written<Rational>,
+        ratio_to: Written<Rational>,
+        lower_from: Written<Rational>,
+        lower_to: Written<Rational>,
+        upper_from: Written<Rational>,
+        upper_to: Written<Rational>,
     }
 }
 
 impl Place for Row {
     fn place(&self) -> String {
-        let Row { h1_lower, h1_upper, h2_lower, h2_upper, .. } = self;
-        format!("h1 = {}..{}, h2 = {}..{}", h1_lower.0, h1_upper.0, h2_lower.0, h2_upper.0)
+        format!("h2/h1 = {}..{}, a = {}, b = {}", self.ratio_from.0, self.ratio_to.0, self.a, self.b)
     }
 }
 
 impl Recheck for Claim {
-    const TABLE: &'static str = "boxes";
+    const TABLE: &'static str = "sectors";
     asked!(Bands);
 
     fn check(&self, _: Self::Found, context: &Context) -> Result<Outcome> {
-        let of = self.boxes.len() as u64;
+        let of = self.sectors.len() as u64;
         let texts = self.input.input();
         let text: String = texts.iter().filter_map(|(_, text)| text.as_str()).collect();
-        let chosen = sample(&text, of, if context.options.all { of } else { BOXES });
-        let rows: Vec<Row> = chosen.iter().map(|&n| self.boxes[n as usize].clone()).collect();
+        let chosen = sample(&text, of, if context.options.all { of } else { SECTORS });
+        let rows: Vec<Row> = chosen.iter().map(|&n| self.sectors[n as usize].clone()).collect();
         let check = |row: &Row| self.holds(row, context);
         let outcome = context.outcome(ROUTE, ("the area", self.whole()), &rows, check)?;
         let sample = (chosen.len() as u64 != of).then_some((chosen.len() as u64, of));
@@ -73,50 +70,68 @@ impl Recheck for Claim {
 
 impl Claim {
     fn whole(&self) -> Checked {
-        holds(self.certified == self.boxes.len() as u64, || "its boxes are not as many as it says".into())?;
-        let shares: Rational = self.boxes.iter().map(|row| row.share.0.clone()).sum();
-        holds(shares == self.share.exact.0, || format!("its boxes are {shares} of the window"))?;
-        let area = &self.input.window()?.area() * &Laurent::from_rational(shares.clone());
-        holds(area == self.area.exact.0, || format!("its area is {area}"))?;
-        let inside = |ends: &Ends, x: &Laurent| ends.holds(&x.enclosure(128));
-        holds(inside(&self.area.value, &area), || "its area is outside its enclosure".into())?;
-        holds(inside(&self.share.value, &Laurent::from_rational(shares)), || {
-            "its share is outside its enclosure".into()
-        })
+        holds(self.certified == self.sectors.len() as u64, || {
+            "its sectors are not as many as it says".into()
+        })?;
+        let area = self.sectors.iter().fold(Ball::zero(), |sum, row| sum.add(&row.area(), BITS));
+        holds(self.area.holds(&area), || "its area is outside its enclosure".into())?;
+        let whole = self.input.window()?.area().enclosure(BITS);
+        let share = area.div(&whole, BITS).expect("a window has an area");
+        holds(self.share.holds(&share), || "its share is outside its enclosure".into())?;
+        // Those of one curve do not overlap where the ratios of no two do.
+        let mut ranges: Vec<_> =
+            self.sectors.iter().map(|row| ([row.a, row.b], &row.ratio_from.0, &row.ratio_to.0)).collect();
+        ranges.sort();
+        let are_apart = ranges.windows(2).all(|pair| pair[0].0 != pair[1].0 || pair[0].2 <= pair[1].1);
+        holds(are_apart, || "two of its sectors overlap".into())
     }
 
     fn holds(&self, row: &Row, context: &Context) -> Checked {
-        let area = &(&row.h1_upper.0 - &row.h1_lower.0) * &(&row.h2_upper.0 - &row.h2_lower.0);
-        let whole = self.input.window()?.area();
-        holds(area == &whole * &Laurent::from_rational(row.share.0.clone()), || {
-            "it has another share".into()
-        })?;
-        for place in PLACES {
-            let along = Laurent::from_rational(rational::ratio(place, 1000));
-            let h1 = &row.h1_lower.0 + &(&(&row.h1_upper.0 - &row.h1_lower.0) * &along);
-            for ratio in ratios(&h1, &row.h2_lower.0, &row.h2_upper.0)? {
-                let h2 = &h1 * &Laurent::from_rational(ratio.clone());
+        let (from, to) = (&row.ratio_from.0, &row.ratio_to.0);
+        holds(Rational::zero() < *from && from < to, || "its ratios are no range".into())?;
+        let sides = [[&row.lower_from.0, &row.upper_from.0], [&row.lower_to.0, &row.upper_to.0]];
+        let window = self.input.window()?;
+        let is_inside = |step: usize, x: &Rational| {
+            let (lo, hi) = window.range(step);
+            let x = Laurent::from_rational(x.clone());
+            (&x - lo).sign() != Sign::Negative && (hi - &x).sign() != Sign::Negative
+        };
+        for (ratio, [lower, upper]) in [from, to].into_iter().zip(sides) {
+            holds(lower < upper, || "its sides cross".into())?;
+            let all = [lower, upper].into_iter().all(|h1| is_inside(0, h1) && is_inside(1, &(h1 * ratio)));
+            holds(all, || "it leaves the window".into())?;
+        }
+        let part = (to - from) / Rational::from_integer(50.into());
+        for (lo, hi) in [(from.clone(), to.clone()), (from.clone(), from + &part), (to - &part, to.clone())] {
+            let ratio = rational::simplest(&lo, &hi);
+            let share = (&ratio - from) / (to - from);
+            let [lower, upper] =
+                [0, 1].map(|side| sides[0][side] + (sides[1][side] - sides[0][side]) * &share);
+            for place in PLACES {
+                let h1 = &lower + (&upper - &lower) * rational::ratio(place, 1000);
+                let [first, second] = [h1.clone(), &h1 * &ratio].map(Laurent::from_rational);
                 let Bands { lambda1, lambda2, .. } = self.input.clone();
-                let oscillator = Oscillator::new(lambda1, lambda2, h1.clone(), h2)?;
-                let kind = decide_steps(&oscillator, &context.limits())?.verdict.kind();
+                let clocks = Oscillator::new(lambda1, lambda2, first, second)?.clocks()?;
+                let answer = decide(&clocks, &context.limits())?;
+                let kind = answer.verdict.kind();
                 holds(kind == Kind::Hyperbolic, || format!("h1 = {h1}, h2/h1 = {ratio} is {}", kind.name()))?;
+                let turns = ratio.numer() * row.a + ratio.denom() * row.b;
+                let label = answer.label()?;
+                holds(label.is_some_and(|m| turns == m.into()), || {
+                    format!("h1 = {h1}, h2/h1 = {ratio} is in another tongue")
+                })?;
             }
         }
         Ok(())
     }
 }
 
-/// The simplest ratios with which h2 lies in a range: in all of it, and at either end.
-fn ratios(h1: &Laurent, lower: &Laurent, upper: &Laurent) -> Checked<Vec<Rational>> {
-    const BITS: u32 = 128;
-    let over = |x: &Laurent| x.enclosure(BITS).div(&h1.enclosure(BITS), BITS);
-    let Some((lo, hi)) = over(lower).zip(over(upper)) else {
-        return Err(Fault::Wrong("its h1 is zero".into()));
-    };
-    let (lo, hi) = (lo.upper(), hi.lower());
-    let part = (&hi - &lo) / Rational::from_integer(50.into());
-    let all = [(lo.clone(), hi.clone()), (lo.clone(), &lo + &part), (&hi - &part, hi)];
-    let simplest =
-        all.iter().map(|(lo, hi)| rational::simplest(lo, hi)).filter(|ratio| *ratio > Rational::default());
-    Ok(simplest.collect())
+impl Row {
+    /// The integral of (upper² − lower²)/2 over the ratio.
+    fn area(&self) -> Ball {
+        let of = |a: &Rational, b: &Rational| a * a + a * b + b * b;
+        let squares = of(&self.upper_from.0, &self.upper_to.0) - of(&self.lower_from.0, &self.lower_to.0);
+        let width = (&self.ratio_to.0 - &self.ratio_from.0) / Rational::from_integer(6.into());
+        Ball::from_rational(&(squares * width), BITS)
+    }
 }

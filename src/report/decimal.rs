@@ -198,8 +198,39 @@ pub fn rounded(x: f64, digits: usize) -> f64 {
     format!("{x:.*e}", digits.saturating_sub(1)).parse().unwrap_or(x)
 }
 
+/// n 10^-`decimals` without an exponent, exactly.
+pub fn shifted(n: i64, decimals: i32) -> String {
+    let sign = if n < 0 { "-" } else { "" };
+    let digits = n.unsigned_abs().to_string();
+    let Ok(behind @ 1..) = usize::try_from(decimals) else {
+        return format!("{sign}{digits}{}", "0".repeat(decimals.unsigned_abs() as usize));
+    };
+    let padded = format!("{digits:0>width$}", width = behind + 1);
+    let (whole, part) = padded.split_at(padded.len() - behind);
+    format!("{sign}{whole}.{part}").trim_end_matches('0').trim_end_matches('.').into()
+}
+
 /// So many significant digits in writing: plain where that is short, else with an exponent.
 pub fn few(x: f64, digits: usize) -> String {
     let x = rounded(x, digits);
     if x == 0.0 || (1e-4..1e6).contains(&x.abs()) { x.to_string() } else { format!("{x:e}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shifted_numbers_are_exact() {
+        for (n, decimals, text) in [
+            (0, 3, "0"),
+            (25, 3, "0.025"),
+            (-1200, 2, "-12"),
+            (7, 0, "7"),
+            (7, -2, "700"),
+            (1234, 2, "12.34"),
+        ] {
+            assert_eq!(shifted(n, decimals), text);
+        }
+    }
 }

@@ -33,7 +33,7 @@ const DOCUMENTS: [&str; 30] = [
     "advise --bond OH:K=450kcal/mol/A^2,15.999,1.008 --period CH=3000/cm --period slow=40fs --steps 1fs,2fs",
     "advise --period 19.45fs --steps 2fs,4fs",
     "advise --period 10fs --period 40fs --period 100fs --steps 0.7fs,1fs,3fs",
-    "bands --lambda1 pi^2 --lambda2 pi^2/25 --h1-range 1/5..1/4 --h2-range 9/10..1 --boxes 200",
+    "bands --lambda1 pi^2 --lambda2 pi^2/25 --h1-range 1/5..1/4 --h2-range 9/10..1 --sectors 200",
     "word --method avi-3-2 --lambda1 pi^2 --lambda2 pi^2/25 --h 1 --h-range 0..3",
     "word --method forest-ruth",
     "word --list",
