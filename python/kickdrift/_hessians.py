@@ -11,6 +11,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
+from itertools import pairwise
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any, TypeAlias
@@ -848,9 +849,9 @@ def _swing(forces: Sequence[Force], steps: Sequence[Fraction], start: Doubles, h
     return speed - held.gradients(position).T @ held.along(speed, position)
 
 
-def _damped(size_at: Callable[[float], float], size: float) -> float | None:
+def _damped(size_at: Callable[[float], float], size: float, tries: int) -> float | None:
     """The largest part of a Newton step, 1, 1/2, ..., that makes the size smaller by a tenth; rounding ends that."""
-    return next((part for part in (0.5**k for k in range(8)) if size_at(part) < 0.9 * size), None)
+    return next((part for part in (0.5**k for k in range(tries)) if size_at(part) < 0.9 * size), None)
 
 
 #: Newton's method has arrived where its next step is this part of the extent of the atoms.
@@ -863,7 +864,7 @@ _CLOSE_BY = 1e-12
 #: is loosely bound, verdicts and rates were those of OpenMM's own map up to here; less than the other needs no word.
 _DRIFTS, _CLOSED = 1e-8, 1e-11
 
-#: Where no such part of the way from the minimum to the orbit can be made, the orbit is taken to end.
+#: Where no such part of a way can be made, it is given up.
 _SMALLEST_PART = 1 / 100
 
 
@@ -882,65 +883,83 @@ class _Sum:
         return _Sum([smooth(force, positions, reach) for force in self.forces], self.less)
 
 
-def _newton(
-    forces: Sequence[Force],
-    steps: Sequence[Fraction],
-    start: Doubles,
-    held: Held,
-    difference: float,
-    firm: Doubles,
-    progress: Progress | None = None,
-) -> _Orbit:
+@dataclass(frozen=True, eq=False)
+class _Family:
+    """Orbits by a share, which at 1 are the one that is sought: the forces and steps at each, and what Newton's method
+    moves along, the columns of ``firm``."""
+
+    made: Callable[[float], tuple[Sequence[Force], Sequence[Fraction]]]
+    held: Held
+    difference: float
+    firm: Doubles
+    progress: Progress | None
+
+
+def _newton(family: _Family, share: float, start: Doubles, row: Doubles | None = None) -> _Orbit:
     """Damped Newton's method for rest after half a period.
 
     It moves along the columns of ``firm``, and along them it seeks rest: of rigid motions there is none to begin with,
     and what has no momentum gets none. Positions are put back on held distances as a drift is. Hessians are kept while
     each step leaves less than a tenth of the velocity: half a period asks for some forces, they for thousands.
+
+    With a ``row``, the share moves too, and steps are at right angles to the row, whose last entry is that of the
+    share: so orbits are found where the family folds. These are sought near by, so only by whole steps.
     """
-    extent = float(np.ptp(start, axis=0).max()) or 1.0
+    held, firm, extent = family.held, family.firm, float(np.ptp(start, axis=0).max()) or 1.0
+    many, unit = firm.shape[1], 0.0
+    tries, near = (8, _CLOSE_BY) if row is None else (1, _BESIDE)
 
     def towards(left: Doubles) -> Doubles:
-        return np.asarray(half.first @ (half.first.T @ (firm @ np.linalg.lstsq(pulls, -left, rcond=None)[0])))
+        return np.asarray(np.linalg.lstsq(pulls, -np.append(left, np.zeros(len(pulls) - many)), rcond=None)[0])
 
-    def moved(part: float) -> Doubles:
-        return held.drift(start, part * move, 1.0)[0]
+    def moved(part: float) -> tuple[Doubles, float]:
+        along = half.first @ (half.first.T @ (firm @ move[:many]))
+        return held.drift(start, part * along, 1.0)[0], share + part * unit * float(move[many:].sum())
 
-    def left_at(place: Doubles) -> Doubles:
-        return np.asarray(firm.T @ _swing(forces, steps, place, held))
+    def left_at(place: Doubles, share: float) -> Doubles:
+        return np.asarray(firm.T @ _swing(*family.made(share), place, held))
 
     def size_at(part: float) -> float:
-        return float(np.abs(left_at(moved(part))).max())
+        return float(np.abs(left_at(*moved(part))).max())
 
     while True:
-        half = compose(forces, steps, start, held, difference, progress=progress)
+        half = compose(*family.made(share), start, held, family.difference, progress=family.progress)
         pulls = firm.T @ half.last @ half.matrix[half.first.shape[1] :, : half.first.shape[1]] @ half.first.T @ firm
         every = half.last @ half.speed
         speed = firm.T @ every
+        if row is not None:
+            # The share in a unit of which, as the row, is as large as the rest.
+            change, whole = (left_at(start, share + _BIT) - speed) / _BIT, float(np.linalg.norm(pulls))
+            unit = whole / max(float(np.linalg.norm(change)), 1e-300)
+            across = np.append(row[:many], unit * row[many])
+            across *= whole / float(np.linalg.norm(across))
+            pulls = np.vstack([np.column_stack([pulls, unit * change]), across])
         move, size = towards(speed), float(np.abs(speed).max())
-        residual = float(np.abs(move / held.root).max()) / extent
-        part = _damped(size_at, size) if residual > _CLOSE_BY else None
+        residual = float(np.abs(firm @ move[:many] / held.root).max()) / extent
+        part = _damped(size_at, size, tries) if residual > near else None
         if part is None:
             # The whole moves by itself where a mesh pulls at it, and by nothing else.
-            whole, left = rigid_motions(start, held.masses, rotations=False), every - firm @ speed
-            left = (left - whole @ (whole.T @ left)) / held.root
-            drift = float(np.abs(left).max()) * float(_common(steps)) / extent
-            return _Orbit(start, half, residual, drift)
-        start = moved(part)
-        speed = left_at(start)
+            rigid, left = rigid_motions(start, held.masses, rotations=False), every - firm @ speed
+            left = (left - rigid @ (rigid.T @ left)) / held.root
+            drift = float(np.abs(left).max()) * float(_common(family.made(share)[1])) / extent
+            return _Orbit(share, start, half, residual, drift)
+        start, share = moved(part)
+        speed = left_at(start, share)
         while float(np.abs(speed).max()) < 0.1 * size:
             move, size = towards(speed), float(np.abs(speed).max())
             there = moved(1.0)
-            speed = left_at(there)
+            speed = left_at(*there)
             if not float(np.abs(speed).max()) < size:
                 break
-            start = there
+            start, share = there
 
 
 @dataclass(frozen=True, eq=False)
 class _Orbit:
-    """Where Newton's method ended: positions, half a period from there, the step that would be next over the extent of
-    the atoms, and how far what has no stiffness goes in a period."""
+    """Where Newton's method ended: the share, positions, half a period from there, the step that would be next over the
+    extent of the atoms, and how far what has no stiffness goes in a period."""
 
+    share: float
     positions: Doubles
     half: Half
     residual: float
@@ -994,24 +1013,27 @@ def monodromy(
     total, error = hessian(every, at, held.masses, difference)
     stiffness = total + held.curvature(every(at), at)
     firm = free @ _firm(free.T @ stiffness @ free)
-    done, part, start = 0.0, 1.0, at
-    while done < 1.0:
-        share = min(done + part, 1.0)
-        less = [_Sum([force], (1 - share) * balance) for force, balance in zip(own, balances, strict=True)]
-        found = _newton(less, steps, start, held, difference, firm, progress)
-        if found.residual <= _ARRIVED:
-            done, part, start = share, 2 * part, found.positions
-        elif part < _SMALLEST_PART:
-            ends = ", as near a resonance of the kicks"
-            other, ends = (
-                (None, ends) if unit is None else _longer(own, steps, at, held, difference, firm, unit, progress)
-            )
-            if other is None:
-                value = f"orbit, followed to {done:.0%} of the groups' own forces"
-                raise KickdriftError("about", value, f"it ends there{ends}: choose another step, or about='minimum'")
-            done, start, found = 1.0, other.positions, other
-        else:
-            part /= 2
+
+    def lent(share: float) -> tuple[Sequence[Force], Sequence[Fraction]]:
+        pairs = zip(own, balances, strict=True)
+        return [_Sum([force], (1 - share) * balance) for force, balance in pairs], steps
+
+    def shorter(share: float) -> tuple[Sequence[Force], Sequence[Fraction]]:
+        return own, [Fraction(share) * step for step in steps]
+
+    found, part, _ = _followed(_Family(lent, held, difference, firm, progress), at, 0, 1.0)
+    if found is None:
+        value, ends = f"orbit, followed to {part:.0%} of the groups' own forces", ", as near a resonance of the kicks"
+        if unit is not None:
+            found, part, fold = _followed(_Family(shorter, held, difference, firm, progress), at, 1, _ENDS)
+            if part:
+                outer = float(max(steps))
+                ends = f". From shorter steps at the same ratios it is followed to {outer * part:.6g} {unit}"
+                if fold < np.inf:
+                    ends += f" and folds at {outer * fold:.5g} {unit}, where it meets another orbit"
+    if found is None:
+        raise KickdriftError("about", value, f"it ends there{ends}: choose another step, or about='minimum'")
+    start = found.positions
     if found.drift > _DRIFTS:
         remedy = (
             f"does not close: its softest motions drift by {found.drift:.0e} of the extent in a period, as bends of "
@@ -1138,80 +1160,96 @@ def along(
     return potentials, usable(worst, "a kick along the orbit", "the one that was taken", SMOOTHER)
 
 
-#: The steps at which an orbit ends are told to this part of those asked about.
-_ENDS = Fraction(1, 1024)
+#: A fold is known to this part of the steps asked about: it is shown with five digits, of which four are meant.
+_ENDS = 1 / 4096
 
-#: So near a fold, in shares of the steps, it is named: beside it what pulls back vanishes, and rounded forces end
-#: Newton's method first.
-_BESIDE_FOLD = Fraction(1, 256)
+#: So many orbits are looked for along a family at most.
+_MANY = 40
+
+#: Those on the way to the one that is sought are known to this part of the extent, a thousandth of what they move.
+_BESIDE = 1e-6
+
+#: By such a change of the share that of the velocity is measured, to as small a part: Newton's method mends that.
+_BIT = 2.0**-16
+
+#: The next orbit is sought so far ahead that it is off by this part of the way there: whole Newton steps reach it.
+_OFF = 0.2
 
 
-def _longer(
-    forces: Sequence[Force],
-    steps: Sequence[Fraction],
-    at: Doubles,
-    held: Held,
-    difference: float,
-    firm: Doubles,
-    unit: str,
-    progress: Progress | None,
-) -> tuple[_Orbit | None, str]:
-    """The orbit followed from shorter steps at the same ratios, and in words at which outer step it ends.
+def _followed(family: _Family, at: Doubles, halvings: int, near: float) -> tuple[_Orbit | None, float, float]:
+    """The orbit at the share 1, or None; the largest share reached on the way from ``at``, the orbit at 0; and where
+    the family folds, or infinity.
 
-    One orbit goes on where its positions change by no more than four times the change before, over the steps; another
-    is a jump. Where it folds, it meets another and neither goes on: it moves as the root of what is left of the step
-    there, so three steps before tell where.
+    The first one is sought from ``at`` itself, at 1 after so many halvings and more; each other one ahead of the last,
+    on the parabola by the last three, as share and positions move, each relative to what it is. So they are found where
+    the share turns back, too: there the family folds, two orbits meet, and neither goes on. That share is sought to
+    ``near``. What is found farther from where it was sought than that is from the last is of another family.
     """
-    outer, extent = float(max(steps)), float(np.ptp(at, axis=0).max()) or 1.0
+    held = family.held
 
-    def reached(share: Fraction, start: Doubles) -> _Orbit | None:
+    def found_from(place: Doubles, row: Doubles | None) -> _Orbit | None:
         try:
-            found = _newton(forces, [share * step for step in steps], start, held, difference, firm, progress)
+            found = _newton(family, float(place[0]), place[1:].reshape(at.shape), row)
         except (KickdriftError, np.linalg.LinAlgError):
             return None
-        return found if found.residual <= _ARRIVED else None
+        return found if found.residual <= (_ARRIVED if row is None else _BESIDE) else None
 
-    first = ((share, reached(share, at)) for share in (Fraction(1, 2**k) for k in range(1, 5)))
-    known = [(share, found) for share, found in first if found is not None][:1]
-    if not known:
-        return None, ", as near a resonance of the kicks"
-    most = Fraction(1)
-    while most >= _ENDS / 16:
-        share, last = known[-1]
-        if share == 1:
-            return last, ""
-        slope = np.zeros_like(at)
-        if len(known) > 1:
-            slope = (last.positions - known[-2][1].positions) / float(share - known[-2][0])
-        left = _folds(known) - float(share)
-        # Three quarters of the way to the fold, where half of the root is left.
-        ahead = Fraction(min(0.75 * left, 1.0)).limit_denominator(2**20)
-        part = min(max(ahead, _ENDS / 16), most, 1 - share, share / 2)
-        there = held.drift(last.positions, held.root * (float(part) * slope).ravel(), 1.0)[0]
-        found = reached(share + part, there)
-        away = np.inf if found is None else float(np.abs(found.positions - last.positions).max()) / float(part)
-        if found is not None and (len(known) == 1 or away <= max(4 * np.abs(slope).max(), extent / 100)):
-            known.append((share + part, found))
-            most = 2 * part
+    def moved(way: Doubles, weight: float) -> Doubles:
+        return np.append(family.firm.T @ (held.root * way[1:]), weight * way[0])
+
+    def size(way: Doubles, weight: float) -> float:
+        return float(np.linalg.norm(moved(way, weight)))
+
+    def parabola(three: Sequence[Doubles], weight: float) -> tuple[float, Doubles]:
+        """The length from the last but one to the last, and the coefficients over the length from there."""
+        ways = [size(there - here, weight) for here, there in pairwise(three)]
+        lengths = np.cumsum([0.0, *ways]) - sum(ways)
+        return ways[-1], np.polyfit(lengths, np.array(three), len(ways))
+
+    first = (_newton(family, 0.5**k, at) for k in range(halvings, 8))
+    found = next((own for own in first if own.residual <= _ARRIVED), None)
+    if found is None or found.share == 1:
+        return found, float(found is not None), np.inf
+    known = [np.append(0.0, at), np.append(found.share, found.positions)]
+    stretch, is_refused = 1.0, False
+    for _ in range(_MANY):
+        last = known[-1]
+        if last[0] < known[-2][0] or abs(stretch) < _SMALLEST_PART:
+            break
+        weight = size(last - known[0], 0.0) / last[0]
+        length, curve = parabola(known[-3:], weight)
+        ones = np.roots(np.append(curve[:-1, 0], curve[-1, 0] - 1))
+        ends = [float(end.real) for end in ones if np.isreal(end) and -length < end.real <= stretch * length]
+        ahead, is_last = min(ends, default=stretch * length), bool(ends) and not is_refused
+        if ahead < 0 and not is_last:
+            break
+        there: Doubles = np.polyval(curve, ahead).astype(float)
+        there[1:] = held.drift(last[1:].reshape(at.shape), held.root * (there - last)[1:], 1.0)[0].ravel()
+        there[0] = 1.0 if is_last else there[0]
+        found = found_from(there, None if is_last else moved(there - last, weight**2))
+        own = last if found is None else np.append(found.share, found.positions)
+        off = size(own - there, weight) / size(there - last, weight)
+        if found is None or off > 1:
+            stretch, is_refused = ahead / length if is_last else ahead / length / 3, is_refused or is_last
+        elif is_last:
+            return found, 1.0, np.inf
         else:
-            most = part / 2
-    share, fold = known[-1][0], _folds(known)
-    words = f". From shorter steps at the same ratios it is followed to {outer * float(share):.6g} {unit}"
-    if fold < share + _BESIDE_FOLD:
-        words += f" and folds at {outer * fold:.5g} {unit}, where it meets another orbit"
-    return None, words
-
-
-def _folds(known: Sequence[tuple[Fraction, _Orbit]]) -> float:
-    """Where the parabola of the share of the steps over the way of the positions, by the last three, has its top."""
-    if len(known) < 3:
-        return np.inf
-    shares = np.array([float(share) for share, _ in known[-3:]])
-    one, two, three = (found.positions for _, found in known[-3:])
-    way = (three - two) / max(float(np.linalg.norm(three - two)), 1e-300)
-    near, last = (float(np.sum(way * (own - one))) for own in (two, three))
-    if not 0 < near < last:
-        return np.inf
-    bend, slope, _ = np.polyfit([0.0, near, last], shares, 2)
-    top = -slope / (2 * bend) if bend < 0 else np.inf
-    return float(shares[0] + slope * top + bend * top**2) if last < top < np.inf else np.inf
+            known.append(own)
+            # Off by the square of how far ahead.
+            stretch, is_refused = min(2.0, (_OFF / max(off, 1e-300)) ** 0.5), False
+    fold = np.inf
+    while len(known) < 2 * _MANY:
+        place = max(range(len(known)), key=lambda k: float(known[k][0]))
+        if not 0 < place < len(known) - 1:
+            break
+        length, curve = parabola(known[place - 1 : place + 2], 0.0)
+        top = -curve[1, 0] / (2 * curve[0, 0])
+        there = np.polyval(curve, top).astype(float)
+        fold = float(there[0])
+        if fold <= known[place][0] + near:
+            break
+        found = found_from(there, moved(known[place + 1] - known[place - 1], 0.0))
+        if found is None:
+            break
+        known.insert(place + (top > -length), np.append(found.share, found.positions))
+    return None, max(float(own[0]) for own in known), fold
