@@ -201,4 +201,7 @@ fn windows_without_sense_are_refused() {
     assert!(refused(["1", "1"], ["-1", "1"]).starts_with("h1-range = -1..1: "));
     assert!(refused(["-1", "1"], ["0", "1"]).starts_with("lambda1 = -1: "));
     assert!(refused(["1", "0"], ["0", "1"]).starts_with("lambda2 = 0: "));
+    let ranges = [(x("1/4"), x("0.250000000001")), (x("1"), x("1.000000000001"))];
+    let refused = Window::new([x("1"), x("1")], ranges).unwrap_err().to_string();
+    assert!(refused.starts_with("h2-range = ") && refused.contains("widen"), "{refused}");
 }

@@ -42,6 +42,9 @@ const MIDDLE: [f64; 2] = [0.3, 0.7];
 /// Ranges that are narrower than this share of the ratio are not cut: doubles tell their ends apart, and no more.
 const NARROW: f64 = 1e-11;
 
+/// The ratios of a window differ by more than this share.
+const CLOSE: f64 = 1e-8;
+
 /// More than the roundings of a side of the window.
 const ROOM: f64 = 4.0 * f64::EPSILON;
 
@@ -106,7 +109,8 @@ struct Queue {
 
 impl Window {
     /// # Errors
-    /// A range that is empty or begins below zero, and a stiffness that is not positive: the turns of both have to grow with the steps.
+    /// A range that is empty or begins below zero; a stiffness that is not positive, as the turns of both have to grow with the steps; ratios of
+    /// the window that are hardly different: their periods have millions of kicks.
     pub fn new(lambdas: [Laurent; 2], ranges: [(Laurent, Laurent); 2]) -> Result<Window> {
         for ((lo, hi), field) in ranges.iter().zip(["h1-range", "h2-range"]) {
             if lo.sign() == Sign::Negative || (hi - lo).sign() != Sign::Positive {
@@ -120,6 +124,15 @@ impl Window {
         };
         let bases = [base(0, "lambda1")?, base(1, "lambda2")?];
         let inner = ranges.each_ref().map(|(lo, hi)| (lo.enclose_f64().1, hi.enclose_f64().0));
+        let [(a, b), (c, d)] = inner;
+        if d * b <= c * a * (1.0 + CLOSE) {
+            let (lo, hi) = &ranges[1];
+            return Err(Error::input(
+                "h2-range",
+                format!("{lo}..{hi}"),
+                "makes too small a window: widen it",
+            ));
+        }
         let stiffness = lambdas.each_ref().map(Laurent::to_f64);
         let decimals = DIGITS - inner[0].1.log10().floor() as i32;
         let prover = Prover::new(lambdas.clone(), bases, decimals);
@@ -202,10 +215,10 @@ impl Window {
         let mut roots = Vec::new();
         while let Some(ratios) = ranges.pop() {
             let [from, to] = ratios.map(value);
-            if to < least || from > most {
+            let span = to.min(most) - from.max(least);
+            if span <= NARROW * to {
                 continue;
             }
-            let span = to.min(most) - from.max(least);
             // From one whole number to the next, where there are not too many of them.
             let is_wide = |from: f64, to: f64| from < 32.0 && to > from + 1.0;
             let is_narrow = to - from < NARROW * to;

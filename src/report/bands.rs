@@ -47,7 +47,7 @@ fn record() -> Record<'static, Sector> {
     let mut record = Record::new();
     for (k, name) in ["a", "b"].into_iter().enumerate() {
         record =
-            record.field(Column::math(name, name), move |sector: &Sector| Value::exact(sector.family[k]));
+            record.field(Column::math(name, name), move |sector: &Sector| Value::Integer(sector.family[k]));
     }
     for (k, end) in ends.into_iter().enumerate() {
         let column = Column::new(&format!("ratio_{end}"));
