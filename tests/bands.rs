@@ -93,9 +93,10 @@ fn strong_kicks_and_equal_stiffnesses() {
 
 #[test]
 fn windows_of_any_size_and_unit() {
-    // The same window in seconds, and a small one about h1 = 0.249, h2 = 0.94.
+    // The same window in seconds, in a unit with more digits than a double holds exactly, and a small one about h1 = 0.249, h2 = 0.94.
     let windows = [
         (["10^28*pi^2", "10^28*pi^2/25"], ["1/5*10^-14..1/4*10^-14", "9/10*10^-14..10^-14"]),
+        (["10^58*pi^2", "10^58*pi^2/25"], ["1/5*10^-29..1/4*10^-29", "9/10*10^-29..10^-29"]),
         (["pi^2", "pi^2/25"], ["0.249..0.2490001", "0.94..0.9400001"]),
     ];
     for (lambdas, ranges) in windows {

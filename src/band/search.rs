@@ -437,7 +437,7 @@ fn family(m: i64, (p, q): Ratio) -> Option<[i64; 2]> {
     Some(if p >= q { [near, other] } else { [other, near] })
 }
 
-/// The simplest ratio in a part of a range.
+/// The simplest ratio in a part of a range, in doubles: any ratio near it would do.
 fn between([from, to]: [f64; 2], part: [f64; 2]) -> Ratio {
     let [mut from, mut to] = part.map(|share| from + share * (to - from));
     // Continued fractions of both ends, as long as they agree.

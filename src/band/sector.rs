@@ -3,7 +3,7 @@
 use super::frame::{Base, Frame};
 use super::taylor::Taylor;
 use crate::error::Result;
-use crate::number::{Ball, Laurent, Rational, U};
+use crate::number::{Ball, Laurent, Rational, U, rational};
 use crate::parallel::go_on;
 use crate::propagator::Oscillator;
 use crate::verdict::{Limits, decide};
@@ -108,26 +108,31 @@ impl Way {
 pub struct Prover {
     lambdas: [Laurent; 2],
     bases: [Base; 2],
-    /// Of all steps.
+    /// Of all steps, and the double nearest to 10^-this.
     decimals: i32,
+    unit: f64,
 }
 
 impl Prover {
     pub fn new(lambdas: [Laurent; 2], bases: [Base; 2], decimals: i32) -> Self {
-        Prover { lambdas, bases, decimals }
+        Prover { lambdas, bases, decimals, unit: rational::to_f64(&step(1, decimals)) }
     }
 
     /// A way in which every ratio on a line is unstable, by a cone that is the same, or moves continuously, for all of them: so the tongue is
     /// the same, too. `known` is the only way that is tried, where there is one.
     pub fn prove(&self, family: [i64; 2], ratios: [Ratio; 2], line: Line, known: Option<Way>) -> Option<Way> {
+        if !self.unit.is_normal() {
+            return None;
+        }
         let [(p, q), (r, s)] = ratios.map(|(p, q)| (p as i64, q as i64));
         let [from, to] = ratios.map(value);
-        // A double each, of a quotient or of a whole number times a power of ten: within 4 U with their mean and their difference.
+        // A quotient is within U of its double, a whole number below 2^53 times the unit within 2 U, their mean and half their difference
+        // within 3 U each.
         let affine = |[first, last]: [f64; 2]| {
             let off = 8.0 * U * first.abs().max(last.abs());
             Taylor::constant(0.5 * (first + last), off).with_slope(0.5 * (last - first))
         };
-        let (ratio, h1) = (affine([from, to]), affine(line.map(|n| n as f64 * 10f64.powi(-self.decimals))));
+        let (ratio, h1) = (affine([from, to]), affine(line.map(|n| n as f64 * self.unit)));
         let steps = [h1, h1.times(&ratio)];
         let (taus, ranges) = ([Some(ratio), ratio.reciprocal()], [[(p, q), (r, s)], [(s, r), (q, p)]]);
         let frame = |base: usize| Frame::new(&steps[base], &steps[1 - base], &taus[base]?, &self.bases[base]);
