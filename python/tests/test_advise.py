@@ -150,7 +150,8 @@ made.save(sys.argv[1])
 """
 
     def run(how: str) -> int:
-        return subprocess.run([sys.executable, "-c", code, str(tmp_path), how], check=False).returncode
+        # -P: the installed package, not the sources beside these tests.
+        return subprocess.run([sys.executable, "-P", "-c", code, str(tmp_path), how], check=False).returncode
 
     assert run("killed") == -signal.SIGKILL
     assert not (tmp_path / "system.json").exists() and not (tmp_path / "arrays.npz").exists()
