@@ -93,7 +93,7 @@ def tongues(
     rho : Exact, optional
         lambda2/lambda1 >= 0, rational; or give both stiffnesses.
     lambda1, lambda2 : Exact, optional
-        The stiffnesses, 1/time²; with ``lambda1`` edges are told in h1 and h2 too.
+        The stiffnesses, 1/time²; with ``lambda1`` edges are given in h1 and h2 too.
     h1, h2 : Range, optional
         Only tongues that meet these closed ranges of steps (needs ``lambda1``).
     m : Labels, optional
@@ -101,9 +101,9 @@ def tongues(
     a, b : str, optional
         Only dominant families in these ranges, as ``"0..2"``.
     digits : int, optional
-        Tell the edges to so many significant digits, as decimals.
+        Significant digits of the edges, as decimals.
     columns : iterable of str, optional
-        What to tell beside the edges; all unless given, and without growth for many ratios.
+        What to give beside the edges; all unless given, and without growth for many ratios.
 
     Raises
     ------

@@ -63,7 +63,7 @@ class Waves:
     def save_modes(self, path: str | PathLike[str], verdict: SystemVerdict) -> Path:
         """Write the growing modes on the mesh, for ParaView and its like; rounded.
 
-        Each mode that a verdict tells is a field of the nodes, ``mode_1`` and so on by decreasing growth, 0 where nodes
+        Each mode that a verdict names is a field of the nodes, ``mode_1`` and so on by decreasing growth, 0 where nodes
         stand still, its largest entry 1; where two modes collide also ``quadrature_1``, the same a quarter turn of the
         beat later. ``substeps`` is a field of the elements.
 
@@ -98,7 +98,7 @@ class Waves:
         modes = [mode for part in verdict.data["parts"] for mode in part["instabilities"]]
         modes.sort(key=lambda mode: -abs(complex(mode["lambda"]["re"], mode["lambda"]["im"])))
         if not modes:
-            raise KickdriftError("verdict", shown(verdict), "tells no mode that grows: choose an unstable step")
+            raise KickdriftError("verdict", shown(verdict), "names no mode that grows: choose an unstable step")
         if any(len(mode["shape"]) != len(self.nodes) for mode in modes):
             remedy = f"is of another system: ask this one, of {len(self.nodes)} degrees of freedom"
             raise KickdriftError("verdict", shown(verdict), remedy)
