@@ -5,7 +5,8 @@ use kickdrift::number::rational::{ratio, to_f64};
 use kickdrift::number::{Polynomial, Rational};
 use kickdrift::scene::{Span, SystemScene};
 use kickdrift::system::{
-    Analysis, Holds, Level, Limits, Model, Potential, Route, SparseSubcycles, Subcycles, Symmetric, System,
+    Analysis, Holds, Level, Limits, Model, Potential, Route, SparseSubcycles, SparseSystem, Subcycles,
+    Symmetric, System,
 };
 use kickdrift::verdict::Kind;
 use nalgebra::DMatrix;
@@ -451,6 +452,39 @@ fn intervals_of_sparse_subcycling_hold_what_is_stable_and_end_where_nothing_is_t
     let apart = [0..20, 10..30].map(|fine| Level { fine: fine.collect(), substeps: 2 });
     let error = SparseSubcycles::new(&[1.0; 40], &stiffness, apart.into()).unwrap_err();
     assert_eq!(error.field(), "levels[1].fine");
+}
+
+#[test]
+fn what_grows_under_sparse_subcycling_grows_as_in_the_scheme_run() {
+    let (mut numbers, mut found) = (Numbers(23), 0);
+    for case in 0..200 {
+        let (plain, levels) = nested(&mut numbers);
+        let n = plain.size();
+        let stiffness = |i: usize, j: usize| to_f64(&plain.clocks()[0].stiffness.get(i, j));
+        let entries: Vec<_> = (0..n).flat_map(|i| (0..=i).map(move |j| (i, j, stiffness(i, j)))).collect();
+        let masses: Vec<f64> = (0..n).map(|i| to_f64(&plain.mass().get(i, i))).collect();
+        let sparse = SparseSubcycles::new(&masses, &entries, levels.clone()).unwrap();
+        let Some((_, hi)) = sparse.first_unstable() else { continue };
+        for share in [1.002, 1.02, 1.1] {
+            let dt = ratio((hi * share * 1e6).round() as i64, 1_000_000);
+            let model = SparseSystem::with_subcycles(sparse.clone(), &dt).unwrap();
+            let own = Model::Sparse(Box::new(model)).decide(Route::Cheapest, &Limits::default()).unwrap();
+            let modes = &own.parts[0].instabilities;
+            assert!(modes.is_empty() || !own.is_stable(), "{case}");
+            let radius = held_velocities(&plain, &levels, to_f64(&dt));
+            // Proven or not: what grows by as much as that is seen.
+            assert!(radius < 1.0 + 1e-3 || !modes.is_empty(), "{case} {share}: {radius}");
+            for mode in modes {
+                found += 1;
+                // Both are known to the root of rounding at worst, near the circle.
+                let size = mode.multiplier.size();
+                assert!((size / radius - 1.0).abs() < 1e-6, "{case} {share}: {size} {radius}");
+                let longest = mode.shape.iter().fold(0.0f64, |most, x| most.max(x.abs()));
+                assert_eq!((mode.shape.len(), longest), (n, 1.0));
+            }
+        }
+    }
+    assert!(found > 200, "{found}");
 }
 
 #[test]

@@ -203,6 +203,21 @@ def test_subcycling_on_a_mesh_is_stable_where_its_nodes_run_are(substeps: int | 
             assert verdict.stable == stays, share
 
 
+@pytest.mark.parametrize(("substeps", "share"), [(2, 1.4), (2, 1.7), (2, 1.2), (3, 1.4)])
+def test_beyond_the_proofs_subcycling_shows_what_grows_in_doubles(substeps: int, share: float) -> None:
+    waves = kickdrift.mesh.waves(refined(), scheme="newmark", substeps=substeps)
+    first = waves.system.decide().local_steps
+    assert first is not None
+    step = Fraction(f"{share * first['first_unstable']['hi']:.9g}")
+    verdict = kickdrift.mesh.waves(refined(), scheme="newmark", substeps=substeps, step=step).system.decide()
+    # From rest the scheme turns positions by (multiplier + 1/multiplier)/2.
+    truth = np.exp(np.abs(np.arccosh(held_from_rest(waves, float(step)).astype(complex)).real).max())
+    found = np.abs(verdict.multipliers)
+    assert not verdict.proven and (found > 1).sum() == int(truth > 1 + 1e-4)
+    # Both are rounded: the iteration ends at a residual of 1e-9.
+    assert np.allclose(found[found > 1], truth, rtol=1e-8)
+
+
 @pytest.mark.parametrize(
     ("change", "field"),
     [

@@ -1,6 +1,6 @@
 //! A scheme of local time steps run as codes run it, substep by substep, against the stiffness that stands for it.
 
-use faer::{Mat, Side};
+use faer::{Mat, Side, c64};
 use nalgebra::{DMatrix, DMatrixView};
 use num_traits::{Num, One, Zero};
 
@@ -105,6 +105,28 @@ pub fn subcycles(
     held(own, hi, Holds::Unstable)
 }
 
+/// The residual of a mode, relative to it: that of the period is 1e-9, and positions have more than a thousandth of it.
+const MODE: f64 = 1e-6;
+
+/// The growing modes of large subcycling: from rest the scheme, run, turns their positions by 1 + 2 μ.
+pub fn modes(own: &SparseSubcycles, dt: f64, analysis: &Analysis) -> Checked {
+    let n = own.size();
+    let after = |x: &[f64]| {
+        let y = DMatrix::from_vec(n, 1, own.plain().weighted(x)).resize_vertically(2 * n, 0.0);
+        let turned = subcycled(own.levels(), dt, |x| pulled(own, x), y.clone());
+        [y, turned].map(|own| own.rows(0, n).map(|x| c64::new(x, 0.0)))
+    };
+    analysis.parts.iter().flat_map(|part| &part.instabilities).try_for_each(|mode| {
+        let ([re, turned_re], [im, turned_im]) = (after(&mode.shape), after(&mode.quadrature));
+        let (i, by) = (c64::new(0.0, 1.0), mode.multiplier.mu * 2.0 + 1.0);
+        let (y, turned) = (re + im * i, turned_re + turned_im * i);
+        let residual = (turned - &y * by).norm();
+        holds(residual <= MODE * by.norm() * y.norm(), || {
+            format!("a mode that grows is no mode of the scheme, run: the residual is {residual}")
+        })
+    })
+}
+
 /// The first unstable step of subcycling as small as can be seen.
 pub fn first_unstable(own: &Subcycles, (lo, hi): (f64, f64)) -> Checked {
     let pull = pull(own);
@@ -119,11 +141,13 @@ pub fn stretch_of_subcycles(own: &SparseSubcycles, said: &Stretch) -> Checked {
 }
 
 fn held(own: &SparseSubcycles, dt: f64, said: Holds) -> Checked {
-    let pull = |x: DMatrixView<f64>| {
-        let columns = x.column_iter().flat_map(|y| own.plain().pull(&y.iter().copied().collect::<Vec<_>>()));
-        DMatrix::from_iterator(x.nrows(), x.ncols(), columns)
-    };
-    from_rest((own.size(), own.levels(), dt), pull, said)
+    from_rest((own.size(), own.levels(), dt), |x| pulled(own, x), said)
+}
+
+/// Its A, on each column.
+fn pulled(own: &SparseSubcycles, x: DMatrixView<f64>) -> DMatrix<f64> {
+    let columns = x.column_iter().flat_map(|y| own.plain().pull(&y.iter().copied().collect::<Vec<_>>()));
+    DMatrix::from_iterator(x.nrows(), x.ncols(), columns)
 }
 
 /// Whether Q11 of a step is as it is said to be.

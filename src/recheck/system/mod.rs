@@ -76,7 +76,12 @@ fn verdict(
         }
         if let Some(own) = own.subcycles() {
             let dt = to_f64(&scene.model().steps()[0]);
-            return run(own, context, || local::subcycles(own, dt, analysis, local));
+            let modes = local::modes(own, dt, analysis);
+            let has_modes = analysis.parts.iter().any(|part| !part.instabilities.is_empty());
+            if own.size() > local::SEEN && has_modes {
+                return outcome(context, "the scheme substep by substep, from the growing mode", modes);
+            }
+            return run(own, context, || modes.and_then(|()| local::subcycles(own, dt, analysis, local)));
         }
         let Some(steps) = own.local_steps() else { return outcome(context, ALONE, Ok(())) };
         let checked = local::sparse(steps, to_f64(&scene.model().steps()[0]), analysis, local);

@@ -18,6 +18,7 @@
 //! m_j = 2, of ω = N_l π 1; Σ w_j = 1. With two substeps: K below 4/dt² times masses of which the fine ones count twice. Odd > 0 is the same without the layers of
 //! m_j = 1; with one level it ends where the fastest fine motion takes half a turn in a step. Beyond it no verdict is proven.
 
+use std::cmp::Reverse;
 use std::collections::BTreeSet;
 
 use super::scheme::{Level, Scheme, SchemeSummary};
@@ -25,7 +26,10 @@ use super::sparse::SparseSteps;
 use crate::error::{Error, Result, room};
 use crate::number::U;
 use crate::system::levels::sparse::Triplets;
+use crate::system::spectrum::rate::Multiplier;
 use crate::system::vary::stretches::{Stretch, merged};
+use crate::system::verdict::analysis::Instability;
+use crate::system::verdict::large::{dominant, growing};
 use crate::system::verdict::measured::Holds;
 
 /// A diagonal mass, a sparse stiffness, and the degrees of freedom that subcycle.
@@ -151,6 +155,41 @@ impl SparseSubcycles {
             steps.take_while(move |&dt| dt < end).find(|&dt| self.verdict(dt) == told)
         };
         Some((beside(lo.min(end.next_down()), -1.0, Holds::Stable)?, beside(hi, 1.0, Holds::Unstable)))
+    }
+
+    /// The multiplier farthest outside the unit circle by more than `least`, with the mode that grows, both rounded; `None` where an iteration finds none.
+    ///
+    /// # Errors
+    /// Where the work was stopped.
+    pub(in crate::system) fn growing(
+        &self,
+        dt: f64,
+        least: f64,
+    ) -> Result<Option<(Vec<Multiplier>, Vec<Instability>)>> {
+        let n = self.size();
+        let substeps: Vec<u32> = (0..n).map(|i| Level::substeps_of(&self.levels, i)).collect();
+        let (rows, most) = (self.plain.rows(), substeps.iter().copied().max().unwrap_or(1));
+        // The finest first, so that those which kick at one time come before all others.
+        let mut order: Vec<usize> = (0..n).collect();
+        order.sort_by_key(|&i| Reverse(substeps[i]));
+        // Steps and velocities in units of dt.
+        let step = |z: &[f64]| {
+            let (mut y, mut v) = (z[..n].to_vec(), z[n..].to_vec());
+            for tick in 0..=most {
+                let weight = if tick % most == 0 { 0.5 } else { 1.0 };
+                for &i in order.iter().take_while(|&&i| tick % (most / substeps[i]) == 0) {
+                    let pull: f64 = rows[i].iter().map(|&(j, a)| a * y[j]).sum();
+                    v[i] -= weight * dt * dt / f64::from(substeps[i]) * pull;
+                }
+                if tick < most {
+                    y.iter_mut().zip(&v).for_each(|(y, v)| *y += v / f64::from(most));
+                }
+            }
+            y.extend(v);
+            y
+        };
+        let found = dominant(2 * n, step, least)?;
+        Ok(found.map(|mode| growing(mode, |i| 1.0 / self.plain.root(i))))
     }
 
     /// The verdicts on all steps from `lo` to `hi`, as stretches that cover them: they are open from where the odd action is not

@@ -158,6 +158,16 @@ impl SparseSteps {
         x.iter().zip(&self.roots).map(|(x, root)| x * root).collect()
     }
 
+    /// The root of a mass.
+    pub(super) fn root(&self, i: usize) -> f64 {
+        self.roots[i]
+    }
+
+    /// The rows of A, rounded.
+    pub(super) fn rows(&self) -> Vec<Vec<(usize, f64)>> {
+        self.plain.pattern.rows(&self.plain.values)
+    }
+
     /// A y = M^-½ K M^-½ y, rounded.
     pub fn pull(&self, y: &[f64]) -> Vec<f64> {
         let own = &self.plain;

@@ -51,9 +51,15 @@ const NO_MODE: &str =
 /// The note on local time steps.
 const FASTEST: &str = "of sparse stiffnesses only the motion that grows fastest is computed";
 
-/// The note on subcycles.
-const NO_RATE: &str = "of sparse subcycling the verdict is computed, the growth rate is not; steps in which the fastest fine motion takes half a turn \
-                       or more are not decided";
+/// The notes on subcycles: on a verdict, on what was found to grow.
+const HALF_TURN: &str = "of sparse subcycling no verdict is proven where the fastest fine motion takes half a turn or more in a step";
+const ROUNDED: &str = "the multiplier that grows fastest is computed, rounded: no growth rate is enclosed";
+const SLOW: &str = "no growing mode was found: growth is slow here";
+const NOT_PROVEN: &str = "a mode grows in doubles: rounded, and no proof";
+const NONE_FOUND: &str = "in doubles no mode was found that grows: none does so fast, which is no proof";
+
+/// Multipliers on the circle that meet are known to the root of a residual of 1e-9. What is beyond it by no more need not grow.
+const MEETING: f64 = 3e-5;
 
 const TOGETHER: &str = "all may move together: that motion is set apart";
 
@@ -247,7 +253,7 @@ impl SparseSystem {
         let (levels, outer, accuracy, removed) = match &self.of {
             Of::Levels { levels, outer, accuracy, removed } => (levels, outer, *accuracy, removed),
             Of::Steps(own) => return Ok(self.of_steps(own)),
-            Of::Subcycles(own) => return Ok(self.of_subcycles(own)),
+            Of::Subcycles(own) => return self.of_subcycles(own),
         };
         levels.look(outer.inner_steps());
         let margin = if levels.is_unstable(outer, 0.0) { None } else { levels.margin(outer) };
@@ -349,16 +355,29 @@ impl SparseSystem {
         Analysis::of_part(Part { largest, ..part }, 1, notes)
     }
 
-    /// The verdict on subcycles.
-    fn of_subcycles(&self, own: &SparseSubcycles) -> Analysis {
-        let period = Laurent::from_rational(self.step.clone());
-        let part =
-            Part::new(own.size(), period, decided(own.verdict(to_f64(&self.step))), Default::default());
-        let mut notes = vec![NO_RATE.into()];
+    /// The verdict on subcycles, and what grows fastest.
+    fn of_subcycles(&self, own: &SparseSubcycles) -> Result<Analysis> {
+        let (dt, period) = (to_f64(&self.step), Laurent::from_rational(self.step.clone()));
+        let verdict = own.verdict(dt);
+        let mut notes = vec![HALF_TURN.into()];
+        let mut modes = Default::default();
+        if verdict != Holds::Stable {
+            let is_proven = verdict == Holds::Unstable;
+            let found = own.growing(dt, if is_proven { 0.0 } else { MEETING })?;
+            let note = match (is_proven, found.is_some()) {
+                (true, true) => ROUNDED,
+                (true, false) => SLOW,
+                (false, true) => NOT_PROVEN,
+                (false, false) => NONE_FOUND,
+            };
+            notes.push(note.into());
+            modes = found.unwrap_or_default();
+        }
+        let part = Part::new(own.size(), period, decided(verdict), modes);
         if own.plain().rigid_motions() > 0 {
             notes.push(TOGETHER.into());
         }
-        Analysis::of_part(part, 1, notes)
+        Ok(Analysis::of_part(part, 1, notes))
     }
 }
 

@@ -2,12 +2,14 @@
 //!
 //! All eigenvalues of n degrees of freedom cost 25 n³ and are asked for by nobody where n is in the thousands. Where the signs
 //! prove instability all μ are real (one end's action is definite, so that one of the forms is), and a few thousand sparse periods
-//! find the fastest.
+//! find the fastest. So it is with subcycling.
 
 use faer::Mat;
 use faer::c64;
 
+use crate::error::Result;
 use crate::number::Laurent;
+use crate::parallel::go_on;
 use crate::schedule::Weight;
 use crate::system::half::compose::{Program, Row, State};
 use crate::system::half::float::scaled_program;
@@ -34,29 +36,54 @@ const ROUNDS: usize = 12;
 const FOUND: f64 = 1e-9;
 
 /// The verdict on a large system, where two signs decide; `None` where they do not.
-pub(in crate::system) fn decide(system: &System, frame: &Frame) -> Option<Part> {
+///
+/// # Errors
+/// Where the work was stopped.
+pub(in crate::system) fn decide(system: &System, frame: &Frame) -> Result<Option<Part>> {
     if system.size() < LARGE {
-        return None;
+        return Ok(None);
     }
-    let is_stable = action::is_stable(system, frame)?;
+    let Some(is_stable) = action::is_stable(system, frame) else { return Ok(None) };
     let period = Laurent::from_rational(system.period());
     let part = |kind, growing| Part::new(frame.kept.len(), period, (Some(kind), Evidence::Signs), growing);
     if is_stable {
-        return Some(part(Kind::Elliptic, Default::default()));
+        return Ok(Some(part(Kind::Elliptic, Default::default())));
     }
-    let (lambda, v) = dominant(system, frame)?;
-    let mu = c64::new((lambda + 1.0 / lambda - 2.0) / 4.0, 0.0);
-    let multiplier = Multiplier::new(mu, None, None);
+    let (program, scales) = scaled_program(system, frame);
+    let n = system.size();
+    let period = |z: &[f64]| {
+        let mut column = Column { x: z[..n].to_vec(), p: z[n..].to_vec() };
+        program.run(system.schedule().symmetric_period(), &mut column);
+        column.x.extend(column.p);
+        column.x
+    };
+    let found = dominant(2 * n, period, 0.0)?;
+    Ok(found.map(|mode| part(Kind::Hyperbolic, growing(mode, |i| 1.0 / scales[i]))))
+}
+
+/// A multiplier λ off the circle and its mode z, both rounded.
+pub(in crate::system) struct Dominant {
+    lambda: c64,
+    z: Vec<c64>,
+}
+
+/// The same in an answer: of the first half of z, the positions, each by its own scale.
+pub(in crate::system) fn growing(
+    Dominant { lambda, z }: Dominant,
+    scale: impl Fn(usize) -> f64,
+) -> (Vec<Multiplier>, Vec<Instability>) {
+    let multiplier = Multiplier::new((lambda + lambda.inv() - 2.0) / 4.0, None, None);
+    let positions = || z[..z.len() / 2].iter().enumerate().map(|(i, x)| x * scale(i));
     let mut mode = Instability {
         multiplier,
-        origin: Origin::RealPair,
+        origin: if lambda.im == 0.0 { Origin::RealPair } else { Origin::Collision },
         growth_rate: None,
-        quadrature: vec![0.0; v.len()],
-        shape: v,
+        shape: positions().map(|x| x.re).collect(),
+        quadrature: positions().map(|x| x.im).collect(),
         resonance: None,
     };
     mode.normalize();
-    Some(part(Kind::Hyperbolic, (vec![multiplier], vec![mode])))
+    (vec![multiplier], vec![mode])
 }
 
 /// One column of positions and momenta.
@@ -79,29 +106,30 @@ impl State<f64> for Column {
     }
 }
 
-/// The real multiplier farthest outside the unit circle, in doubles, and the positions of its mode; `None` where the
-/// iteration finds none.
-fn dominant(system: &System, frame: &Frame) -> Option<(f64, Vec<f64>)> {
-    let (program, scales) = scaled_program(system, frame);
-    let n = system.size();
-    let period = |z: &[f64]| {
-        let mut column = Column { x: z[..n].to_vec(), p: z[n..].to_vec() };
-        program.run(system.schedule().symmetric_period(), &mut column);
-        column.x.extend(column.p);
-        column.x
-    };
-    let mut z: Vec<f64> = unit(start(2 * n))?;
+/// The eigenvalue farthest outside the unit circle of a linear map of `size` numbers, by more than `least` and its residual; `None` where the iteration
+/// finds none.
+///
+/// # Errors
+/// Where the work was stopped.
+pub(in crate::system) fn dominant(
+    size: usize,
+    period: impl Fn(&[f64]) -> Vec<f64>,
+    least: f64,
+) -> Result<Option<Dominant>> {
+    let mut own = unit(start(size));
     for _ in 0..ROUNDS {
         for _ in 0..POWER {
-            z = unit(period(&z))?;
+            go_on()?;
+            own = own.and_then(|z| unit(period(&z)));
         }
-        let (lambda, next, residual) = ritz(&period, z)?;
-        z = next;
-        if residual < FOUND * lambda.abs() && lambda.abs() > 1.0 {
-            return Some((lambda, z.iter().zip(&scales).map(|(x, a)| x / a).collect()));
+        let Some((found, residual)) = own.and_then(|z| ritz(&period, z)) else { break };
+        let length = found.lambda.norm();
+        if residual < FOUND * length && length > 1.0 + least {
+            return Ok(Some(found));
         }
+        own = unit(found.z.iter().map(|z| z.re).collect());
     }
-    None
+    Ok(None)
 }
 
 /// Where a recursion for eigenvectors begins: numbers without a pattern (Weyl's sequence), some part of every mode.
@@ -114,8 +142,8 @@ fn unit(z: Vec<f64>) -> Option<Vec<f64>> {
     (length.is_normal()).then(|| z.into_iter().map(|x| x / length).collect())
 }
 
-/// The real Ritz value of largest size over the Krylov space of z, its vector of length 1, and |Q z − λ z|.
-fn ritz(period: &impl Fn(&[f64]) -> Vec<f64>, z: Vec<f64>) -> Option<(f64, Vec<f64>, f64)> {
+/// The Ritz value of largest size over the Krylov space of z, its vector of length 1, and |Q z − λ z|.
+fn ritz(period: &impl Fn(&[f64]) -> Vec<f64>, z: Vec<f64>) -> Option<(Dominant, f64)> {
     let dot = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(a, b)| a * b).sum::<f64>();
     let (mut basis, mut h) = (vec![z], Mat::<f64>::zeros(KRYLOV, KRYLOV));
     for k in 0..KRYLOV {
@@ -138,15 +166,23 @@ fn ritz(period: &impl Fn(&[f64]) -> Vec<f64>, z: Vec<f64>) -> Option<(f64, Vec<f
     let size = basis.len();
     let small = Mat::from_fn(size, size, |i, j| h[(i, j)]);
     let eigen = small.eigen().ok()?;
-    let real = (0..size).filter(|&i| eigen.S()[i].im == 0.0);
-    let best = real.max_by(|&i, &j| eigen.S()[i].re.abs().total_cmp(&eigen.S()[j].re.abs()))?;
-    let mut z = vec![0.0; basis[0].len()];
-    for (k, own) in basis.iter().enumerate() {
-        let weight = eigen.U()[(k, best)].re;
-        z.iter_mut().zip(own).for_each(|(x, y)| *x += weight * y);
+    let best = (0..size).max_by(|&i, &j| eigen.S()[i].norm().total_cmp(&eigen.S()[j].norm()))?;
+    let (lambda, weights) = (eigen.S()[best], eigen.U().col(best));
+    let part = |of: fn(&c64) -> f64| {
+        let mut z = vec![0.0; basis[0].len()];
+        for (own, weight) in basis.iter().zip(weights.iter().map(of)) {
+            z.iter_mut().zip(own).for_each(|(x, y)| *x += weight * y);
+        }
+        z
+    };
+    let (re, im) = (part(|weight| weight.re), part(|weight| weight.im));
+    let length = (dot(&re, &re) + dot(&im, &im)).sqrt();
+    if !length.is_normal() {
+        return None;
     }
-    let (lambda, z) = (eigen.S()[best].re, unit(z)?);
-    let image = period(&z);
-    let residual = image.iter().zip(&z).map(|(a, b)| (a - lambda * b).powi(2)).sum::<f64>().sqrt();
-    Some((lambda, z, residual))
+    let paired = |re: Vec<f64>, im: Vec<f64>| re.into_iter().zip(im).map(|(x, y)| c64::new(x, y) / length);
+    let image: Vec<c64> = paired(period(&re), period(&im)).collect();
+    let z: Vec<c64> = paired(re, im).collect();
+    let residual = image.iter().zip(&z).map(|(a, b)| (a - lambda * b).norm_sqr()).sum::<f64>().sqrt();
+    Some((Dominant { lambda, z }, residual))
 }

@@ -102,7 +102,9 @@ impl Piece {
         // A part that may be refused is asked for before anything else is computed.
         let asked = (how.0 == Route::Exact).then(|| self.exact(how.1)).transpose()?;
         check_length(&self.system, how.1)?;
-        if let Some(part) = asked.is_none().then(|| large::decide(&self.system, &self.frame)).flatten() {
+        if asked.is_none()
+            && let Some(part) = large::decide(&self.system, &self.frame)?
+        {
             warnings.push(large::NOTE.into());
             return Ok(part);
         }

@@ -130,6 +130,20 @@ impl Pattern {
         (self.columns[j]..self.columns[j + 1]).map(|at| (at, self.rows[at]))
     }
 
+    /// The entries of each row with their columns.
+    pub(in crate::system) fn rows(&self, values: &[f64]) -> Vec<Vec<(usize, f64)>> {
+        let mut rows = vec![Vec::new(); self.size()];
+        for j in 0..self.size() {
+            for (at, i) in self.column(j) {
+                rows[i].push((j, values[at]));
+                if i != j {
+                    rows[j].push((i, values[at]));
+                }
+            }
+        }
+        rows
+    }
+
     /// A x for each column x.
     pub fn times(&self, values: &[f64], x: &Mat<f64>) -> Mat<f64> {
         // As many parts whatever the threads, so that sums have one order.
