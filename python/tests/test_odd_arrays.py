@@ -73,7 +73,7 @@ ASKED: dict[str, Callable[[Any], object]] = {
     "simplest": kd.simplest,
     "labels": lambda x: kd.tongues(ratio="3/2", rho="1/4", m=x),
     "half": lambda x: kd.half("3/2", s=x, rho=1),
-    "bands": lambda x: kd.bands(lambda1=10, lambda2=1, h1=x, h2=("1/10", "1/2"), budget=BUDGET),
+    "bands": lambda x: kd.bands(lambda1=10, lambda2=1, h1=x, h2=("1/10", "1/2"), sectors=1000),
     "closings": lambda x: kd.closings(max_sum=x),
     "periods": lambda x: kd.advise(x, steps="0.5fs,2fs"),
     "steps": lambda x: kd.advise(["10fs", "40fs"], steps=x),
