@@ -62,11 +62,10 @@ impl Question for Bands {
     type Answer = band::Bands;
 
     fn answer(&self, work: &Work) -> Result<band::Bands> {
-        if self.sectors > work.budget.unwrap_or(MOST_SECTORS) {
+        let most = work.budget.unwrap_or(MOST_SECTORS);
+        if self.sectors > most {
             let cost = format!("{} sectors are too many", self.sectors);
-            return Err(
-                Error::budget(cost, self.sectors).or(format!("choose --sectors {MOST_SECTORS} at most"))
-            );
+            return Err(Error::budget(cost, self.sectors).or(format!("choose --sectors {most} at most")));
         }
         if let Some(share) = self.area.as_ref().filter(|share| !share.is_positive() || **share > One::one()) {
             return Err(Error::input(
