@@ -10,7 +10,7 @@ import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import pairwise
 from pathlib import Path
 from time import perf_counter
@@ -23,6 +23,7 @@ from kickdrift import _plot
 from kickdrift._document import Frozen
 from kickdrift._errors import KickdriftError
 from kickdrift._held import Held
+from kickdrift._journal import Journal
 from kickdrift._numbers import frozen
 from kickdrift._progress import Progress
 from kickdrift._rigid import Doubles, is_held, norm, rigid_motions
@@ -40,6 +41,12 @@ def smooth(force: Force, positions: Doubles, reach: float) -> Force:
     jump within that, as where pairs cross a cutoff, have a ``smooth`` of their own."""
     own = getattr(force, "smooth", None)
     return force if own is None else own(positions, _MARGIN * reach)
+
+
+def journal_of(force: Force) -> Journal | None:
+    """Where differences of this force are kept, if they are: forces that are known by a name have a ``journal``."""
+    own: Journal | None = getattr(force, "journal", None)
+    return own
 
 
 @dataclass(frozen=True)
@@ -199,8 +206,16 @@ def _measured(
     root = np.sqrt(np.repeat(masses, 3))[kept]
     second, fourth = np.empty((len(kept), len(kept))), np.empty((len(kept), len(kept)))
     force = smooth(force, positions, 2 * difference)
+
+    def of(column: int) -> Doubles:
+        return np.array([_difference(force, positions, column, width)[kept] for width in (difference, 2 * difference)])
+
+    journal = journal_of(force)
     for place, column in enumerate(kept):
-        near, far = (_difference(force, positions, column, width)[kept] for width in (difference, 2 * difference))
+        if journal is None:
+            near, far = of(column)
+        else:
+            near, far = journal.kept(partial(of, column), "column", positions, kept, float(column), difference)
         second[:, place], fourth[:, place] = near, (4 * near - far) / 3
         if progress is not None:
             progress(place + 1, len(kept))
@@ -877,6 +892,14 @@ class _Sum:
 
     def __call__(self, positions: Doubles) -> Doubles:
         return np.asarray(np.sum([force(positions) for force in self.forces], axis=0) - self.less)
+
+    @property
+    def journal(self) -> Journal | None:
+        """That of all of them."""
+        own = [each for force in self.forces if (each := journal_of(force)) is not None]
+        if not own or len(own) < len(self.forces):
+            return None
+        return replace(own[0], names=("sum", np.asarray(self.less), *(name for each in own for name in each.names)))
 
     def smooth(self, positions: Doubles, reach: float) -> Force:
         """Where one of them jumps, so does the sum: each as it is about these positions."""
