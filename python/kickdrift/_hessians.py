@@ -926,7 +926,8 @@ def _newton(family: _Family, share: float, start: Doubles, row: Doubles | None =
     each step leaves less than a tenth of the velocity: half a period asks for some forces, they for thousands.
 
     With a ``row``, the share moves too, and steps are at right angles to the row, whose last entry is that of the
-    share: so orbits are found where the family folds. These are sought near by, so only by whole steps.
+    share: so orbits are found where the family folds. These are sought near by, so only by whole steps; what comes with
+    them is half a period from beside them.
     """
     held, firm, extent = family.held, family.firm, float(np.ptp(start, axis=0).max()) or 1.0
     many, unit = firm.shape[1], 0.0
@@ -975,6 +976,11 @@ def _newton(family: _Family, share: float, start: Doubles, row: Doubles | None =
             if not float(np.abs(speed).max()) < size:
                 break
             start, share = there
+        if row is not None:
+            # On the way the place alone is asked for, not half a period from there.
+            residual = float(np.abs(firm @ towards(speed)[:many] / held.root).max()) / extent
+            if residual <= near:
+                return _Orbit(share, start, half, residual, 0.0)
 
 
 @dataclass(frozen=True, eq=False)
