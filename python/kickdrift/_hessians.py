@@ -543,7 +543,8 @@ class Monodromy(Frozen):
         the residual moves.
     along : System or None
         The Hessians at the kicks of half a period along an orbit, with their ``accuracy``: ten times what the
-        differences are seen to leave and what Newton's next step would change, relative to their norms.
+        differences are seen to leave and what Newton's next step would change, relative to the largest norm of each
+        step's.
     unproven : str
         Why there are none; empty where there are.
     time_unit : str
@@ -1156,7 +1157,8 @@ _FARTHER = 10.0
 def along(
     struck: Sequence[Struck], steps: Mapping[str, Fraction], root: Doubles, ahead: float
 ) -> tuple[dict[str, tuple[Fraction, Doubles]], float]:
-    """The Hessians along the orbit by step, in force over length, and how well all are known.
+    """The Hessians along the orbit by step, in force over length, and how well all are known, relative to the largest
+    norm of each step's.
 
     Newton's next step, of the length ``ahead``, would change the Hessians in its share of the way along which they are
     seen to change.
@@ -1175,15 +1177,14 @@ def along(
         errors = [sum(kick.error for kick in kicks) for kicks in zip(*own, strict=True)]
         added = [sum(kick.shape for kick in kicks) for kicks in zip(*own, strict=True)]
         whole = [matrix + shape for matrix, shape in zip(matrices, added, strict=True)]
-        sizes = [max(norm(matrix), 1e-300) for matrix in whole]
+        size = max(1e-300, *(norm(matrix) for matrix in whole))
         where = [kick.positions for kick in own[0]]
         changes = 0.0
         for k in range(len(where) - 1):
             way = float(np.abs(where[k + 1] - where[k]).max())
             if way > ahead:
                 changes = max(changes, norm(matrices[k + 1] - matrices[k]) / way)
-        for error, size in zip(errors, sizes, strict=True):
-            worst = max(worst, _FARTHER * (error + changes * ahead) / size)
+        worst = max(worst, _FARTHER * (max(errors) + changes * ahead) / size)
         name = ", ".join(kinds[place] for place in groups)
         potentials[name] = (step, np.array(whole) * np.outer(root, root))
     return potentials, usable(worst, "a kick along the orbit", "the one that was taken", SMOOTHER)
