@@ -10,7 +10,7 @@ import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import pairwise
 from pathlib import Path
 from time import perf_counter
@@ -23,6 +23,7 @@ from kickdrift import _plot
 from kickdrift._document import Frozen
 from kickdrift._errors import KickdriftError
 from kickdrift._held import Held
+from kickdrift._journal import Journal
 from kickdrift._numbers import frozen
 from kickdrift._progress import Progress
 from kickdrift._rigid import Doubles, is_held, norm, rigid_motions
@@ -40,6 +41,12 @@ def smooth(force: Force, positions: Doubles, reach: float) -> Force:
     jump within that, as where pairs cross a cutoff, have a ``smooth`` of their own."""
     own = getattr(force, "smooth", None)
     return force if own is None else own(positions, _MARGIN * reach)
+
+
+def journal_of(force: Force) -> Journal | None:
+    """Where differences of this force are kept, if they are: forces that are known by a name have a ``journal``."""
+    own: Journal | None = getattr(force, "journal", None)
+    return own
 
 
 @dataclass(frozen=True)
@@ -199,8 +206,16 @@ def _measured(
     root = np.sqrt(np.repeat(masses, 3))[kept]
     second, fourth = np.empty((len(kept), len(kept))), np.empty((len(kept), len(kept)))
     force = smooth(force, positions, 2 * difference)
+
+    def of(column: int) -> Doubles:
+        return np.array([_difference(force, positions, column, width)[kept] for width in (difference, 2 * difference)])
+
+    journal = journal_of(force)
     for place, column in enumerate(kept):
-        near, far = (_difference(force, positions, column, width)[kept] for width in (difference, 2 * difference))
+        if journal is None:
+            near, far = of(column)
+        else:
+            near, far = journal.kept(partial(of, column), "column", positions, kept, float(column), difference)
         second[:, place], fourth[:, place] = near, (4 * near - far) / 3
         if progress is not None:
             progress(place + 1, len(kept))
@@ -528,7 +543,8 @@ class Monodromy(Frozen):
         the residual moves.
     along : System or None
         The Hessians at the kicks of half a period along an orbit, with their ``accuracy``: ten times what the
-        differences are seen to leave and what Newton's next step would change, relative to their norms.
+        differences are seen to leave and what Newton's next step would change, relative to the largest norm of each
+        step's.
     unproven : str
         Why there are none; empty where there are.
     time_unit : str
@@ -878,6 +894,14 @@ class _Sum:
     def __call__(self, positions: Doubles) -> Doubles:
         return np.asarray(np.sum([force(positions) for force in self.forces], axis=0) - self.less)
 
+    @property
+    def journal(self) -> Journal | None:
+        """That of all of them."""
+        own = [each for force in self.forces if (each := journal_of(force)) is not None]
+        if not own or len(own) < len(self.forces):
+            return None
+        return replace(own[0], names=("sum", np.asarray(self.less), *(name for each in own for name in each.names)))
+
     def smooth(self, positions: Doubles, reach: float) -> Force:
         """Where one of them jumps, so does the sum: each as it is about these positions."""
         return _Sum([smooth(force, positions, reach) for force in self.forces], self.less)
@@ -903,7 +927,8 @@ def _newton(family: _Family, share: float, start: Doubles, row: Doubles | None =
     each step leaves less than a tenth of the velocity: half a period asks for some forces, they for thousands.
 
     With a ``row``, the share moves too, and steps are at right angles to the row, whose last entry is that of the
-    share: so orbits are found where the family folds. These are sought near by, so only by whole steps.
+    share: so orbits are found where the family folds. These are sought near by, so only by whole steps; what comes with
+    them is half a period from beside them.
     """
     held, firm, extent = family.held, family.firm, float(np.ptp(start, axis=0).max()) or 1.0
     many, unit = firm.shape[1], 0.0
@@ -952,6 +977,11 @@ def _newton(family: _Family, share: float, start: Doubles, row: Doubles | None =
             if not float(np.abs(speed).max()) < size:
                 break
             start, share = there
+        if row is not None:
+            # On the way the place alone is asked for, not half a period from there.
+            residual = float(np.abs(firm @ towards(speed)[:many] / held.root).max()) / extent
+            if residual <= near:
+                return _Orbit(share, start, half, residual, 0.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -1127,7 +1157,8 @@ _FARTHER = 10.0
 def along(
     struck: Sequence[Struck], steps: Mapping[str, Fraction], root: Doubles, ahead: float
 ) -> tuple[dict[str, tuple[Fraction, Doubles]], float]:
-    """The Hessians along the orbit by step, in force over length, and how well all are known.
+    """The Hessians along the orbit by step, in force over length, and how well all are known, relative to the largest
+    norm of each step's.
 
     Newton's next step, of the length ``ahead``, would change the Hessians in its share of the way along which they are
     seen to change.
@@ -1146,15 +1177,14 @@ def along(
         errors = [sum(kick.error for kick in kicks) for kicks in zip(*own, strict=True)]
         added = [sum(kick.shape for kick in kicks) for kicks in zip(*own, strict=True)]
         whole = [matrix + shape for matrix, shape in zip(matrices, added, strict=True)]
-        sizes = [max(norm(matrix), 1e-300) for matrix in whole]
+        size = max(1e-300, *(norm(matrix) for matrix in whole))
         where = [kick.positions for kick in own[0]]
         changes = 0.0
         for k in range(len(where) - 1):
             way = float(np.abs(where[k + 1] - where[k]).max())
             if way > ahead:
                 changes = max(changes, norm(matrices[k + 1] - matrices[k]) / way)
-        for error, size in zip(errors, sizes, strict=True):
-            worst = max(worst, _FARTHER * (error + changes * ahead) / size)
+        worst = max(worst, _FARTHER * (max(errors) + changes * ahead) / size)
         name = ", ".join(kinds[place] for place in groups)
         potentials[name] = (step, np.array(whole) * np.outer(root, root))
     return potentials, usable(worst, "a kick along the orbit", "the one that was taken", SMOOTHER)

@@ -15,6 +15,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
+from os import PathLike
 from typing import Any
 
 import numpy as np
@@ -43,6 +44,7 @@ from kickdrift._hessians import (
     unbalanced,
     usable,
 )
+from kickdrift._journal import Journal
 from kickdrift._numbers import Exact, doubles, duration, rational, simplest
 from kickdrift._progress import Progress, shown
 from kickdrift._rigid import Doubles, is_held, norm, rigid_motions
@@ -74,12 +76,14 @@ _CUT = (mm.NonbondedForce, mm.CustomNonbondedForce)
 class _Engine:
     """A context for forces by group, of the particles that move by themselves: virtual sites follow these.
 
-    ``moving`` are the numbers of those particles in OpenMM's system; all, where there are no sites.
+    ``moving`` are the numbers of those particles in OpenMM's system; all, where there are no sites. ``journal`` keeps
+    what was computed, where something does.
     """
 
     context: Any
     masses: Doubles
     moving: npt.NDArray[np.intp]
+    journal: Journal | None = None
 
     @property
     def count(self) -> int:
@@ -203,23 +207,34 @@ class _Forces:
         state = self.engine.context.getState(getForces=True, groups=self.groups)
         return np.asarray(state.getForces(asNumpy=True)._value, dtype=np.float64)[self.engine.moving]
 
+    @property
+    def journal(self) -> Journal | None:
+        return self.engine.journal and self.engine.journal.of("forces", float(self.groups))
+
     def smooth(self, positions: Doubles, reach: float) -> Force:
         """With each pair kept on that side of the cutoff on which it is at these positions."""
         acting = [own for group, cuts in self.engine.cuts.items() if self.groups >> group & 1 for own in cuts]
         if not acting:
             return self
-        every = self.engine.placed(positions)
+        every, about = self.engine.placed(positions), (positions, reach)
         reach *= _stretch(self.engine.context.getSystem(), every)
         kept = [found for own in acting if (found := own.kept(every, reach)) is not None]
-        return _Smooth(self, kept) if kept else self
+        return _Smooth(self, kept, about) if kept else self
 
 
 @dataclass(frozen=True)
 class _Smooth:
-    """The forces of some groups with pairs kept on a side of the cutoff, while they are near it."""
+    """The forces of some groups with pairs kept on a side of the cutoff, while they are near it: ``about`` which
+    positions, and within which reach."""
 
     force: _Forces
     kept: Sequence[Any]
+    about: tuple[Doubles, float]
+
+    @property
+    def journal(self) -> Journal | None:
+        own = self.force.journal
+        return own and own.of("smooth", *self.about)
 
     def __call__(self, positions: Doubles) -> Doubles:
         engine = self.force.engine
@@ -259,6 +274,7 @@ def system(
     platform: str = "Reference",
     progress: Progress | bool = False,
     longest: float = LONGEST,
+    resume: str | PathLike[str] | None = None,
 ) -> System:
     """Make a system of OpenMM's: the Hessian of each force group at the minimum, with its measured error.
 
@@ -298,6 +314,11 @@ def system(
         columns done and the columns in all, for each step.
     longest : float
         Seconds: Hessians that would take longer, or more memory than there is, are refused before they are begun.
+    resume : path, optional
+        A file that keeps the differences that were taken, 16 n bytes for each of a Hessian's n columns, and where
+        OpenMM's minimizer ended. The same call goes on from there after it was interrupted or killed, with the same
+        result to the last bit; so do other steps of the same system at the same positions. The file stays until it is
+        deleted. Hessians of ``sparse=True`` are made anew.
 
     Returns
     -------
@@ -333,8 +354,8 @@ def system(
     True
     """
     clocks = _clocks(system, integrator, steps)
-    engine = _engine(system, platform)
     where = _positions(positions, system)
+    engine = _resumed(_engine(system, platform), where, resume)
     constraints = _constraints(system)
     places = None if atoms is None else _places(system, atoms)
     if difference is None:
@@ -649,6 +670,7 @@ def oscillations(
     difference: float = DIFFERENCE,
     progress: Progress | bool = False,
     longest: float = LONGEST,
+    resume: str | PathLike[str] | None = None,
 ) -> Monodromy:
     """Measure what small deviations do over a period, about the integrator's own periodic orbit: what a run shows.
 
@@ -669,6 +691,8 @@ def oscillations(
         half a period, that are done and that there are in all.
     longest : float
         Seconds: what would take longer, or more memory than there is, is refused before it is begun.
+    resume : path, optional
+        As for :func:`system`.
 
     Returns
     -------
@@ -693,7 +717,16 @@ def oscillations(
     Monodromy(about the minimum: stable, an estimate)
     """
     return _oscillations(
-        system, positions, integrator, steps, about, minimize, difference, progress=progress, longest=longest
+        system,
+        positions,
+        integrator,
+        steps,
+        about,
+        minimize,
+        difference,
+        progress=progress,
+        longest=longest,
+        resume=resume,
     )
 
 
@@ -708,12 +741,13 @@ def _oscillations(
     unit: str | None = "ps",
     progress: Progress | bool = False,
     longest: float = LONGEST,
+    resume: str | PathLike[str] | None = None,
 ) -> Monodromy:
     """:func:`oscillations`; without a ``unit`` an orbit not found at once is not followed from shorter steps."""
     clocks = _clocks(system, integrator, steps)
-    engine = _engine(system)
-    held = Held(engine.masses, _constraints(system))
     where, levels = _positions(positions, system), _levels(clocks)
+    engine = _resumed(_engine(system), where, resume)
+    held = Held(engine.masses, _constraints(system))
     # The mean of the groups, each of which is asked alone.
     dear = sum(seconds_of(engine.force(_mask(own)), where) for own in levels.values()) / len(levels)
     work = Work.of_period(3 * engine.count, list(levels), dear, about, SOUGHT if minimize else 0)
@@ -1047,6 +1081,12 @@ def _platforms() -> list[str]:
     return [mm.Platform.getPlatform(n).getName() for n in range(mm.Platform.getNumPlatforms())]
 
 
+def _resumed(engine: _Engine, where: Doubles, resume: str | PathLike[str] | None) -> _Engine:
+    """With the journal of this system at these positions."""
+    platform, xml = engine.context.getPlatform().getName(), mm.XmlSerializer.serialize(engine.context.getSystem())
+    return replace(engine, journal=Journal.at(resume, mm.version.full_version, platform, xml, where))
+
+
 def _engine(system: Any, platform: str = "Reference") -> _Engine:
     masses, moving = _masses(system), _moving(system)
     if (masses[moving] <= 0).any():
@@ -1285,6 +1325,10 @@ def _relaxed(engine: _Engine, where: Doubles, chosen: Sequence[int] | None) -> D
 def _led_downhill(engine: _Engine, where: Doubles, context: Any = None, **how: float) -> Doubles:
     """Where OpenMM's minimizer ends; of an energy that is no number it would not."""
     context = context or engine.context
+    if engine.journal is not None:
+        # Threads add up forces in any order: it need not end at the same place again.
+        own, xml = replace(engine, journal=None), mm.XmlSerializer.serialize(context.getSystem())
+        return engine.journal.kept(lambda: _led_downhill(own, where, context, **how), "downhill", str(how), xml, where)
     engine.place(where, context)
     energy = context.getState(getEnergy=True).getPotentialEnergy()._value
     if not np.isfinite(energy):

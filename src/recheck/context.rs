@@ -14,6 +14,10 @@ use crate::verdict::Limits;
 /// The remedy for a document that cannot be read.
 pub const REMEDY: &str = "whole documents, as kickdrift wrote them, can be rechecked";
 
+/// A route's room at the end of a region, relative: the smallest eigenvalue of the action there is some 10^-6 of its largest.
+#[cfg(feature = "system")]
+pub const ROOM: f64 = 1e-6;
+
 /// How much is rechecked, and what one row may cost.
 #[derive(Clone, Debug, Default)]
 pub struct Options {

@@ -1,5 +1,7 @@
 //! Every leaf of every kind of document changed: `verify` finds the change, or names the leaf as one that it does not recheck.
 
+use std::path::Path;
+
 use kickdrift::error::Error;
 use kickdrift::recheck::{Claim, Options};
 use serde_json::{Value, json};
@@ -37,6 +39,14 @@ const LENNARD_JONES: &str = include_str!("../../data/scenes/lennard-jones.json")
 const ENGINE: &str = "integrator = md-vv\ndt = 0.0005\nmts = yes\nmts-levels = 2\nmts-level2-forces = longrange-nonbonded\n\
                       mts-level2-factor = 8\nconstraints = none\n";
 
+/// The arrays of tiny.json on three clocks, where both rest on one; and as Jacobians.
+const TINY_LEVELS: &str = r#"{"schema": "kickdrift/system/1", "title": "", "mass_weighted": true, "accuracy": 1e-5, "potentials": [
+    {"name": "a", "step": "1/2000", "stiffness": {"npy": "tiny-fast.npy"}},
+    {"name": "b", "step": "1/500", "scale": "1/3", "stiffness": {"npy": "tiny-slow.npy"}},
+    {"name": "c", "step": "1/250", "scale": "2/3", "stiffness": {"npy": "tiny-slow.npy"}}]}"#;
+const TINY_JACOBIANS: &str = r#"{"schema": "kickdrift/system/1", "title": "", "mass_weighted": true, "accuracy": 1e-5, "symmetric": false,
+    "potentials": [{"step": "1/2000", "stiffness": {"npy": "tiny-fast.npy"}}, {"step": "1/250", "stiffness": {"npy": "tiny-slow.npy"}}]}"#;
+
 const SCENE: &str = r#"{"schema": "kickdrift/scene/1", "title": "small", "lambda1": "16", "lambda2": "16/25",
     "grid": {"step": "1/10", "h1": "1/10..3/5", "h2": "1/10..1"}, "families": {"a": "0..1", "b": "-2..2", "samples": 9},
     "ratio": "5/3", "max": 3, "max_sum": 5, "want": ["map", "curves", "compare", "proposition", "polynomial", "tongues", "closings",
@@ -53,6 +63,12 @@ fn desk() -> Desk {
     desk.write("learned.json", NO_GRADIENT);
     desk.write("tension.json", TENSION);
     desk.write("lennard-jones.json", LENNARD_JONES);
+    desk.write("tiny-levels.json", TINY_LEVELS);
+    desk.write("tiny-jacobians.json", TINY_JACOBIANS);
+    for (folder, name) in [("tests/golden/input", "past.json"), ("tests/golden/input", "past.npz")] {
+        let from = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder).join(name);
+        std::fs::copy(from, desk.path().join(name)).unwrap();
+    }
     desk.write("run.mdp", ENGINE);
     desk.write("scene.json", SCENE);
     desk
@@ -373,6 +389,16 @@ fn no_change_to_a_measured_system_passes() {
         "system tiny.json --nearest --resolution 1e-2",
         "system tiny.json --intervals outer=0.004..0.005 --resolution 1e-2",
         "system tiny.json --scan potentials.1.scale=9/10..1:1/10",
+        "system tiny.json --scan accuracy=1/1000000..1/100000:9/1000000",
+        "system tiny.json --intervals potentials.1.scale=1..3/2 --resolution 1e-2",
+        "system tiny.json --intervals potentials.1.step=0.004..0.006",
+        "system tiny.json --method molly-short",
+        "system tiny-levels.json",
+        "system tiny-levels.json --intervals outer=0.0047..0.0049 --resolution 1e-2",
+        "system tiny-jacobians.json",
+        "system tiny-jacobians.json --intervals outer=0.0046..0.0049 --resolution 1e-2",
+        "system past.json",
+        "system past.json --accuracy 1e-3",
     ];
     no_change_passes(&lines, 500);
 }

@@ -9,7 +9,7 @@ use crate::number::Rational;
 use crate::number::rational::{from_f64_exact, to_f64};
 use crate::question::{Advised, Safe};
 use crate::recheck::again::{Left, Recheck, asked};
-use crate::recheck::context::{Checked, Context, Outcome, REMEDY, holds, too_costly};
+use crate::recheck::context::{Checked, Context, Outcome, REMEDY, ROOM, holds, too_costly};
 use crate::scene::SystemScene;
 use crate::system::levels::{Hessians, Near};
 use crate::system::{Holds, Limits, Potential, System, decide_system};
@@ -110,9 +110,6 @@ struct Other {
     /// fs in the file's unit of time.
     unit: f64,
 }
-
-/// A route's room at the end of a region, relative: the smallest eigenvalue of the action there is some 10^-6 of its largest.
-const ROOM: f64 = 1e-6;
 
 /// By how much growth per period may differ: a multiplier near a double one moves by the square root of the roundings.
 const GROWTH: f64 = 1e-5;

@@ -5,11 +5,14 @@ use num_complex::Complex64;
 
 use super::local;
 use crate::avi::Run;
+use crate::error::Result;
+use crate::number::rational::to_f64;
 use crate::number::{Laurent, Rational};
 use crate::question::Displacement;
-use crate::recheck::context::{Checked, Fault, holds};
+use crate::recheck::context::{Checked, Fault, ROOM, holds};
 use crate::scene::SystemScene;
-use crate::system::{Analysis, Limits, Model, full_period};
+use crate::system::levels::{Hessians, Near};
+use crate::system::{Analysis, Holds, Limits, Measured, Model, full_period};
 
 /// Multipliers are rounded eigenvalues: those of nearly defective propagators are right to half their digits only, but not
 /// the sums of them.
@@ -67,6 +70,63 @@ pub fn growth(scene: &SystemScene, analysis: &Analysis, limits: &Limits) -> Chec
     holds(right, || format!("the growth rate is {lo} to {hi}, that of the dense full period {found}"))
 }
 
+/// How far a verdict on measured stiffnesses stands, by the action of paths, which shares no step with the forms and counts that found it: it is definite
+/// for all stiffnesses near those given where all are stable at this step and at every smaller one.
+pub struct Stands<'a> {
+    measured: &'a Measured,
+    /// Two levels of kicks and drifts, small enough: the matrices, their norms, the outer step and its inner ones.
+    levels: Option<(Hessians, [f64; 2], f64, u64)>,
+}
+
+impl<'a> Stands<'a> {
+    pub fn of(scene: &SystemScene, measured: &'a Measured) -> Result<Stands<'a>> {
+        let model = scene.model();
+        let levels = model.two_levels().ok().map(|two| -> Result<_> {
+            let (hessians, p) = (model.hessians()?, model.inner_steps().unwrap_or(1));
+            Ok((hessians, two.kernel.norms(), to_f64(&two.outer), p))
+        });
+        let levels = levels.transpose()?.filter(|(hessians, _, _, p)| hessians.has_paths(*p));
+        Ok(Stands { measured, levels })
+    }
+
+    /// That the first unstable step is.
+    pub fn check(&self, limits: &Limits) -> Checked {
+        let Some((hessians, _, _, p)) = &self.levels else { return Ok(()) };
+        limits.allow(hessians.cost_of_paths(*p), || "the action of paths".into())?;
+        let Some((lo, hi)) = self.measured.first_unstable else { return Ok(()) };
+        let is_stable = hessians.paths_prove_stable(lo * (1.0 - ROOM), *p, Near::EXACTLY);
+        holds(is_stable, || format!("steps up to {lo} are not proven stable"))?;
+        let is_unstable = hessians.paths_prove_unstable(hi * (1.0 + ROOM), *p);
+        holds(is_unstable, || format!("the step {hi} is not proven unstable"))
+    }
+
+    pub fn name(&self) -> &'static str {
+        match self.levels {
+            Some(_) => {
+                "the growth rate by the eigenvalues of the dense full period, the first unstable step by the action of paths"
+            }
+            None => "the growth rate by the eigenvalues of the dense full period",
+        }
+    }
+
+    /// What paths do not prove, and no other route sees.
+    pub fn unseen(&self) -> Option<String> {
+        let Measured { accuracy, holds, margin, .. } = self.measured;
+        let within = |part: f64| {
+            self.levels.as_ref().is_some_and(|(hessians, norms, step, p)| {
+                let near = Near { factors: [1.0; 2], off: norms.map(|norm| part * norm) };
+                *holds == Holds::Stable && hessians.paths_prove_stable(*step, *p, near)
+            })
+        };
+        let first = self.levels.is_none().then_some("the first unstable step");
+        let all = (!within(*accuracy))
+            .then_some("that the verdict holds for all stiffnesses within their accuracy");
+        let far = margin.is_some_and(|own| !within(own)).then_some("the margin");
+        let named: Vec<&str> = [all, far, first].into_iter().flatten().collect();
+        (!named.is_empty()).then(|| format!("{}: computed again by the same route alone", named.join(", ")))
+    }
+}
+
 /// The series of a linear run by powers of the full period: z after k periods is Qᵏ z₀.
 pub fn linear_run(scene: &SystemScene, displace: &Displacement, run: &Run) -> Checked {
     let (system, centre) = (scene.model().system(), scene.equilibrium());
@@ -111,5 +171,25 @@ mod tests {
             }
             assert!(matches!(growth(&scene, &analysis, &Limits::default()), Err(Fault::Wrong(_))), "{step}");
         }
+    }
+
+    #[test]
+    fn paths_find_a_first_unstable_step_that_is_wrong_from_the_start_and_what_they_do_not_prove_is_named() {
+        let folder = std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/data/scenes"));
+        let text = std::fs::read_to_string(folder.join("water4.json")).unwrap();
+        let scene = SystemScene::from_json_in(folder, serde_json::from_str(&text).unwrap()).unwrap();
+        let limits = Limits::default();
+        let found = scene.model().decide(Route::Cheapest, &limits).unwrap().measured.unwrap();
+        let is_right = |own: &Measured| Stands::of(&scene, own).unwrap().check(&limits).is_ok();
+        assert!(is_right(&found), "{found:?}");
+        let (lo, hi) = found.first_unstable.unwrap();
+        assert!(!is_right(&Measured { first_unstable: Some((lo * (1.0 + 1e-4), hi)), ..found.clone() }));
+        assert!(!is_right(&Measured { first_unstable: Some((lo, hi * (1.0 - 1e-4))), ..found.clone() }));
+        let unseen = |own: &Measured| Stands::of(&scene, own).unwrap().unseen().unwrap_or_default();
+        // Paths prove the accuracy, and a margin as large; twice the margin is true of none.
+        assert_eq!(unseen(&Measured { margin: Some(found.accuracy), ..found.clone() }), "");
+        let twice = 2.0 * found.margin.unwrap();
+        assert!(unseen(&Measured { margin: Some(twice), ..found.clone() }).starts_with("the margin: "));
+        assert!(unseen(&Measured { accuracy: twice, ..found }).starts_with("that the verdict holds for all"));
     }
 }

@@ -87,15 +87,21 @@ fn verdict(
         let checked = local::sparse(steps, to_f64(&scene.model().steps()[0]), analysis, local);
         return Ok(seen(steps, outcome(context, RUN, checked)?));
     }
-    if analysis.measured.is_some() {
-        return match dense::growth(scene, analysis, &context.work().products()) {
+    if let Some(measured) = &analysis.measured {
+        let (limits, route) = (context.work().products(), dense::Stands::of(scene, measured)?);
+        let checked = dense::growth(scene, analysis, &limits).and_then(|()| route.check(&limits));
+        return match checked {
             Err(Fault::Error(error)) if error.kind() == Reason::Budget => {
                 let mut found = outcome(context, ALONE, Ok(()))?;
-                found.not_rechecked.push(too_costly("the growth rate", &error));
+                found
+                    .not_rechecked
+                    .push(too_costly("the growth rate and how far the verdict stands", &error));
                 Ok(found)
             }
             checked => {
-                outcome(context, "the growth rate by the eigenvalues of the dense full period", checked)
+                let mut found = outcome(context, route.name(), checked)?;
+                found.not_rechecked.extend(route.unseen());
+                Ok(found)
             }
         };
     }

@@ -166,6 +166,10 @@ impl SystemScene {
                 let (level, factor) = self.scale(&span.path)?;
                 ask(&Number::Scale(level, factor))
             }
+            Role::Linear if matches!(self.model, Model::Measured(_)) => {
+                let remedy = "of measured stiffnesses name outer, a step, or the scale of one of two levels; --scan decides single values of other scales";
+                Err(Error::input("intervals", &span.path, remedy))
+            }
             Role::Step | Role::Linear => ask(&Number::Linear(&at)),
         }
     }

@@ -266,10 +266,20 @@ impl Along {
         let kept = basis.as_ref().map_or(n, Mat::ncols);
         let shown = if roundings > 8.0 { vec![1.0; kept] } else { scales.clone() };
         let inverse_mass: Vec<_> = (0..kept).map(|i| vec![(i, inverse[i])]).collect();
-        let stiff = |(clock, k): (usize, &DMatrix<f64>)| {
+        let own = |(clock, k): (usize, &DMatrix<f64>)| {
             let factor = tick * tick * self.schedule.clocks()[clock].step() as f64;
             let own = scaled(k, factor, &scales);
-            let known = self.accuracy.map_or(0.0, |accuracy| accuracy * own.size(n));
+            let size = self.accuracy.map_or(0.0, |_| own.size(n));
+            (clock, size, own)
+        };
+        let events = self.schedule.half_period().zip(&self.hessians);
+        let all: Vec<Vec<_>> = events.map(|(event, k)| event.clocks().zip(k).map(own).collect()).collect();
+        let mut largest = vec![0.0_f64; self.schedule.clocks().len()];
+        for (clock, size, _) in all.iter().flatten() {
+            largest[*clock] = largest[*clock].max(*size);
+        }
+        let stiff = |(clock, _, own): (usize, f64, Scaled)| {
+            let known = self.accuracy.map_or(0.0, |accuracy| accuracy * largest[clock]);
             let stiff = match &basis {
                 None => Stiff { off: roundings * U * own.frobenius(), stiffness: own.stiffness(), known },
                 Some(basis) => {
@@ -280,12 +290,8 @@ impl Along {
             };
             (clock, stiff)
         };
-        let kicks: Vec<Vec<(usize, Stiff)>> = self
-            .schedule
-            .half_period()
-            .zip(&self.hessians)
-            .map(|(event, own)| event.clocks().zip(own).map(stiff).collect())
-            .collect();
+        let kicks: Vec<Vec<(usize, Stiff)>> =
+            all.into_iter().map(|own| own.into_iter().map(stiff).collect()).collect();
         let find = |k: usize, clock: usize| {
             let own = kicks[k].iter().find(|(other, _)| *other == clock);
             &own.expect("a Hessian for each clock of each event").1

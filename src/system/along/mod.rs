@@ -7,8 +7,9 @@
 //!     Q + 1/Q = diag(2 + 4 S, 2 + 4 Sᵀ),     S = Bᵀ C,     λ + 1/λ = 2 + 4 μ,     μ an eigenvalue of S.
 //! ```
 //!
-//! Measured Hessians are known to an accuracy ε: K' = K + E, E symmetric, |E| ≤ ε |K| (2-norms, mass-weighted). Each kick then is off by h E, and
-//! the half period by the sum of what these become (file `period` of the half period): what is proven holds for all such Hessians.
+//! Measured Hessians are known to an accuracy ε: K' = K + E, E symmetric, |E| ≤ ε times the largest |K| of the clock's kicks (2-norms, mass-weighted;
+//! one kick of a clock may be nearly nothing, as of what is held). Each kick then is off by h E, and the half period by the sum of what these become
+//! (file `period` of the half period): what is proven holds for all such Hessians.
 //!
 //! **Rigid motions** of a free molecule are no null vectors of single Hessians along an orbit. But forces that turn with the atoms keep the
 //! momentum and the angular momentum. Let the columns of J₀ and J₁ move the atoms rigidly where the orbit starts and where it turns, at rest both

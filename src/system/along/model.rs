@@ -34,7 +34,7 @@ pub struct Along {
     pub(super) schedule: Schedule,
     /// Of each event of half a period those of the clocks that kick in it.
     pub(super) hessians: Vec<Vec<DMatrix<f64>>>,
-    /// Each Hessian is known to this times its norm; `None`: as it stands.
+    /// Each Hessian is known to this times the largest norm of its clock's; `None`: as they stand.
     pub(super) accuracy: Option<f64>,
     pub(super) rigid: Rigid,
     /// Its size and its clocks.
@@ -99,7 +99,7 @@ impl Along {
         Ok(Along { masses: masses.to_vec(), schedule, hessians, accuracy, rigid, clocks })
     }
 
-    /// The same with every Hessian known to this times its norm.
+    /// The same with every Hessian known to this times the largest norm of those of its clock.
     ///
     /// # Errors
     /// An accuracy that is not in (0, 1/10).
@@ -187,7 +187,7 @@ impl Along {
         self.masses.len()
     }
 
-    /// How well the Hessians are known, relative to their norms; `None`: as they stand.
+    /// How well the Hessians are known, relative to the largest norm of each clock's; `None`: as they stand.
     pub fn accuracy(&self) -> Option<f64> {
         self.accuracy
     }

@@ -1,7 +1,7 @@
 //! A second route to the first region and to growth: the action of the half period as one matrix over the paths, and the full period kick by
 //! kick. No eigenvector of the fast stiffness enters, so it can be held against the kernel.
 
-use faer::Mat;
+use faer::{Mat, Scale};
 
 use super::rigid::Hessians;
 use crate::number::U;
@@ -89,10 +89,12 @@ impl Hessians {
 
     /// Whether the action proves that all such matrices are stable at an outer step of p inner ones and at every smaller one.
     pub fn paths_prove_stable(&self, step: f64, inner_steps: u64, near: Near) -> bool {
-        let total = &self.fast + &self.slow;
-        let slack = self.errors[0]
-            + self.errors[1]
-            + 4.0 * U * (norm::frobenius(&self.fast) + norm::frobenius(&self.slow));
+        let [fast, slow] = near.factors;
+        let total = &self.fast * Scale(fast) + &self.slow * Scale(slow);
+        let off = |level: usize, own: &Mat<f64>| {
+            near.factors[level] * (self.errors[level] + 4.0 * U * norm::frobenius(own)) + near.off[level]
+        };
+        let slack = 1.01 * (off(0, &self.fast) + off(1, &self.slow));
         is_definite(total, slack)
             && [false, true].into_iter().all(|start_held| {
                 let (form, off) = self.action(step, inner_steps, start_held, near);

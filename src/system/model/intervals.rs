@@ -31,7 +31,7 @@ pub enum Number<'a> {
 
 impl Model {
     /// The verdicts on all values of a number in a range, no interval wider than `width` times its larger end missed. Of measured stiffnesses they
-    /// hold for all stiffnesses within their accuracy, but where the number is an entry or a mass.
+    /// hold for all stiffnesses within their accuracy.
     ///
     /// # Errors
     /// As [`Family::stretches`].

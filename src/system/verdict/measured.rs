@@ -69,7 +69,8 @@ impl Holds {
 pub struct Measured {
     /// The integrator: "respa", kicks and drifts, or the name of another.
     pub method: &'static str,
-    /// The stated accuracy: every stiffness is known to this times its norm (2-norm, mass-weighted).
+    /// The stated accuracy: every stiffness is known to this times its norm (2-norm, mass-weighted), along an orbit times the largest norm of its
+    /// clock's kicks.
     pub accuracy: f64,
     /// The verdict on all matrices within it.
     pub holds: Holds,
