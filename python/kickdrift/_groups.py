@@ -9,22 +9,13 @@ from fractions import Fraction
 
 import numpy as np
 
+from kickdrift._cost import SOUGHT, Work, seconds_of
 from kickdrift._errors import KickdriftError
 from kickdrift._held import Held
-from kickdrift._hessians import (
-    SOUGHT,
-    Followed,
-    Force,
-    Monodromy,
-    Work,
-    cooled,
-    hessian,
-    minimum,
-    monodromy,
-    seconds_of,
-    seen,
-    unbalanced,
-)
+from kickdrift._hessians import Force, hessian, seen
+from kickdrift._minimum import cooled, minimum
+from kickdrift._monodromy import Followed, Monodromy, unbalanced
+from kickdrift._orbit import monodromy
 from kickdrift._progress import Progress, shown
 from kickdrift._rigid import Doubles, is_held, norm, rigid_motions
 from kickdrift._system import System

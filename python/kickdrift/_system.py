@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     import pandas
     from matplotlib.axes import Axes
 
-    from kickdrift._hessians import Followed, Monodromy
+    from kickdrift._monodromy import Followed, Monodromy
 
 _SCHEMA = "kickdrift/system/1"
 _FILE, _ARRAYS = "system.json", "arrays.npz"

@@ -11,9 +11,11 @@ from typing import Any
 
 import numpy as np
 
+from kickdrift._cost import LONGEST
 from kickdrift._errors import KickdriftError, needs
 from kickdrift._groups import Groups
-from kickdrift._hessians import LONGEST, Force, Monodromy
+from kickdrift._hessians import Force
+from kickdrift._monodromy import Monodromy
 from kickdrift._numbers import Exact, doubles, duration
 from kickdrift._progress import Progress
 from kickdrift._rigid import Doubles

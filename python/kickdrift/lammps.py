@@ -18,9 +18,10 @@ from typing import Any
 
 import numpy as np
 
+from kickdrift._cost import LONGEST
 from kickdrift._errors import KickdriftError
 from kickdrift._groups import Groups
-from kickdrift._hessians import LONGEST, Monodromy
+from kickdrift._monodromy import Monodromy
 from kickdrift._numbers import Exact, duration, simplest
 from kickdrift._progress import Progress
 from kickdrift._rigid import Doubles

@@ -20,7 +20,9 @@ from test_openmm import box, chain, groups, own_multipliers, published_runs
 
 import kickdrift as kd
 import kickdrift.openmm as ko
-from kickdrift import _hessians as hessians
+from kickdrift import _minimum
+from kickdrift._openmm.forces import engine_of
+from kickdrift._openmm.rest import at_rest, minimized
 
 pytestmark = pytest.mark.heavy
 
@@ -71,7 +73,7 @@ OUTER = ["3", "4", "4.4", "4.5", "4.6", "5", "5.4"]
 @pytest.mark.parametrize("count", [2, 3, 6])
 def test_clusters_of_water_grow_as_the_engine_has_it(count: int, model: str) -> None:
     system, positions = cluster(count, model)
-    at = ko._minimized(ko._engine(system), positions, [], ko.DIFFERENCE)
+    at = minimized(engine_of(system), positions, [], ko.DIFFERENCE)
     grown = refused = 0
     for outer in OUTER:
         step = Fraction(outer) / 1000
@@ -121,7 +123,7 @@ def switched_box() -> tuple[mm.System, np.ndarray]:
             force.setUseSwitchingFunction(True)
             force.setSwitchingDistance(0.2)
             force.setEwaldErrorTolerance(1e-5)
-    at, notes = ko._at_rest(ko._engine(system), positions + 0.0137, [], ko.DIFFERENCE)
+    at, notes = at_rest(engine_of(system), positions + 0.0137, [], ko.DIFFERENCE)
     assert notes == []
     return system, at
 
@@ -129,7 +131,7 @@ def switched_box() -> tuple[mm.System, np.ndarray]:
 def test_a_box_whose_forces_jump_and_have_no_minimum_is_refused_with_what_helps() -> None:
     system, positions = box(2)
     with pytest.raises(kd.KickdriftError, match=r"jump at a cutoff.*a switching function"):
-        ko._at_rest(ko._engine(system), positions + 0.0137, [], ko.DIFFERENCE)
+        at_rest(engine_of(system), positions + 0.0137, [], ko.DIFFERENCE)
 
 
 def test_27_waters_with_ljpme_come_to_rest_within_some_hessians(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -140,8 +142,8 @@ def test_27_waters_with_ljpme_come_to_rest_within_some_hessians(monkeypatch: pyt
         if isinstance(force, mm.NonbondedForce):
             force.setNonbondedMethod(mm.NonbondedForce.LJPME)
     made: list[int] = []
-    measure = hessians.hessian
-    monkeypatch.setattr(hessians, "hessian", lambda *given: [made.append(1), measure(*given)][1])
+    measure = _minimum.hessian
+    monkeypatch.setattr(_minimum, "hessian", lambda *given: [made.append(1), measure(*given)][1])
     found = ko.system(system, box(3)[1], steps={0: "0.5fs", 1: "2fs", 2: "4fs"})
     assert len(made) < 20 and found.accuracy is not None and found.accuracy < 1e-5
     assert "kept on one side of it" in found.notes[0] and "no switching function with LJPME" in found.notes[0]
@@ -154,7 +156,7 @@ def test_no_switching_function_is_recommended_where_openmm_leaves_it_out() -> No
         for force in system.getForces():
             if isinstance(force, mm.NonbondedForce):
                 force.setNonbondedMethod(method)
-        hints.append(ko._engine(system).smoother)
+        hints.append(engine_of(system).smoother)
     assert hints[0].startswith("a switching function, a smaller Ewald tolerance")
     assert hints[1].startswith("a smaller Ewald tolerance") and "no switching function with LJPME" in hints[1]
 
@@ -211,7 +213,7 @@ def test_the_dipeptide_grows_as_the_engine_has_it(options: dict[str, Any], outer
 @pytest.mark.parametrize(("outer", "rate"), [("4.4", 0.0), ("4.5", 8.26)])
 def test_27_waters_are_proven_about_their_orbit(outer: str, rate: float) -> None:
     system, positions = cluster(27, "tip3pfb")
-    at = ko._minimized(ko._engine(system), positions, [], ko.DIFFERENCE)
+    at = minimized(engine_of(system), positions, [], ko.DIFFERENCE)
     step = Fraction(outer) / 1000
     found = ko.oscillations(system, at, steps={0: step / 9, 1: step}, minimize=False)
     assert found.proven and found.stable == (rate == 0.0)

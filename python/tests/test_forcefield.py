@@ -16,6 +16,8 @@ import kickdrift.openmm as ko
 from kickdrift import _bands, _covered, _forcefield
 from kickdrift._held import Held
 from kickdrift._hessians import hessian
+from kickdrift._openmm.forces import engine_of
+from kickdrift._openmm.rest import minimized
 
 #: Bonds and angles, and what OpenMM's own pairs are, by groups.
 SLOW = 1
@@ -278,7 +280,7 @@ def test_pairs_that_cross_the_cutoff_stay_on_their_side(
         system.removeForce(place)
     if box is not None:
         system.setDefaultPeriodicBoxVectors(*[mm.Vec3(*own) for own in box])
-    engine, columns = ko._engine(system), list(range(0, positions.size, 6))
+    engine, columns = engine_of(system), list(range(0, positions.size, 6))
     force = engine.force(1 << SLOW)
     raw, before = hessian(lambda at: force(at), positions, engine.masses, ko.DIFFERENCE, columns)
     found, after = hessian(force, positions, engine.masses, ko.DIFFERENCE, columns)
@@ -303,7 +305,7 @@ def test_pairs_of_a_shell_are_those_of_nearest_images(box: np.ndarray) -> None:
 
 def test_a_product_with_all_atoms_moved_sees_no_cutoff_either() -> None:
     system, positions = waters(3, "CutoffPeriodic")
-    engine = ko._engine(system)
+    engine = engine_of(system)
     force, held = engine.force(1 << SLOW), Held(engine.masses)
     vector = np.random.default_rng(2).normal(size=positions.size)
     exact = _bands.weighted(_forcefield.hessian(system, [SLOW], positions, 1e-5)[0], held.root) @ vector
@@ -318,7 +320,7 @@ def test_a_product_with_all_atoms_moved_sees_no_cutoff_either() -> None:
 def test_sparse_and_dense_systems_have_one_first_unstable_step() -> None:
     system, positions = waters(2, "NoCutoff")
     steps = {0: "0.5fs", SLOW: "4fs"}
-    where = ko._minimized(ko._engine(system), positions, [], ko.DIFFERENCE)
+    where = minimized(engine_of(system), positions, [], ko.DIFFERENCE)
     both = [ko.system(system, where, steps=steps, sparse=sparse, minimize=False).decide() for sparse in (True, False)]
     assert all(own.stable for own in both)
     first, same = (own.data["measured"]["first_unstable"] for own in both)

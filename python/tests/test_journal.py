@@ -16,6 +16,7 @@ from test_openmm import box, waters
 import kickdrift as kd
 import kickdrift.openmm as ko
 from kickdrift._journal import Journal
+from kickdrift._openmm.forces import Forces
 
 STEPS = {0: "0.5fs", 1: "4fs"}
 
@@ -34,9 +35,9 @@ ko.system(system, np.load(sys.argv[2]), steps={0: "0.5fs", 1: "4fs"}, resume=sys
 
 def counted(monkeypatch: pytest.MonkeyPatch) -> Callable[[], int]:
     """How many forces were asked for since this was last called."""
-    count, force = [0], ko._Forces.__call__
+    count, force = [0], Forces.__call__
 
-    def call(self: ko._Forces, positions: np.ndarray) -> np.ndarray:
+    def call(self: Forces, positions: np.ndarray) -> np.ndarray:
         count[0] += 1
         return force(self, positions)
 
@@ -44,7 +45,7 @@ def counted(monkeypatch: pytest.MonkeyPatch) -> Callable[[], int]:
         own, count[0] = count[0], 0
         return own
 
-    monkeypatch.setattr(ko._Forces, "__call__", call)
+    monkeypatch.setattr(Forces, "__call__", call)
     return since
 
 

@@ -21,8 +21,16 @@ from openmm import app, unit
 
 import kickdrift as kd
 import kickdrift.openmm as ko
-from kickdrift import _hessians as hessians
+from kickdrift import _cost, _half, _hessians, _orbit
+from kickdrift._half import compose, eigenvalues
 from kickdrift._held import Held
+from kickdrift._hessians import hessian
+from kickdrift._minimum import minimum
+from kickdrift._openmm import rest
+from kickdrift._openmm.atoms import constraints_of, positions_of
+from kickdrift._openmm.clocks import clocks_of
+from kickdrift._openmm.forces import Engine, engine_of, platforms
+from kickdrift._openmm.rest import at_rest, minimized, relaxed
 
 REFERENCE = mm.Platform.getPlatformByName("Reference")
 
@@ -56,8 +64,8 @@ def waters(rigid: bool = False) -> tuple[mm.System, np.ndarray]:
     groups(system)
     if rigid:
         return system, positions
-    engine = ko._engine(system)
-    return system, ko._minimized(engine, positions, [], ko.DIFFERENCE)
+    engine = engine_of(system)
+    return system, minimized(engine, positions, [], ko.DIFFERENCE)
 
 
 def levels(outer: Fraction) -> tuple[dict[int, Fraction], int]:
@@ -133,11 +141,11 @@ def test_hessians_along_an_orbit_are_known_as_well_as_is_said() -> None:
     system, positions = waters()
     found = ko.oscillations(system, positions, steps=levels(Fraction("4.50") / 1000)[0], minimize=False)
     assert found.along is not None and found.verdict is not None
-    engine, root = ko._engine(system), np.sqrt(np.repeat([system.getParticleMass(n)._value for n in range(12)], 3))
+    engine, root = engine_of(system), np.sqrt(np.repeat([system.getParticleMass(n)._value for n in range(12)], 3))
     for place, mask in ((0, 1), (1, 2)):
         first = found.along.arrays[f"hessian{place}"][0] / np.outer(root, root)
         for difference, farther in ((ko.DIFFERENCE / 2, 1), (2 * ko.DIFFERENCE, 15)):
-            other, _ = hessians.hessian(engine.force(mask), found.positions, engine.masses, difference)
+            other, _ = hessian(engine.force(mask), found.positions, engine.masses, difference)
             assert np.linalg.norm(other - first, 2) < farther * found.along.accuracy * np.linalg.norm(first, 2)
     assert found.verdict.measured["margin"] > 10 * found.along.accuracy
     # A Hessian of another place along the orbit lies outside of it, and the verdict's document is verified.
@@ -184,8 +192,8 @@ def test_where_the_orbit_ends_it_is_said(outer: str, monkeypatch: pytest.MonkeyP
     system, positions = waters()
     steps, inner = levels(Fraction(outer) / 1000)
     made: list[int] = []
-    measure = hessians._measured
-    monkeypatch.setattr(hessians, "_measured", lambda *given: [made.append(1), measure(*given)][1])
+    measure = _half.differences
+    monkeypatch.setattr(_half, "differences", lambda *given: [made.append(1), measure(*given)][1])
     with pytest.raises(kd.KickdriftError, match="it ends there") as caught:
         ko.oscillations(system, positions, steps=steps, minimize=False)
     # 745; 901 where each orbit on the way has its own half period.
@@ -388,14 +396,14 @@ def test_virtual_sites_follow_their_atoms_as_the_engine_has_it(
     if grows:
         assert found.growth_rate == pytest.approx(np.log(np.abs(own).max()) / float(step), rel=1e-5)
     # Sites that stand where the orbit begins are seen.
-    at = ko._engine(system).placed(found.positions)
+    at = engine_of(system).placed(found.positions)
 
     def left(engine: Any, where: np.ndarray, context: Any = None) -> None:
         every = at.copy()
         every[engine.moving] = where
         (context or engine.context).setPositions(every)
 
-    monkeypatch.setattr(ko._Engine, "place", left)
+    monkeypatch.setattr(Engine, "place", left)
     steps = {0: step / inner, 1: step}
     wrong = ko.oscillations(system, found.positions, steps=steps, about="minimum", minimize=False)
     monkeypatch.undo()
@@ -413,7 +421,7 @@ def test_what_virtual_sites_do_in_openmm_is_told() -> None:
     assert "3 virtual sites" in made.notes[0] and "another map" in made.notes[0]
     found = ko.oscillations(system, positions, steps={0: step / 9, 1: step})
     assert found.stable and found.proven
-    engine = ko._engine(system)
+    engine = engine_of(system)
     integrator = mm.MTSIntegrator(float(step), [(1, 1), (0, 9)])
     context = mm.Context(system, integrator, REFERENCE)
     root, speeds = np.sqrt(np.repeat(engine.masses, 3)), np.zeros((12, 3))
@@ -438,8 +446,8 @@ def test_what_virtual_sites_do_in_openmm_is_told() -> None:
 def test_virtual_sites_that_cross_a_cutoff_are_kept_on_their_side(model: str) -> None:
     """A pair of sites within a difference's step of the cutoff: the Hessian is that of a cutoff somewhat longer."""
     system, positions, _ = SITES[model]()
-    engine = ko._engine(system)
-    where = engine.placed(ko._positions(positions, system))
+    engine = engine_of(system)
+    where = engine.placed(positions_of(positions, system))
     sites = [n for n in engine.sites if n > 4]
     ends = sorted(float(np.linalg.norm(where[engine.sites[0]] - where[n])) for n in sites)
     found = []
@@ -451,10 +459,10 @@ def test_virtual_sites_that_cross_a_cutoff_are_kept_on_their_side(model: str) ->
                 force.setCutoffDistance(ends[0] + beyond)
                 # No reaction field, which knows the cutoff.
                 force.setReactionFieldDielectric(1.0)
-        force = ko._engine(own).force(2)
-        found.append(hessians.hessian(force, where[engine.moving], engine.masses, 1e-4))
+        force = engine_of(own).force(2)
+        found.append(hessian(force, where[engine.moving], engine.masses, 1e-4))
         if beyond == 2e-5:
-            _, jumped = hessians.hessian(lambda at, force=force: force(at), where[engine.moving], engine.masses, 1e-4)
+            _, jumped = hessian(lambda at, force=force: force(at), where[engine.moving], engine.masses, 1e-4)
     (near, error), (far, _) = found
     size = np.linalg.norm(far, 2)
     # Rounding of forces of some 1e3 kJ/mol/nm over 1e-4 nm, of 1e4 kJ/mol/nm²; of forces as they jump nothing is left.
@@ -468,11 +476,11 @@ def test_sparse_hessians_and_bands_know_virtual_sites() -> None:
     steps = {0: "0.5fs", 1: "4fs"}
     for model in ("TIP4P-Ew", "OPC"):
         system, positions, topology = SITES[model]()
-        engine, where = ko._engine(system), ko._positions(positions, system)
+        engine, where = engine_of(system), positions_of(positions, system)
         root = np.sqrt(np.repeat(engine.masses, 3))
         for group in (0, 1):
             matrix, error = _forcefield.hessian(system, [group], where, 1e-5)
-            dense, other = hessians.hessian(engine.force(1 << group), where, engine.masses, 1e-4)
+            dense, other = hessian(engine.force(1 << group), where, engine.masses, 1e-4)
             assert error < 1e-6 * abs(matrix).max()
             apart = np.linalg.norm(matrix.toarray() / np.outer(root, root) - dense, 2)
             assert apart < other + error / engine.masses.min()
@@ -571,15 +579,15 @@ def test_positions_in_another_unit_are_seen_at_once(rigid: bool) -> None:
             ask(system, positions / 10, steps=steps)
     # A quantity has its own.
     quantity = (positions * 10) * unit.angstrom
-    assert np.allclose(ko._positions(quantity, system), positions)
+    assert np.allclose(positions_of(quantity, system), positions)
     for scale in (0.5, 0.9, 1.1, 2.0, 3.0):
-        assert ko._positions(positions * scale, system).shape == positions.shape
+        assert positions_of(positions * scale, system).shape == positions.shape
     # Few bonds of many, as where a molecule reaches across a box that is not said to be one.
     torn = positions.copy()
     torn[:3] += np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]])
-    assert ko._positions(torn, system).shape == positions.shape
+    assert positions_of(torn, system).shape == positions.shape
     # One place for all is no unit, nor are bonds that rest at no length.
-    assert ko._positions(np.zeros_like(positions), system).shape == positions.shape
+    assert positions_of(np.zeros_like(positions), system).shape == positions.shape
 
 
 def test_massless_particles_and_unknown_states_are_refused() -> None:
@@ -590,10 +598,10 @@ def test_massless_particles_and_unknown_states_are_refused() -> None:
     with pytest.raises(kd.KickdriftError, match=r"has no mass and is no virtual site.*atoms=\[...\]"):
         ko.system(system, np.vstack([positions, [0, 0, 0]]), steps={0: "1/2000", 1: "1/2000"})
     rigid, where = waters(rigid=True)
-    engine = ko._engine(rigid)
+    engine = engine_of(rigid)
     far = where * 1.02
     with pytest.raises(kd.KickdriftError, match="not near a minimum"):
-        ko.minimum(engine.force(-1), far, Held(engine.masses, ko._constraints(rigid)), 1e-3)
+        minimum(engine.force(-1), far, Held(engine.masses, constraints_of(rigid)), 1e-3)
 
 
 def test_rigid_waters_oscillate_as_their_constraints_allow() -> None:
@@ -605,9 +613,9 @@ def test_rigid_waters_oscillate_as_their_constraints_allow() -> None:
     angles = np.sort(np.abs(np.angle(found.decide(keep_rigid=True).multipliers)))
     assert len(angles) >= 18
     # The measured map on the constraint manifold: a deviation along a mode comes back with cos(angle) of itself.
-    engine = ko._engine(system)
-    constraints = ko._constraints(system)
-    rest = ko._minimized(engine, positions, constraints, ko.DIFFERENCE)
+    engine = engine_of(system)
+    constraints = constraints_of(system)
+    rest = minimized(engine, positions, constraints, ko.DIFFERENCE)
     frame = Held(engine.masses, constraints).frame(rest)
     root = np.sqrt(np.repeat(engine.masses, 3))
     force = engine.force(-1)
@@ -667,7 +675,7 @@ def test_the_minimum_of_some_atoms_asks_for_their_columns_alone(rigid: bool, mon
     """The second water among the others as these stand: its own forces vanish, and nothing else has moved."""
     system, positions = waters(rigid)
     positions = positions + 2e-3 * np.random.default_rng(4).normal(size=positions.shape)
-    asked, own = [], ko._Engine.force
+    asked, own = [], Engine.force
 
     def counted(engine: Any, groups: int) -> Any:
         force = own(engine, groups)
@@ -679,16 +687,16 @@ def test_the_minimum_of_some_atoms_asks_for_their_columns_alone(rigid: bool, mon
 
         return of
 
-    monkeypatch.setattr(ko._Engine, "force", counted)
+    monkeypatch.setattr(Engine, "force", counted)
     steps = {0: "0.5fs", 1: "4fs"} if not rigid else {0: "0.5fs", 1: "0.5fs"}
     found = ko.system(system, positions, steps=steps, atoms=[3, 4, 5])
     # Nine columns of four forces for each step of Newton's method, some ten, and for each level; all 36 columns would
     # be 144 forces each.
     assert len(asked) < 37 * 16
     monkeypatch.undo()
-    engine = ko._engine(system)
-    held = [constraint for constraint in ko._constraints(system) if constraint[0] in (3, 4, 5)]
-    at = ko._minimized(engine, positions, held, ko.DIFFERENCE, list(range(9, 18)))
+    engine = engine_of(system)
+    held = [constraint for constraint in constraints_of(system) if constraint[0] in (3, 4, 5)]
+    at = minimized(engine, positions, held, ko.DIFFERENCE, list(range(9, 18)))
     assert (np.delete(at, [3, 4, 5], axis=0) == np.delete(positions, [3, 4, 5], axis=0)).all()
     pull, frame = engine.force(-1)(at).ravel()[9:18], Held(engine.masses, held).frame(at, list(range(9, 18)))
     root = np.sqrt(np.repeat(engine.masses[3:6], 3))
@@ -722,7 +730,8 @@ def test_work_that_is_too_much_is_refused_before_it_begins(monkeypatch: pytest.M
     def begun(*_: Any, **__: Any) -> None:
         raise AssertionError("a Hessian was begun")
 
-    monkeypatch.setattr(hessians, "_measured", begun)
+    for module in (_hessians, _half):
+        monkeypatch.setattr(module, "differences", begun)
     with pytest.raises(kd.KickdriftError, match="longest=SECONDS") as caught:
         ko.system(system, positions, steps={0: "0.5fs", 1: "2fs"}, minimize=False, longest=1e-6)
     assert "2 Hessians of 36 columns" in str(caught.value) and "sparse=True" in str(caught.value)
@@ -733,7 +742,7 @@ def test_work_that_is_too_much_is_refused_before_it_begins(monkeypatch: pytest.M
     with pytest.raises(kd.KickdriftError, match="longest=SECONDS") as caught:
         ko.system(*box(2), steps={0: "0.5fs", 1: "2fs", 2: "2fs"}, longest=1e-6)
     assert "bands(...)" in str(caught.value) and "sparse" not in str(caught.value)
-    monkeypatch.setattr(hessians, "_memory", lambda: 1e5)
+    monkeypatch.setattr(_cost, "_memory", lambda: 1e5)
     with pytest.raises(kd.KickdriftError, match=r"there are 0\.0001 GB"):
         ko.system(system, positions, steps={0: "0.5fs", 1: "2fs"}, minimize=False)
     many = mm.System()
@@ -756,14 +765,13 @@ def test_far_from_a_minimum_newtons_method_is_left_at_once(monkeypatch: pytest.M
     system, positions = bonds(1)
     columns: list[int] = []
     tell = ko._of_minimum(lambda done, of: columns.append(done))
-    relaxed = []
-    own = ko._relaxed
-    monkeypatch.setattr(ko, "_relaxed", lambda *given: relaxed.append(len(columns)) or own(*given))
+    led: list[int] = []
+    monkeypatch.setattr(rest, "relaxed", lambda *given: led.append(len(columns)) or relaxed(*given))
     there = positions.copy()
     there[1] += (there[1] - there[0]) / np.linalg.norm(there[1] - there[0])
-    ko._minimized(ko._engine(system), there, [], ko.DIFFERENCE, progress=tell)
+    minimized(engine_of(system), there, [], ko.DIFFERENCE, progress=tell)
     # One Hessian of 18 columns.
-    assert relaxed == [18]
+    assert led == [18]
 
 
 def grown(system: mm.System) -> tuple[mm.System, np.ndarray]:
@@ -898,14 +906,14 @@ def test_forces_along_an_orbit_keep_pairs_on_their_side_of_a_cutoff() -> None:
     pairs.setCutoffDistance(0.5)
     pairs.setReactionFieldDielectric(1.0)
     system.addForce(pairs)
-    engine = ko._engine(system)
+    engine = engine_of(system)
     where = np.array([[0.0, 0.0, 0.0], [0.5 - ko.DIFFERENCE / 2, 0.0, 0.0]])
     plain = engine.force(1)
-    for force in (plain, hessians._Sum([plain], plain(where) / 3), hessians._Sum([plain, plain])):
-        matrix, error = hessians.hessian(force, where, engine.masses, ko.DIFFERENCE)
+    for force in (plain, _orbit._Sum([plain], plain(where) / 3), _orbit._Sum([plain, plain])):
+        matrix, error = hessian(force, where, engine.masses, ko.DIFFERENCE)
         assert error < 1e-6 * np.linalg.norm(matrix, 2)
     # The jump itself, which is what a difference sees without that.
-    _, error = hessians.hessian(plain.__call__, where, engine.masses, ko.DIFFERENCE)
+    _, error = hessian(plain.__call__, where, engine.masses, ko.DIFFERENCE)
     assert error > 0.1 * np.linalg.norm(matrix, 2)
 
 
@@ -936,7 +944,7 @@ def test_a_box_of_waters_comes_to_rest_or_says_which_pairs_stand_at_the_cutoff()
     found = ko.system(system, positions + 0.0137, steps={0: "0.5fs", 1: "2fs", 2: "4fs"})
     assert "jump at a cutoff" in found.notes[0]
     jump = re.search(r"jump by up to ([\d.e+]+) kJ/mol/nm", found.notes[0])
-    engine = ko._engine(system)
+    engine = engine_of(system)
     left = engine.force(-1)(found.arrays["positions"])
     # All that is left is what jumps, and the mesh's pull at the box.
     assert jump is not None and np.linalg.norm(left - left.mean(axis=0), axis=1).max() < 1.2 * float(jump[1]) + 0.1
@@ -976,14 +984,14 @@ def chain(beads: int = 6) -> tuple[mm.System, np.ndarray]:
 
 def test_a_minimum_that_is_given_is_kept_whatever_the_minimizer_would_do(monkeypatch: pytest.MonkeyPatch) -> None:
     system, where = chain()
-    engine = ko._engine(system)
-    there = ko._minimized(engine, where, [], ko.DIFFERENCE)
+    engine = engine_of(system)
+    there = minimized(engine, where, [], ko.DIFFERENCE)
 
     def blown(*_: Any, **__: Any) -> None:
         raise AssertionError("the minimizer was asked")
 
     monkeypatch.setattr(mm.LocalEnergyMinimizer, "minimize", blown)
-    again = ko._minimized(engine, there, [], ko.DIFFERENCE)
+    again = minimized(engine, there, [], ko.DIFFERENCE)
     assert np.abs(again - there).max() < 1e-6
     found = ko.system(system, there, steps={0: "0.01", 1: "0.02"})
     assert found.document["labels"] == [f"H {n}" for n in range(6)]
@@ -1002,9 +1010,9 @@ def test_bonds_that_a_minimizer_would_tear_come_to_rest() -> None:
     angles.setForceGroup(1)
     system.addForce(bonds), system.addForce(angles)
     start = np.array([[0.12 * n, 0.07 * (n % 2), 0.02 * (n % 3)] for n in range(9)])
-    engine = ko._engine(system)
-    torn = ko._relaxed(engine, start, None)
-    at, notes = ko._at_rest(engine, start, [], ko.DIFFERENCE)
+    engine = engine_of(system)
+    torn = relaxed(engine, start, None)
+    at, notes = at_rest(engine, start, [], ko.DIFFERENCE)
     lengths = np.linalg.norm(np.diff(at, axis=0), axis=1)
     assert lengths.max() < 0.225 and not notes and np.abs(engine.force(-1)(at)).max() < 1e-6
     assert np.linalg.norm(np.diff(torn, axis=0), axis=1).max() > 0.225
@@ -1107,7 +1115,7 @@ def test_three_clocks_leave_no_rigid_motion_in() -> None:
 )
 def test_steps_are_taken_exactly_with_their_units(given: Any, expected: Fraction) -> None:
     system, _ = bonds(1)
-    assert ko._clocks(system, None, {0: given, 1: given}) == {0: expected, 1: expected}
+    assert clocks_of(system, None, {0: given, 1: given}) == {0: expected, 1: expected}
 
 
 @pytest.mark.parametrize(("outer", "inner"), [("2.5", 36), ("4.4", 9), ("0.7", 3), ("5", 7)])
@@ -1115,7 +1123,7 @@ def test_steps_of_integrators_are_the_simplest_numbers(outer: str, inner: int) -
     system, _ = bonds(1)
     whole = float(Fraction(outer)) * inner
     for step in (whole * unit.femtoseconds, whole * 0.001):
-        found = ko._clocks(system, mm.MTSIntegrator(step, [(1, 1), (0, inner)]), None)
+        found = clocks_of(system, mm.MTSIntegrator(step, [(1, 1), (0, inner)]), None)
         assert found == {1: Fraction(outer) * inner / 1000, 0: Fraction(outer) / 1000}
 
 
@@ -1254,11 +1262,11 @@ def own_multipliers(
     OpenMM's SETTLE keeps distances to 1e-9 nm, and speeds to that over an inner step; SHAKE keeps them to rounding: so
     orbits close to 2e-6.
     """
-    engine = ko._engine(system)
+    engine = engine_of(system)
     moving = engine.moving
     integrator, step = own_steps(system, float(found.period), list(levels))
     context = mm.Context(system, integrator, REFERENCE)
-    held = Held(engine.masses, ko._constraints(system))
+    held = Held(engine.masses, constraints_of(system))
     frame = held.frame(found.positions)
     n = frame.shape[1]
     speeds = np.zeros((system.getNumParticles(), 3))
@@ -1372,9 +1380,9 @@ def test_multipliers_are_off_by_no_more_than_their_doubts() -> None:
 
     def found(pair: list[np.ndarray], error: float | None = None) -> tuple[np.ndarray, np.ndarray]:
         forces = [lambda x, k=own: -(k @ x.ravel()).reshape(x.shape) for own in pair]
-        half = hessians.compose(forces, steps, start, Held(masses), 1e-3, still=True)
+        half = compose(forces, steps, start, Held(masses), 1e-3, still=True)
         struck = half.struck if error is None else [replace(own, error=error) for own in half.struck]
-        return hessians._eigenvalues(half.matrix, struck, 0.0)
+        return eigenvalues(half.matrix, struck, 0.0)
 
     size = 1e-5
     mu, doubts = found([fast, slow], size)
@@ -1402,7 +1410,7 @@ def test_what_is_published_beside_runs_is_what_is_said_today() -> None:
     runs = published_runs()
     stored = json.loads((PUBLISHED / "runs.json").read_text())["systems"][1]["rows"]
     system, topology, positions = runs.dipeptide()
-    at = ko._minimized(ko._engine(system), positions, [], ko.DIFFERENCE)
+    at = minimized(engine_of(system), positions, [], ko.DIFFERENCE)
     for row in stored:
         steps, inner = runs.steps_of(Fraction(row["outer"]))
         verdict = ko.system(system, at, topology=topology, steps=steps, minimize=False).decide()
@@ -1425,10 +1433,10 @@ def test_bands_of_any_size_have_the_periods_of_dense_hessians() -> None:
     system, positions = waters()
     steps = {0: "0.5fs", 1: "4fs"}
     found = ko.bands(system, positions, steps=steps)
-    engine = ko._engine(system)
-    at = ko._minimized(engine, positions, [], ko.DIFFERENCE)
+    engine = engine_of(system)
+    at = minimized(engine, positions, [], ko.DIFFERENCE)
     for level, group in zip(found.levels, (0, 1), strict=True):
-        matrix = hessians.hessian(engine.force(1 << group), at, engine.masses, ko.DIFFERENCE)[0]
+        matrix = hessian(engine.force(1 << group), at, engine.masses, ko.DIFFERENCE)[0]
         largest = np.linalg.eigvalsh(matrix)[-1]
         # The bracket's lower end is a Ritz value, off by what differences leave of it.
         assert level.stiffness <= largest * (1 + 1e-5) and largest <= level.most <= 1.06 * largest
@@ -1577,19 +1585,19 @@ def _cluster(count: int) -> tuple[mm.System, np.ndarray]:
     return groups(own), np.array(modeller.positions.value_in_unit(unit.nanometer))
 
 
-@pytest.mark.skipif("CPU" not in ko._platforms(), reason="needs OpenMM's CPU platform")
+@pytest.mark.skipif("CPU" not in platforms(), reason="needs OpenMM's CPU platform")
 @pytest.mark.parametrize("far", [0.0, 5.0, 30.0])
 @pytest.mark.parametrize("difference", [2e-4, ko.WIDE, 3e-3])
 @pytest.mark.parametrize("count", [2, 3, 8])
 def test_the_accuracy_of_forces_in_single_precision_covers_how_far_their_hessians_are_off(count, difference, far):
     # Far from the origin single precision places atoms worse.
     own, positions = _cluster(count)
-    single, double = ko._engine(own, "CPU"), ko._engine(own)
+    single, double = engine_of(own, "CPU"), engine_of(own)
     where, width = single.exactly(positions + far, difference)
     for group in (0, 1):
         ask = where, single.masses
-        found, error = hessians.hessian(single.force(1 << group), *ask, width, rounding=single.rounding)
-        true, known = hessians.hessian(double.force(1 << group), *ask, ko.DIFFERENCE)
+        found, error = hessian(single.force(1 << group), *ask, width, rounding=single.rounding)
+        true, known = hessian(double.force(1 << group), *ask, ko.DIFFERENCE)
         off, size = np.linalg.norm(found - true, 2), np.linalg.norm(true, 2)
         assert off < error + known and known < 1e-5 * size, (group, off / size, error / size)
         # Useful all the same.
@@ -1598,17 +1606,17 @@ def test_the_accuracy_of_forces_in_single_precision_covers_how_far_their_hessian
 
 def test_a_field_in_single_precision_is_known_by_its_rounding():
     # It has no entries off the diagonal, by which noise would be seen.
-    if "CPU" not in ko._platforms():
+    if "CPU" not in platforms():
         pytest.skip("needs OpenMM's CPU platform")
     own, walls = mm.System(), mm.CustomExternalForce("500*(x-1)^2+500*y^2+500*z^2")
     own.addParticle(1.0), walls.addParticle(0), own.addForce(walls)
-    engine = ko._engine(own, "CPU")
+    engine = engine_of(own, "CPU")
     where, width = engine.exactly(np.array([[1.3, 0.1, 0.2]]), ko.WIDE)
-    found, error = hessians.hessian(engine.force(1), where, engine.masses, width, rounding=engine.rounding)
+    found, error = hessian(engine.force(1), where, engine.masses, width, rounding=engine.rounding)
     assert np.linalg.norm(found - 1000 * np.eye(3), 2) < error
 
 
-@pytest.mark.skipif("CPU" not in ko._platforms(), reason="needs OpenMM's CPU platform")
+@pytest.mark.skipif("CPU" not in platforms(), reason="needs OpenMM's CPU platform")
 def test_a_system_on_a_platform_in_single_precision_has_the_verdicts_of_doubles():
     own, positions = waters()
     found = {}

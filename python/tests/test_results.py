@@ -14,8 +14,9 @@ import pytest
 
 import kickdrift as kd
 from kickdrift._held import Held
-from kickdrift._hessians import Monodromy, monodromy
+from kickdrift._monodromy import Monodromy
 from kickdrift._native import palette
+from kickdrift._orbit import monodromy
 
 PAIR = {"lambda1": "pi^2", "lambda2": "pi^2/25"}
 GRID: dict[str, Any] = PAIR | {"step": "1/25", "h1": ("1/25", "2/pi"), "h2": (1, "7/2")}
