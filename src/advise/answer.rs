@@ -358,11 +358,13 @@ impl Question {
                 let middle = (lo + hi) / 2.0;
                 if turns(middle) < 2.0 * std::f64::consts::PI { lo = middle } else { hi = middle }
             }
-            lo
+            // Beyond the inner step's own limit a mode grows by itself; with one step both are there before they meet.
+            let is_within = |i: usize| std::f64::consts::PI * lo < (1.0 - 1e-9) * parts * period(i);
+            (is_within(i) && is_within(j)).then_some(lo)
         };
         let ordered =
             faster.iter().enumerate().flat_map(|(n, &i)| faster[n + 1..].iter().map(move |&j| [i, j]));
-        ordered.map(|modes| Pair { modes, near: near(modes[0], modes[1]) }).collect()
+        ordered.filter_map(|modes| Some(Pair { modes, near: near(modes[0], modes[1])? })).collect()
     }
 }
 

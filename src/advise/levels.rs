@@ -213,14 +213,17 @@ impl Levels<'_> {
     /// neighbours, or as close as balls can decide. The conditions hold at every smaller step (proofs/REGION.md), so a bisection finds them.
     ///
     /// # Errors
-    /// Where no factor in the range of doubles ends it: there is no stiffness.
+    /// Where no factor from 2^-60 to 2^60 ends it: there is no stiffness, or the steps are far from its period.
     pub fn first_region_ends(&self) -> Result<(f64, f64)> {
         let square = |t: f64| {
             let t = from_f64_exact(t).expect("a finite factor");
             Ball::from_rational(&(&t * &t), BITS)
         };
         let at = |t: f64| self.in_first_region(&square(t));
-        let none = || Error::missing("period", "give the period of at least one force");
+        let none = || {
+            let remedy = "is far from all steps that these periods allow: choose steps nearer to the periods";
+            Error::input("steps", format!("{} fs", self.scheme.outer()), remedy)
+        };
         let hi = (-60..60).map(|k| 2f64.powi(k)).find(|&t| at(t) == Some(false)).ok_or_else(none)?;
         let mut lo = hi / 2.0;
         // The factor before this one was not proven to lie outside: it is inside, or on the edge itself.

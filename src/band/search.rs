@@ -110,7 +110,7 @@ struct Queue {
 impl Window {
     /// # Errors
     /// A range that is empty or begins below zero; a stiffness that is not positive, as the turns of both have to grow with the steps; ratios of
-    /// the window that are hardly different: their periods have millions of kicks.
+    /// the window that are hardly different: their periods have millions of kicks; ratios beyond 2^±12 alone.
     pub fn new(lambdas: [Laurent; 2], ranges: [(Laurent, Laurent); 2]) -> Result<Window> {
         for ((lo, hi), field) in ranges.iter().zip(["h1-range", "h2-range"]) {
             if lo.sign() == Sign::Negative || (hi - lo).sign() != Sign::Positive {
@@ -132,6 +132,14 @@ impl Window {
                 format!("{lo}..{hi}"),
                 "makes too small a window: widen it",
             ));
+        }
+        let most = f64::from(1 << LARGEST);
+        if c >= most * b || d * most <= a {
+            let (lo, hi) = &ranges[1];
+            let remedy = format!(
+                "makes no ratio h2/h1 from 1/{most} to {most}, and no others are looked at: bring the ranges nearer to each other"
+            );
+            return Err(Error::input("h2-range", format!("{lo}..{hi}"), remedy));
         }
         let stiffness = lambdas.each_ref().map(Laurent::to_f64);
         let decimals = DIGITS - inner[0].1.log10().floor() as i32;

@@ -30,7 +30,7 @@ question! {
         /// End where this share of the window is certified, as 17/200.
         #[arg(long, value_name = "A", allow_hyphen_values = true, value_parser = flag::<Rational>)]
         area: Option<Rational>,
-        /// The most sectors that are tried: each costs some tens of microseconds.
+        /// The most sectors that are tried: each costs a tenth of a millisecond, and more in a narrow window.
         #[arg(long, value_name = "N", value_parser = flag::<u64>)]
         sectors: u64 = "100000",
     }

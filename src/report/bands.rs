@@ -29,7 +29,10 @@ pub fn document(bands: &Bands) -> Document {
 
 fn lines(bands: &Bands, share: f64, area: f64) -> Vec<String> {
     vec![
-        format!("{:.4} % of the window: every ratio h2/h1 there is unstable, rational or not", 100.0 * share),
+        format!(
+            "{} % of the window: every ratio h2/h1 there is unstable, rational or not",
+            decimal::few(100.0 * share, 6)
+        ),
         format!("  area         {}", decimal::few(area, 6)),
         format!(
             "  sectors      {} certified, {} left open, {} tried",
@@ -137,7 +140,10 @@ mod drawn {
         let certified = covered(&bands.certified, pixels);
         let axis = |label: &str, step: usize| Axis::linear(label, range(step).0, range(step).1).of_time();
         let panel = Panel::new(axis("*h*_1", 0), axis("*h*_2", 1))
-            .titled(&format!("Every ratio is unstable in {:.3} % of the window", 100.0 * bands.share().0))
+            .titled(&format!(
+                "Every ratio is unstable in {} % of the window",
+                decimal::few(100.0 * bands.share().0, 4)
+            ))
             .with(layer(UNDECIDED, &|n| certified[n] < 0.5).labelled("undecided"))
             .with(layer(HYPERBOLIC, &|n| certified[n] >= 0.5).labelled("every ratio unstable"))
             .legend(Place::Above);

@@ -71,6 +71,7 @@ fn what_is_missing_is_named_with_a_remedy() {
         ("advise --period 10fs", "steps missing"),
         ("advise --period 10 --steps 1fs", "period = 10: has no unit: write 10fs"),
         ("advise --period 10fs --steps 1,2fs", "steps = 1: has no unit: write 1fs"),
+        ("advise --period 10fs --steps 1e30fs,2e30fs", "fs: is far from all steps that these periods allow"),
         ("advise --period OH=10fs --steps 1fs,2fs --on OH=3", "choose a clock from 1 to 2"),
         ("advise --period OH=10fs --steps 1fs,2fs --on NH=1", "there is no mode of this name"),
         ("advise --period OH=10fs --steps 1fs,2fs --band 100%", "band"),
@@ -79,6 +80,12 @@ fn what_is_missing_is_named_with_a_remedy() {
         ("advise --period OH=10fs --steps 1fs,2fs --constraints NH", "there is no mode of this name"),
         ("advise --period OH=10fs --steps 1fs,2fs --friction 1", "friction = 1: has no unit: write 1/ps"),
         ("advise data/scenes/ring24.json", "stiffness = given in place"),
+        (
+            "advise data/scenes/local-steps.json",
+            "scheme = lts: advice is for molecules: `kickdrift system FILE --intervals",
+        ),
+        ("advise data/scenes/subcycled.json", "scheme = newmark: advice is for molecules"),
+        ("advise data/scenes/bar-avi.json", "scheme = avi: advice is for molecules"),
         ("advise data/scenes/water4.json --steps 0.7fs,4fs", "a multiple of the inner one"),
         ("advise data/scenes/water4.json --period 10fs", "cannot be used with"),
         (

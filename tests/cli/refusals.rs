@@ -183,6 +183,7 @@ fn tongues_that_are_none() {
     tongues("tongues --ratio 7/3 --rho 1 --survey", &["max-sum missing"]);
     tongues("tongues --max-sum 9 --rho 1 --thinnest 3", &["--thinnest = given", "--survey"]);
     tongues("closings --ratio 5/3 --rho-range -1..2", &["rho-range = -1..2", "0 < LO"]);
+    tongues("closings --ratio 5/3 --rho-range 1e400..1e401", &["rho-range = 1000", "range of doubles"]);
     tongues("closings --ratio 5/3 --m 7", &["m = 7", "1 to 6"]);
     tongues("closings --max-sum 9 --m 3", &["m = given", "--ratio"]);
     tongues("closings --max-sum 9 --samples 1", &["samples = 1", "choose 2"]);
@@ -339,6 +340,33 @@ fn an_output_that_no_file_can_be_is_refused_before_the_work() {
         let ended = desk.run(&words(&format!("{work} bands.json --area {share}")));
         assert!(ended.stderr.contains("share of the window"), "{share}: {}", ended.stderr);
     }
+    let beyond = "bands --lambda1 1 --lambda2 1 --h1-range 1/1000..1/500 --h2-range 10..20";
+    refused(&desk, &words(beyond), &["h2-range = 10..20: ", "from 1/4096 to 4096"]);
+}
+
+#[test]
+fn numbers_whose_squares_are_no_doubles_are_no_steps() {
+    let desk = Desk::new();
+    let scene = |name: &str| format!("{}/data/scenes/{name}.json", env!("CARGO_MANIFEST_DIR"));
+    for (name, number) in
+        [("local-steps", "outer"), ("two-bars", "outer"), ("subcycled", "potentials.0.scale")]
+    {
+        for range in ["1..1e151", "1..1e400", "1e-400..1"] {
+            let asked = format!("{number}={range}");
+            refused(
+                &desk,
+                &["system", &scene(name), "--intervals", &asked],
+                &["intervals = ", "1e-150 to 1e150"],
+            );
+        }
+    }
+    let spring = r#"{"schema": "kickdrift/system/1", "masses": [1], "potentials": [{"step": "1e400", "springs": [[0, null, 1]]}]}"#;
+    desk.write("spring.json", spring);
+    for asked in ["--nearest", "--quiet"] {
+        refused(&desk, &["system", "spring.json", asked], &["step = ", "1e-150 to 1e150"]);
+    }
+    let frozen = ["word", "K(1/2) O(1) K(1/2)", "--lambda1", "1", "--friction", "1"];
+    refused(&desk, &frozen, &["h-range = 0..12.5", "choose a shorter range"]);
 }
 
 #[test]

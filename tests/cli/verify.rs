@@ -32,6 +32,8 @@ const DOCUMENTS: [&str; 30] = [
     "advise --period OH=10fs --period 40fs --steps 0.5fs,4fs --steps 0.5fs,4.8fs --steps 0.5fs,5fs --length 10ns",
     "advise --bond OH:K=450kcal/mol/A^2,15.999,1.008 --period CH=3000/cm --period slow=40fs --steps 1fs,2fs",
     "advise --period 19.45fs --steps 2fs,4fs",
+    // Nine inner steps are taken where two would end before them.
+    "advise --period OH=14.1fs --period 34.1fs --steps 0.5fs,1fs --band 0.2",
     "advise --period 10fs --period 40fs --period 100fs --steps 0.7fs,1fs,3fs",
     "bands --lambda1 pi^2 --lambda2 pi^2/25 --h1-range 1/5..1/4 --h2-range 9/10..1 --sectors 200",
     "word --method avi-3-2 --lambda1 pi^2 --lambda2 pi^2/25 --h 1 --h-range 0..3",

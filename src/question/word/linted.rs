@@ -59,9 +59,9 @@ impl Pieces {
             Some(shape) => shape.pieces(lambda1, lambda2, lo, hi),
             None => Enclosed::new(word, lambda1, lambda2, &friction).pieces(lo, hi).ok_or_else(|| {
                 Error::input(
-                    "h_range",
+                    "h-range",
                     format!("{lo}..{hi}"),
-                    "there are too many intervals here: choose a shorter range",
+                    "too many of its steps are on an edge, or too near to one: choose a shorter range; without kicks or without drifts, every step is",
                 )
             })?,
         };

@@ -40,8 +40,8 @@ impl Question for Word {
         self.check(&word)?;
         let rho = self.ratio(&word)?;
         let range = self.h_range.as_ref().map(|(lo, hi)| {
-            let lo = if lo.sign() == Sign::Zero { Ok(Laurent::zero()) } else { self.s(lo, "h_range") };
-            Ok::<_, Error>((lo?, self.s(hi, "h_range")?))
+            let lo = if lo.sign() == Sign::Zero { Ok(Laurent::zero()) } else { self.s(lo, "h-range") };
+            Ok::<_, Error>((lo?, self.s(hi, "h-range")?))
         });
         let range =
             range.transpose()?.map(|(lo, hi)| (lo.enclosure(BITS).lower(), hi.enclosure(BITS).upper()));

@@ -79,7 +79,10 @@ impl Claim {
             })?;
         }
         let Some(step) = &own.step else { return Ok(()) };
-        holds(inside(&(&step.0 / &shorter))? == Some(true), || {
+        // The inner step follows at a ratio of its own, else it is that of the scheme.
+        let is_at_ratio = own.lever.starts_with("ratio ");
+        let taken = if is_at_ratio { mass.scaled(&(&step.0 / &outer)) } else { mass.with_outer(&step.0) };
+        holds(taken.scaled(&shorter.recip()).in_first_region()? == Some(true), || {
             format!("the step of {} is not proven for the band", own.lever)
         })
     }

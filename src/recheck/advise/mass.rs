@@ -61,6 +61,19 @@ impl Mass {
         self.steps.iter().zip(&self.stiffness).map(strength).collect()
     }
 
+    /// This mass with another outermost step, which may be that of the clock before it: then both are one.
+    pub fn with_outer(&self, outer: &Rational) -> Mass {
+        let (mut steps, mut stiffness) = (self.steps.clone(), self.stiffness.clone());
+        let last = steps.len() - 1;
+        steps[last] = outer.clone();
+        if last > 0 && steps[last] == steps[last - 1] {
+            steps.pop();
+            let own = stiffness.pop().expect("two clocks");
+            stiffness[last - 1] = stiffness[last - 1].add(&own, BITS);
+        }
+        Mass { steps, stiffness }
+    }
+
     /// This mass with all steps times `factor`.
     pub fn scaled(&self, factor: &Rational) -> Mass {
         Mass {

@@ -59,16 +59,7 @@ impl Claim {
         let count = corner.steps.len();
         let third = exact(self.fastest()?.third.lo);
         let with = |outer: &Rational| -> Checked<bool> {
-            let mut steps = corner.steps.clone();
-            steps[count - 1] = outer.clone();
-            let mut stiffness = corner.stiffness.clone();
-            if count > 1 && steps[count - 1] == steps[count - 2] {
-                steps.pop();
-                let last = stiffness.pop().expect("two clocks");
-                let sum = stiffness[count - 2].add(&last, BITS);
-                stiffness[count - 2] = sum;
-            }
-            Ok(Mass { steps, stiffness }.in_first_region()? == Some(true))
+            Ok(corner.with_outer(outer).in_first_region()? == Some(true))
         };
         let Some(largest) = &row.largest else {
             return holds(row.safe.is_none() && (count == 1 || !with(&corner.steps[count - 2])?), || {

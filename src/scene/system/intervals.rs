@@ -7,6 +7,7 @@
 use std::fmt::{Display, Formatter};
 use std::str::FromStr;
 
+use num_traits::Zero;
 use serde_json::Value;
 
 use super::SystemScene;
@@ -20,6 +21,9 @@ use crate::system::nearest::Nearest;
 use crate::system::stretches::{Stretch, merged};
 use crate::system::vary::Intervals;
 use crate::system::{Limits, Model, Number, Route, middle};
+
+/// The sizes of steps, and of the ends of a range: their squares are doubles, too.
+pub(super) const SIZES: std::ops::RangeInclusive<f64> = 1e-150..=1e150;
 
 /// One number of a file and its range.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,6 +52,10 @@ impl FromStr for Span {
                 text,
                 "the range is empty: write the smaller number first",
             ));
+        }
+        let is_in_range = |x: &Rational| x.is_zero() || SIZES.contains(&to_f64(x).abs());
+        if !(is_in_range(&lo) && is_in_range(&hi)) {
+            return Err(Error::input("intervals", text, "give ends that are 0 or 1e-150 to 1e150 in size"));
         }
         Ok(Span { text: text.into(), path: path.trim().into(), lo, hi })
     }

@@ -224,6 +224,10 @@ impl SystemScene {
         let document = document.map_err(no_system)?;
         check_schema(&document.schema)?;
         let Described { model, bonds, labels } = document.model()?;
+        if let Some(step) = model.steps().into_iter().find(|step| !intervals::SIZES.contains(&to_f64(step))) {
+            let remedy = "choose a unit of time in which steps are 1e-150 to 1e150";
+            return Err(Error::input("step", step, remedy));
+        }
         let given = document.labels.as_ref().map(|labels| spread(labels, model.size())).transpose()?;
         let labels = given.or(labels);
         let scene = SystemScene { source, arrays, model, bonds, labels, friction: None };

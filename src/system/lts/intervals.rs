@@ -12,7 +12,7 @@ use num_bigint::BigInt;
 use num_traits::{One, Zero};
 
 use super::scheme::LocalSteps;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::number::polynomial::integers;
 use crate::number::rational::{from_f64_exact, ratio};
 use crate::number::{Polynomial, Rational};
@@ -75,7 +75,8 @@ impl LocalSteps {
         })?;
         // X = 4^k s, s in [0, 1].
         let top = 2f64.powi(hi.log2().ceil() as i32);
-        let square = from_f64_exact(top * top).expect("a finite step");
+        let square = from_f64_exact(top * top)
+            .ok_or_else(|| Error::input("range", format!("{lo}..{hi}"), "choose steps below 1e150"))?;
         let mut polynomials = Vec::new();
         for dofs in connected_parts(self.plain()) {
             polynomials.extend(self.part(&dofs).determinants()?);

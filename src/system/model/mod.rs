@@ -23,7 +23,7 @@ use crate::system::implicit::{ImplicitExplicit, two_clocks};
 use crate::system::jacobian::Jacobians;
 use crate::system::levels::{Hessians, Method};
 use crate::system::linear::system::{Potential, System};
-use crate::system::lts::{LocalSteps, SchemeSummary, Subcycles};
+use crate::system::lts::{LocalSteps, Scheme, SchemeSummary, Subcycles};
 use crate::system::pi::PiSystem;
 use crate::system::verdict::analysis::Analysis;
 use crate::system::verdict::decide::{decide_by, exact_kind, verdict_cost};
@@ -372,10 +372,22 @@ impl Model {
     }
 
     fn of_two(&self) -> Result<&MeasuredSystem> {
-        if matches!(self, Model::NoGradient(_) | Model::Along(_) | Model::Subcycled(..) | Model::Sparse(_)) {
-            return Err(self.refused("advice"));
+        let scheme = match self {
+            Model::NoGradient(_) | Model::Along(_) => return Err(self.refused("advice")),
+            Model::Sparse(_) => {
+                let remedy =
+                    "advice needs dense stiffnesses: `kickdrift system FILE` has the first unstable step";
+                return Err(Error::input("stiffness", "sparse", remedy));
+            }
+            Model::LocalSteps(_) => Some(Scheme::Lts),
+            Model::Subcycled(_, own) | Model::Elements(_, own) => Some(own.scheme()),
+            _ => None,
+        };
+        if let Some(scheme) = scheme {
+            let remedy = "advice is for molecules: `kickdrift system FILE --intervals outer=LO..HI` has the unstable steps";
+            return Err(Error::input("scheme", scheme.name(), remedy));
         }
-        let remedy = "give stiffnesses by reference, as {\"npz\": \"water.npz\", \"array\": \"fast\"}";
+        let remedy = "give stiffnesses by reference, as {\"npz\": \"water.npz\", \"array\": \"fast\"}; `kickdrift system` takes numbers in place";
         self.measured().ok_or_else(|| Error::input("stiffness", "given in place", remedy))
     }
 

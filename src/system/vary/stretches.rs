@@ -35,7 +35,7 @@ pub fn cover(
         return Err(Error::input("range", format!("{lo}..{hi}"), "write the smaller number first"));
     }
     if !(1e-9..=0.1).contains(&width) {
-        return Err(Error::input("width", width, "choose 1e-9 to 0.1"));
+        return Err(Error::input("resolution", width, "choose 1e-9 to 0.1"));
     }
     let floor = width * lo.abs().max(hi.abs());
     let place = |k: u32| if k == PARTS { hi } else { lo + (hi - lo) * f64::from(k) / f64::from(PARTS) };

@@ -148,6 +148,13 @@ fn samples(search: &Search) -> Result<Vec<Rational>> {
         return Err(Error::input("samples", search.samples, "a search needs at least 2"));
     }
     let (from, to) = (rational::to_f64(lo).ln(), rational::to_f64(hi).ln());
+    if !(from.is_finite() && to.is_finite()) {
+        return Err(Error::input(
+            "rho-range",
+            format!("{lo}..{hi}"),
+            "give ends within the range of doubles",
+        ));
+    }
     let inner = (1..search.samples - 1).map(|k| {
         let x = (from + (to - from) * k as f64 / (search.samples - 1) as f64).exp();
         rational::from_f64_exact(x).expect("finite").clamp(lo.clone(), hi.clone())
