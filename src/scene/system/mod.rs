@@ -180,6 +180,9 @@ pub struct SystemScene {
     friction: Option<Rational>,
 }
 
+/// The sizes of steps, and of the ends of a range: their squares are doubles, too.
+const SIZES: std::ops::RangeInclusive<f64> = 1e-150..=1e150;
+
 impl SystemScene {
     /// Reads a system from the text of its file.
     ///
@@ -224,7 +227,7 @@ impl SystemScene {
         let document = document.map_err(no_system)?;
         check_schema(&document.schema)?;
         let Described { model, bonds, labels } = document.model()?;
-        if let Some(step) = model.steps().into_iter().find(|step| !intervals::SIZES.contains(&to_f64(step))) {
+        if let Some(step) = model.steps().into_iter().find(|step| !SIZES.contains(&to_f64(step))) {
             let remedy = "choose a unit of time in which steps are 1e-150 to 1e150";
             return Err(Error::input("step", step, remedy));
         }
