@@ -11,7 +11,7 @@ use num_traits::Zero;
 use serde_json::Value;
 
 use super::SystemScene;
-use super::document::Number as Written;
+use super::document::{Number as Written, SIZES};
 use super::scan::{MOST_POINTS, found};
 use crate::error::{Error, Result};
 use crate::number::Rational;
@@ -21,9 +21,6 @@ use crate::system::nearest::Nearest;
 use crate::system::stretches::{Stretch, merged};
 use crate::system::vary::Intervals;
 use crate::system::{Limits, Model, Number, Route, middle};
-
-/// The sizes of steps, and of the ends of a range: their squares are doubles, too.
-pub(super) const SIZES: std::ops::RangeInclusive<f64> = 1e-150..=1e150;
 
 /// One number of a file and its range.
 #[derive(Clone, Debug, PartialEq)]

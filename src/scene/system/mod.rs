@@ -82,7 +82,7 @@ use crate::system::levels::Method;
 use crate::system::{Limits, Model, OwnOrbit, Potential, Scheme as LocalScheme, Subcycles, System};
 pub use array::{Array, Arrays};
 use bonds::Nonlinear;
-use document::{Document, no_system};
+use document::{Document, SIZES, no_system};
 pub use intervals::{NEAREST, Span};
 #[cfg(feature = "advise")]
 pub use molecule::of_archive;
@@ -224,7 +224,7 @@ impl SystemScene {
         let document = document.map_err(no_system)?;
         check_schema(&document.schema)?;
         let Described { model, bonds, labels } = document.model()?;
-        if let Some(step) = model.steps().into_iter().find(|step| !intervals::SIZES.contains(&to_f64(step))) {
+        if let Some(step) = model.steps().into_iter().find(|step| !SIZES.contains(&to_f64(step))) {
             let remedy = "choose a unit of time in which steps are 1e-150 to 1e150";
             return Err(Error::input("step", step, remedy));
         }
