@@ -71,7 +71,10 @@ fn what_is_missing_is_named_with_a_remedy() {
         ("advise --period 10fs", "steps missing"),
         ("advise --period 10 --steps 1fs", "period = 10: has no unit: write 10fs"),
         ("advise --period 10fs --steps 1,2fs", "steps = 1: has no unit: write 1fs"),
-        ("advise --period 10fs --steps 1e30fs,2e30fs", "fs: is far from all steps that these periods allow"),
+        (
+            "advise --period 10fs --period 40fs --steps 1e300fs,2e300fs",
+            "is far from all steps that these periods allow",
+        ),
         ("advise --period OH=10fs --steps 1fs,2fs --on OH=3", "choose a clock from 1 to 2"),
         ("advise --period OH=10fs --steps 1fs,2fs --on NH=1", "there is no mode of this name"),
         ("advise --period OH=10fs --steps 1fs,2fs --band 100%", "band"),

@@ -9,6 +9,9 @@ use crate::number::parse::{parse, parse_rational};
 use crate::number::{Laurent, Rational};
 use crate::scene::json;
 
+/// The sizes of steps, and of the ends of a range: their squares are doubles, too.
+pub(super) const SIZES: std::ops::RangeInclusive<f64> = 1e-150..=1e150;
+
 /// The most degrees of freedom: dense matrices of this size still fit.
 pub(super) const LARGEST: usize = 4096;
 

@@ -10,9 +10,9 @@ use std::str::FromStr;
 use num_traits::Zero;
 use serde_json::Value;
 
-use super::document::Number as Written;
+use super::SystemScene;
+use super::document::{Number as Written, SIZES};
 use super::scan::{MOST_POINTS, found};
-use super::{SIZES, SystemScene};
 use crate::error::{Error, Result};
 use crate::number::Rational;
 use crate::number::parse::parse_rational_range;

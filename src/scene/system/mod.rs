@@ -82,7 +82,7 @@ use crate::system::levels::Method;
 use crate::system::{Limits, Model, OwnOrbit, Potential, Scheme as LocalScheme, Subcycles, System};
 pub use array::{Array, Arrays};
 use bonds::Nonlinear;
-use document::{Document, no_system};
+use document::{Document, SIZES, no_system};
 pub use intervals::{NEAREST, Span};
 #[cfg(feature = "advise")]
 pub use molecule::of_archive;
@@ -179,9 +179,6 @@ pub struct SystemScene {
     /// γ per unit time.
     friction: Option<Rational>,
 }
-
-/// The sizes of steps, and of the ends of a range: their squares are doubles, too.
-const SIZES: std::ops::RangeInclusive<f64> = 1e-150..=1e150;
 
 impl SystemScene {
     /// Reads a system from the text of its file.
