@@ -31,7 +31,7 @@ GRID: dict[str, Any] = {"lambda1": 1, "lambda2": 1, "step": "1/4", "h1": ("1/4",
 def test_what_is_not_installed_is_named(
     package: str, missing: str, use: Callable[[], Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    for module in ("openmm", "ase", "dask"):
+    for module in ("openmm", "_openmm", "ase", "dask"):
         monkeypatch.delitem(sys.modules, f"kickdrift.{module}", raising=False)
     monkeypatch.setitem(sys.modules, package, None)
     with pytest.raises(kd.KickdriftError, match=f"not installed: install {missing} beside kickdrift"):
