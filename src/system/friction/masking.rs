@@ -38,7 +38,8 @@ pub fn masking<S: Real>(clocks: &ManyClocks<S>) -> Result<Option<Masking>> {
         let work = format!("the masking friction of a period of {degree} ticks");
         return Err(Error::budget(work, degree).or("choose steps with a simpler ratio"));
     }
-    for bits in precisions(degree.saturating_mul(degree)) {
+    // A tenth of a second where bits are few, some seconds where they are many.
+    for bits in precisions(degree.saturating_mul(degree) / 4) {
         let trace = trace(clocks, bits);
         let side = match sides(&trace, bits) {
             [Some(Sign::Negative), _] => 1,
@@ -46,13 +47,26 @@ pub fn masking<S: Real>(clocks: &ManyClocks<S>) -> Result<Option<Masking>> {
             [Some(_), Some(_)] => return Ok(None),
             _ => continue,
         };
-        let own = Bernstein::of(&trace, side, bits);
-        let Some((lo, hi)) = own.last_zero() else { continue };
+        let f = polynomial(&trace, side, bits);
+        let Some(near) = bracket(&f, bits) else { continue };
+        let own = Bernstein::of(f, bits);
+        // Most often the zero that values find is the last one: one change of signs behind it.
+        let changes = own.clone().split(&near.0)[1].changes();
+        let last = match changes {
+            None => continue,
+            Some(1) if near.0.sign() == Some(Sign::Positive) => Some(near),
+            Some(_) => own.clone().last_zero(),
+        };
+        let Some((lo, hi)) = last else { continue };
         let tick = Ball::from_rational(clocks.schedule().tick(), bits);
         let rate = |c: &Ball| c.ln(bits).and_then(|ln| ln.neg().div(&tick, bits));
         let (Some(slow), Some(fast)) = (rate(&hi), rate(&lo)) else { continue };
-        let below = |side| Bernstein::of(&trace, side, bits).proves_positive_up_to(&lo);
-        return Ok(Some(Masking { rate: slow.union(&fast, bits), stays: below(1) && below(-1) }));
+        let other = Bernstein::of(polynomial(&trace, -side, bits), bits);
+        let stays = [own, other].into_iter().all(|f| {
+            let [below, _] = f.split(&lo);
+            below.proves_positive()
+        });
+        return Ok(Some(Masking { rate: slow.union(&fast, bits), stays }));
     }
     Err(Error::budget("a resonance this weak", HIGHEST).or("choose steps nearer to its middle"))
 }
@@ -62,6 +76,38 @@ fn sides(trace: &[Ball], bits: u32) -> [Option<Sign>; 2] {
     let whole = trace.iter().fold(Ball::zero(), |sum, x| sum.add(x, bits));
     let two = Ball::from_integer(&2.into());
     [two.sub(&whole, bits).sign(), two.add(&whole, bits).sign()]
+}
+
+/// 1 + c^N ∓ Tr Q, lowest coefficient first.
+fn polynomial(trace: &[Ball], side: i8, bits: u32) -> Vec<Ball> {
+    let mut f: Vec<Ball> = trace.iter().map(|x| if side > 0 { x.neg() } else { x.clone() }).collect();
+    for end in [0, trace.len() - 1] {
+        f[end] = f[end].add(&Ball::one(), bits);
+    }
+    f
+}
+
+/// Two places next to each other between which a polynomial that is negative at 1 changes its sign, the nearest to 1 of those that places
+/// 1 − 2^-k see: it is positive at the first. \[0, 1\] where none is; `None` where the balls cannot decide.
+fn bracket(f: &[Ball], bits: u32) -> Option<(Ball, Ball)> {
+    let sign = |c: &Ball| f.iter().rev().fold(Ball::zero(), |sum, a| sum.mul(c, bits).add(a, bits)).sign();
+    let (mut lo, mut hi) = (Ball::zero(), Ball::one());
+    for k in (1..=i64::from(DEEPEST)).rev() {
+        let place = Ball::one().sub(&Ball::one().scale2(-k), bits);
+        if sign(&place)? == Sign::Positive {
+            lo = place;
+            break;
+        }
+        hi = place;
+    }
+    if lo.sign() == Some(Sign::Zero) {
+        return Some((lo, Ball::one()));
+    }
+    for _ in 0..DEEPEST - 4 {
+        let middle = lo.add(&hi, bits).scale2(-1);
+        if sign(&middle)? == Sign::Positive { lo = middle } else { hi = middle }
+    }
+    Some((lo, hi))
 }
 
 /// The coefficients of Tr Q in c.
@@ -112,6 +158,7 @@ impl KickDrift<Ball> for Polynomials {
 }
 
 /// A polynomial over an interval \[lo, hi\] by its Bernstein coefficients, f(lo) first.
+#[derive(Clone)]
 struct Bernstein {
     coefficients: Vec<Ball>,
     lo: Ball,
@@ -120,12 +167,9 @@ struct Bernstein {
 }
 
 impl Bernstein {
-    /// 1 + c^N ∓ Tr over \[0, 1\].
-    fn of(trace: &[Ball], side: i8, bits: u32) -> Self {
-        let n = trace.len() - 1;
-        let mut f: Vec<Ball> = trace.iter().map(|x| if side > 0 { x.neg() } else { x.clone() }).collect();
-        f[0] = f[0].add(&Ball::one(), bits);
-        f[n] = f[n].add(&Ball::one(), bits);
+    /// Over \[0, 1\].
+    fn of(mut f: Vec<Ball>, bits: u32) -> Self {
+        let n = f.len() - 1;
         // Σ_i C(j, i)/C(n, i) a_i: with a_i/C(n, i), n additions each.
         let mut choose = num_bigint::BigInt::from(1);
         for (i, a) in f.iter_mut().enumerate() {
@@ -140,22 +184,26 @@ impl Bernstein {
         Bernstein { coefficients: f, lo: Ball::zero(), hi: Ball::one(), bits }
     }
 
-    /// The lower and the upper half, by de Casteljau's scheme.
-    fn halves(mut self) -> [Self; 2] {
-        let bits = self.bits;
-        let middle = self.lo.add(&self.hi, bits).scale2(-1);
-        let (mut f, mut lower) = (self.coefficients, Vec::new());
+    /// Below and above the place lo + t (hi − lo), by de Casteljau's scheme.
+    fn split(self, t: &Ball) -> [Self; 2] {
+        let Bernstein { coefficients: mut f, lo, hi, bits } = self;
+        let place = lo.add(&hi.sub(&lo, bits).mul(t, bits), bits);
+        // A mean of two is as uncertain as both, their difference is more so.
+        let (rest, mut lower) = (Ball::one().sub(t, bits), Vec::new());
         for last in (0..f.len()).rev() {
             lower.push(f[0].clone());
             for j in 0..last {
-                f[j] = f[j].add(&f[j + 1], bits).scale2(-1);
+                f[j] = rest.mul(&f[j], bits).add(&t.mul(&f[j + 1], bits), bits);
             }
         }
-        let hi = std::mem::replace(&mut self.hi, middle.clone());
         [
-            Bernstein { coefficients: lower, lo: self.lo, hi: middle.clone(), bits },
-            Bernstein { coefficients: f, lo: middle, hi, bits },
+            Bernstein { coefficients: lower, lo, hi: place.clone(), bits },
+            Bernstein { coefficients: f, lo: place, hi, bits },
         ]
+    }
+
+    fn halves(self) -> [Self; 2] {
+        self.split(&Ball::one().scale2(-1))
     }
 
     /// Sign changes of the coefficients; `None` where a sign is not decided.
@@ -185,14 +233,11 @@ impl Bernstein {
         None
     }
 
-    /// Whether it is proven positive on (0, c\].
-    fn proves_positive_up_to(self, c: &Ball) -> bool {
+    /// Whether it is proven to have no zero inside and no negative value.
+    fn proves_positive(self) -> bool {
         let mut open = vec![(self, 0)];
         while let Some((own, depth)) = open.pop() {
-            let is_beyond = own.lo.compare(c).is_some_and(std::cmp::Ordering::is_ge);
-            if is_beyond
-                || own.coefficients.iter().all(|x| matches!(x.sign(), Some(Sign::Zero | Sign::Positive)))
-            {
+            if own.coefficients.iter().all(|x| matches!(x.sign(), Some(Sign::Zero | Sign::Positive))) {
                 continue;
             }
             if depth == DEEPEST {
