@@ -31,7 +31,7 @@ from kickdrift._openmm import app, mm
 from kickdrift._openmm.atoms import Constraint, atoms_of, changed, constraints_of, names_of, places_of, positions_of
 from kickdrift._openmm.clocks import EWALD, clocks_of, clocks_of_integrator, is_bath, levels_of, mask_of, moves_nothing
 from kickdrift._openmm.forces import Engine, engine_of, led_downhill, masses_of, moving_of, platforms, resumed
-from kickdrift._openmm.rest import at_rest, minimized, near_minimum, relaxed
+from kickdrift._openmm.rest import at_rest, near_minimum, relaxed
 from kickdrift._orbit import monodromy
 from kickdrift._progress import Progress, shown
 from kickdrift._rigid import Doubles, is_held, norm, rigid_motions
@@ -504,7 +504,7 @@ def _oscillations(
     work = Work.of_period(3 * engine.count, list(levels), dear, about, SOUGHT if minimize else 0)
     work.begin(longest, progress is True, _BANDS)
     if minimize:
-        where = minimized(engine, where, held.distances, difference, progress=_of_minimum(progress))
+        where = at_rest(engine, where, held.distances, difference, progress=_of_minimum(progress))[0]
     # Onto the held distances, to rounding: engines keep them to their tolerance.
     where = held.drift(where, np.zeros(where.size), 1.0)[0]
     forces = {str(groups): engine.force(mask_of(groups)) for groups in levels.values()}

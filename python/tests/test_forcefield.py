@@ -17,7 +17,7 @@ from kickdrift import _bands, _covered, _forcefield
 from kickdrift._held import Held
 from kickdrift._hessians import hessian
 from kickdrift._openmm.forces import engine_of
-from kickdrift._openmm.rest import minimized
+from kickdrift._openmm.rest import at_rest
 
 #: Bonds and angles, and what OpenMM's own pairs are, by groups.
 SLOW = 1
@@ -320,7 +320,7 @@ def test_a_product_with_all_atoms_moved_sees_no_cutoff_either() -> None:
 def test_sparse_and_dense_systems_have_one_first_unstable_step() -> None:
     system, positions = waters(2, "NoCutoff")
     steps = {0: "0.5fs", SLOW: "4fs"}
-    where = minimized(engine_of(system), positions, [], ko.DIFFERENCE)
+    where = at_rest(engine_of(system), positions, [], ko.DIFFERENCE)[0]
     both = [ko.system(system, where, steps=steps, sparse=sparse, minimize=False).decide() for sparse in (True, False)]
     assert all(own.stable for own in both)
     first, same = (own.data["measured"]["first_unstable"] for own in both)

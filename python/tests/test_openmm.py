@@ -30,7 +30,7 @@ from kickdrift._openmm import rest
 from kickdrift._openmm.atoms import constraints_of, positions_of
 from kickdrift._openmm.clocks import clocks_of
 from kickdrift._openmm.forces import Engine, engine_of, platforms
-from kickdrift._openmm.rest import at_rest, minimized, relaxed
+from kickdrift._openmm.rest import at_rest, relaxed
 
 REFERENCE = mm.Platform.getPlatformByName("Reference")
 
@@ -65,7 +65,7 @@ def waters(rigid: bool = False) -> tuple[mm.System, np.ndarray]:
     if rigid:
         return system, positions
     engine = engine_of(system)
-    return system, minimized(engine, positions, [], ko.DIFFERENCE)
+    return system, at_rest(engine, positions, [], ko.DIFFERENCE)[0]
 
 
 def levels(outer: Fraction) -> tuple[dict[int, Fraction], int]:
@@ -615,7 +615,7 @@ def test_rigid_waters_oscillate_as_their_constraints_allow() -> None:
     # The measured map on the constraint manifold: a deviation along a mode comes back with cos(angle) of itself.
     engine = engine_of(system)
     constraints = constraints_of(system)
-    rest = minimized(engine, positions, constraints, ko.DIFFERENCE)
+    rest = at_rest(engine, positions, constraints, ko.DIFFERENCE)[0]
     frame = Held(engine.masses, constraints).frame(rest)
     root = np.sqrt(np.repeat(engine.masses, 3))
     force = engine.force(-1)
@@ -696,7 +696,7 @@ def test_the_minimum_of_some_atoms_asks_for_their_columns_alone(rigid: bool, mon
     monkeypatch.undo()
     engine = engine_of(system)
     held = [constraint for constraint in constraints_of(system) if constraint[0] in (3, 4, 5)]
-    at = minimized(engine, positions, held, ko.DIFFERENCE, list(range(9, 18)))
+    at = at_rest(engine, positions, held, ko.DIFFERENCE, list(range(9, 18)))[0]
     assert (np.delete(at, [3, 4, 5], axis=0) == np.delete(positions, [3, 4, 5], axis=0)).all()
     pull, frame = engine.force(-1)(at).ravel()[9:18], Held(engine.masses, held).frame(at, list(range(9, 18)))
     root = np.sqrt(np.repeat(engine.masses[3:6], 3))
@@ -769,7 +769,7 @@ def test_far_from_a_minimum_newtons_method_is_left_at_once(monkeypatch: pytest.M
     monkeypatch.setattr(rest, "relaxed", lambda *given: led.append(len(columns)) or relaxed(*given))
     there = positions.copy()
     there[1] += (there[1] - there[0]) / np.linalg.norm(there[1] - there[0])
-    minimized(engine_of(system), there, [], ko.DIFFERENCE, progress=tell)
+    at_rest(engine_of(system), there, [], ko.DIFFERENCE, progress=tell)[0]
     # One Hessian of 18 columns.
     assert led == [18]
 
@@ -985,13 +985,13 @@ def chain(beads: int = 6) -> tuple[mm.System, np.ndarray]:
 def test_a_minimum_that_is_given_is_kept_whatever_the_minimizer_would_do(monkeypatch: pytest.MonkeyPatch) -> None:
     system, where = chain()
     engine = engine_of(system)
-    there = minimized(engine, where, [], ko.DIFFERENCE)
+    there = at_rest(engine, where, [], ko.DIFFERENCE)[0]
 
     def blown(*_: Any, **__: Any) -> None:
         raise AssertionError("the minimizer was asked")
 
     monkeypatch.setattr(mm.LocalEnergyMinimizer, "minimize", blown)
-    again = minimized(engine, there, [], ko.DIFFERENCE)
+    again = at_rest(engine, there, [], ko.DIFFERENCE)[0]
     assert np.abs(again - there).max() < 1e-6
     found = ko.system(system, there, steps={0: "0.01", 1: "0.02"})
     assert found.document["labels"] == [f"H {n}" for n in range(6)]
@@ -1410,7 +1410,7 @@ def test_what_is_published_beside_runs_is_what_is_said_today() -> None:
     runs = published_runs()
     stored = json.loads((PUBLISHED / "runs.json").read_text())["systems"][1]["rows"]
     system, topology, positions = runs.dipeptide()
-    at = minimized(engine_of(system), positions, [], ko.DIFFERENCE)
+    at = at_rest(engine_of(system), positions, [], ko.DIFFERENCE)[0]
     for row in stored:
         steps, inner = runs.steps_of(Fraction(row["outer"]))
         verdict = ko.system(system, at, topology=topology, steps=steps, minimize=False).decide()
@@ -1434,7 +1434,7 @@ def test_bands_of_any_size_have_the_periods_of_dense_hessians() -> None:
     steps = {0: "0.5fs", 1: "4fs"}
     found = ko.bands(system, positions, steps=steps)
     engine = engine_of(system)
-    at = minimized(engine, positions, [], ko.DIFFERENCE)
+    at = at_rest(engine, positions, [], ko.DIFFERENCE)[0]
     for level, group in zip(found.levels, (0, 1), strict=True):
         matrix = hessian(engine.force(1 << group), at, engine.masses, ko.DIFFERENCE)[0]
         largest = np.linalg.eigvalsh(matrix)[-1]

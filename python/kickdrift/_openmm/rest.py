@@ -21,7 +21,7 @@ def near_minimum(engine: Engine, where: Doubles, held: Held, difference: float, 
     """The minimum of few atoms, or where OpenMM's minimizer ends; and in words which."""
     if is_small:
         try:
-            return minimized(engine, where, held.distances, difference), "at the minimum beside the positions"
+            return at_rest(engine, where, held.distances, difference)[0], "at the minimum beside the positions"
         except KickdriftError:
             # As where pairs cross a cutoff: no stiffness hangs on the last digits of a place.
             pass
@@ -31,18 +31,6 @@ def near_minimum(engine: Engine, where: Doubles, held: Held, difference: float, 
 
 #: Steps of OpenMM's minimizer: bonds and clashes have relaxed then, and no stiffness hangs on the rest.
 _MINIMIZED = 200
-
-
-def minimized(
-    engine: Engine,
-    where: Doubles,
-    constraints: Sequence[Constraint],
-    difference: float,
-    chosen: Sequence[int] | None = None,
-    progress: Progress | None = None,
-) -> Doubles:
-    """:func:`at_rest`, the positions alone."""
-    return at_rest(engine, where, constraints, difference, chosen, progress)[0]
 
 
 def at_rest(

@@ -61,7 +61,7 @@ impl Pieces {
                 Error::input(
                     "h-range",
                     format!("{lo}..{hi}"),
-                    "too many of its steps are on an edge, or too near to one: choose a shorter range; without kicks or without drifts, every step is",
+                    "too many of its steps are on an edge, or too near to one: choose a shorter range (of a word without kicks, or without drifts, every step is on an edge)",
                 )
             })?,
         };

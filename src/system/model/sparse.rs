@@ -55,8 +55,9 @@ const FASTEST: &str = "of sparse stiffnesses only the motion that grows fastest 
 const HALF_TURN: &str = "of sparse subcycling no verdict is proven where the fastest fine motion takes half a turn or more in a step";
 const ROUNDED: &str = "the multiplier that grows fastest is computed, rounded: no growth rate is enclosed";
 const SLOW: &str = "no growing mode was found: growth is slow here";
-const NOT_PROVEN: &str = "a mode grows in doubles: rounded, and no proof";
-const NONE_FOUND: &str = "in doubles no mode was found that grows: none does so fast, which is no proof";
+const NOT_PROVEN: &str = "in doubles a mode grows: its multiplier is rounded, and nothing is proven";
+const NONE_FOUND: &str =
+    "in doubles no growing mode was found: if one grows it does so slowly; nothing is proven";
 
 /// Multipliers on the circle that meet are known to the root of a residual of 1e-9. What is beyond it by no more need not grow.
 const MEETING: f64 = 3e-5;
