@@ -12,7 +12,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, overload, runtime_checkable
 
 from kickdrift import _plot
-from kickdrift._document import Asked, Document, Row, fields, frame
+from kickdrift._document import Asked, Document, Row, flat, frame
 from kickdrift._errors import KickdriftError, known, shown
 from kickdrift._native import Number
 from kickdrift._numbers import Exact, items, text, written
@@ -122,7 +122,7 @@ class Advised(Document):
         >>> len(frame), "first_lower_lo" in frame
         (1, True)
         """
-        return frame(dict(fields(row)) for row in self.rows)
+        return frame(flat(self.rows))
 
     def __str__(self) -> str:
         return self._text

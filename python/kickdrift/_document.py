@@ -226,7 +226,7 @@ class Table(Document, Sequence[Row]):
         >>> bool((frame.lower_lo <= frame.lower_hi).all())
         True
         """
-        return frame(dict(fields(row)) for row in self.rows)
+        return frame(flat(self.rows))
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({len(self)} {self._rows_are}: {', '.join(self._given())})"
@@ -236,10 +236,10 @@ class Table(Document, Sequence[Row]):
 
     def _repr_html_(self) -> str:
         """A table of the first rows for a notebook."""
-        flat = [dict(fields(row)) for row in self.rows[:_SHOWN]]
-        names = list(dict.fromkeys(name for row in flat for name in row))
+        rows = flat(self.rows[:_SHOWN])
+        names = list(dict.fromkeys(name for row in rows for name in row))
         head = "".join(f"<th>{html.escape(name)}</th>" for name in names)
-        cells = ("".join(f"<td>{html.escape(_cell(row.get(name)))}</td>" for name in names) for row in flat)
+        cells = ("".join(f"<td>{html.escape(_cell(row.get(name)))}</td>" for name in names) for row in rows)
         body = "".join(f"<tr>{row}</tr>" for row in cells)
         more = f"<p>{len(self) - _SHOWN} more rows</p>" if len(self) > _SHOWN else ""
         title = html.escape(f"{type(self).__name__}: {', '.join(self._given())}")
@@ -271,13 +271,20 @@ def frame(rows: Iterable[Mapping[str, Any]]) -> pandas.DataFrame:
     return made
 
 
-def fields(row: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, Any]]:
-    """The fields of a row, those of its parts under joined names."""
-    for name, value in row.items():
-        if isinstance(value, Mapping):
-            yield from fields(value, f"{before}{name}_")
-        else:
-            yield f"{before}{name}", value
+def flat(rows: Iterable[Mapping[str, Any]]) -> list[dict[str, Any]]:
+    """The fields of each row, those of its parts under joined names: a part that a row lacks is no column."""
+    nested: set[str] = set()
+
+    def fields(row: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, Any]]:
+        for name, value in row.items():
+            if isinstance(value, Mapping):
+                nested.add(before + name)
+                yield from fields(value, f"{before}{name}_")
+            else:
+                yield f"{before}{name}", value
+
+    every = [dict(fields(row)) for row in rows]
+    return [{name: value for name, value in row.items() if value is not None or name not in nested} for row in every]
 
 
 def _cell(value: object) -> str:

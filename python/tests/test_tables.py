@@ -244,3 +244,12 @@ def test_the_program_is_in_the_wheel(program: Callable[..., str], capfd: pytest.
     assert "lambda1" in capfd.readouterr().err
     unstable = ["verdict", "--lambda1", "5", "--lambda2", "0", "--h1", "1", "--h2", "1", "--exit-code", "--quiet"]
     assert kd.main(unstable) == 1
+
+
+def test_a_part_that_one_row_lacks_has_no_column_of_its_own() -> None:
+    # The last tongue of 7/3 has no upper edge.
+    found = kd.tongues("7/3", rho="1/25")
+    assert found[-1]["upper"] is None
+    frame = found.to_pandas()
+    assert "upper_lo" in frame and not {"upper", "width", "growth"} & set(frame.columns)
+    assert frame.upper_lo.isna().sum() == 1 and "<th>upper</th>" not in found._repr_html_()
