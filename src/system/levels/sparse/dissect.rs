@@ -62,32 +62,49 @@ impl Graph {
 
 /// The rows of a symmetric matrix in the order in which they are to be eliminated, from its lower triangle, column by column.
 pub(super) fn dissected(columns: &[usize], rows: &[usize]) -> Vec<usize> {
-    let graph = Graph::new(columns, rows);
-    let n = graph.rows.len();
-    let mut parts = Parts {
-        graph,
-        part: vec![0; n],
-        distance: vec![0; n],
-        along: vec![0.0; n],
-        is_above: vec![false; n],
-    };
+    let Graph { mut rows, near } = Graph::new(columns, rows);
+    let mut parts = Parts::new(rows.iter().map(Vec::len).collect(), near);
     // From the end on.
-    let mut order = Vec::with_capacity(n);
-    let mut left = vec![(0..n).collect::<Vec<_>>()];
-    let mut count = 0;
+    let mut order = Vec::new();
+    let mut left = parts.all();
     while let Some(own) = left.pop() {
-        count += 1;
-        own.iter().for_each(|&v| parts.part[v] = count);
+        parts.begin(&own);
         let (last, rest) = parts.divided(own);
         order.extend(last);
         left.extend(rest);
     }
-    order.into_iter().rev().flat_map(|v| std::mem::take(&mut parts.graph.rows[v])).collect()
+    order.into_iter().rev().flat_map(|v| std::mem::take(&mut rows[v])).collect()
+}
+
+/// Nodes of these weights, each with those next to it, in clusters: halves of halves, as long as a part weighs more than `most` and has two nodes.
+pub(super) fn clusters(weights: Vec<usize>, near: Vec<Vec<usize>>, most: usize) -> Vec<Vec<usize>> {
+    let mut parts = Parts::new(weights, near);
+    let (mut clusters, mut left) = (Vec::new(), parts.all());
+    while let Some(own) = left.pop() {
+        let weight = parts.weight(&own);
+        if weight <= most || own.len() < 2 {
+            clusters.push(own);
+            continue;
+        }
+        parts.begin(&own);
+        let mut sorted = parts.sorted(&own);
+        // As many full clusters on the lower side as on the upper one, or one less.
+        let (full, mut below) = (weight.div_ceil(most), 0);
+        let half = sorted.iter().position(|&v| {
+            below += parts.weights[v];
+            below * full > weight * (full / 2)
+        });
+        let upper = sorted.split_off(half.unwrap_or(1).clamp(1, own.len() - 1));
+        left.extend([upper, sorted]);
+    }
+    clusters
 }
 
 /// What is known of the nodes: which part each is in, and where.
 struct Parts {
-    graph: Graph,
+    weights: Vec<usize>,
+    near: Vec<Vec<usize>>,
+    count: usize,
     part: Vec<usize>,
     distance: Vec<usize>,
     along: Vec<f64>,
@@ -95,12 +112,29 @@ struct Parts {
 }
 
 impl Parts {
+    fn new(weights: Vec<usize>, near: Vec<Vec<usize>>) -> Parts {
+        let n = weights.len();
+        let (part, distance) = (vec![0; n], vec![0; n]);
+        Parts { weights, near, count: 0, part, distance, along: vec![0.0; n], is_above: vec![false; n] }
+    }
+
+    /// One part of all nodes.
+    fn all(&self) -> Vec<Vec<usize>> {
+        vec![(0..self.weights.len()).collect()]
+    }
+
+    /// Makes these nodes a part.
+    fn begin(&mut self, own: &[usize]) {
+        self.count += 1;
+        own.iter().for_each(|&v| self.part[v] = self.count);
+    }
+
     fn weight(&self, nodes: &[usize]) -> usize {
-        nodes.iter().map(|&v| self.graph.rows[v].len()).sum()
+        nodes.iter().map(|&v| self.weights[v]).sum()
     }
 
     fn near(&self, v: usize) -> impl Iterator<Item = usize> + '_ {
-        self.graph.near[v].iter().copied().filter(move |&w| self.part[w] == self.part[v])
+        self.near[v].iter().copied().filter(move |&w| self.part[w] == self.part[v])
     }
 
     /// What comes last of a part, and the parts of the rest: its pieces where it has several, both sides of a cut, or nothing where it is small or has no cut.
@@ -134,8 +168,8 @@ impl Parts {
         let mut reached = vec![from];
         let mut next = 0;
         while let Some(&v) = reached.get(next) {
-            for k in 0..self.graph.near[v].len() {
-                let w = self.graph.near[v][k];
+            for k in 0..self.near[v].len() {
+                let w = self.near[v][k];
                 if self.part[w] == self.part[v] && self.distance[w] == usize::MAX {
                     self.distance[w] = self.distance[v] + 1;
                     reached.push(w);
@@ -146,8 +180,8 @@ impl Parts {
         reached
     }
 
-    /// A separator of a connected part and what is on both sides of it; `None` where nothing is.
-    fn cut(&mut self, own: &[usize]) -> Option<[Vec<usize>; 3]> {
+    /// The nodes of a part along its longest way; those that no path reaches from the first one are anywhere.
+    fn sorted(&mut self, own: &[usize]) -> Vec<usize> {
         // An end, the end farthest from it, and that from which this one is farthest.
         let mut end = own[0];
         own.iter().for_each(|&v| self.along[v] = 0.0);
@@ -169,6 +203,12 @@ impl Parts {
         }
         let mut sorted = own.to_vec();
         sorted.sort_by(|&v, &w| self.along[v].total_cmp(&self.along[w]));
+        sorted
+    }
+
+    /// A separator of a connected part and what is on both sides of it; `None` where nothing is.
+    fn cut(&mut self, own: &[usize]) -> Option<[Vec<usize>; 3]> {
+        let sorted = self.sorted(own);
         let total = sorted.len() as f64;
         let mut best: Option<(f64, [Vec<usize>; 3])> = None;
         for (part, is_above) in CUTS.iter().flat_map(|part| [(part, false), (part, true)]) {

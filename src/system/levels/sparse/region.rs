@@ -6,6 +6,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use faer::Mat;
 
 use super::blocks::Blocks;
+use super::incomplete::Molecules;
 use super::krylov::top;
 use super::matrix::{Factors, Pattern, Triplets};
 use crate::error::{Error, Result};
@@ -60,6 +61,7 @@ pub struct SparseLevels {
     held: OnceLock<Held>,
     /// Where F falls into small ones.
     pub(super) blocks: OnceLock<Option<Arc<Blocks>>>,
+    molecules: OnceLock<Option<Arc<Molecules>>>,
     /// By the number of inner steps.
     first: Arc<Mutex<BTreeMap<u64, Option<First>>>>,
 }
@@ -109,6 +111,12 @@ const SIDE_BY_SIDE: f64 = 1e8;
 const BELOW_LIMIT: [f64; 3] = [1.0 - WIDTH / 2.0, 0.999, 0.99];
 const FROM: [f64; 8] = [0.9, 0.5, 0.2, 0.1, 0.03, 0.01, 1e-3, 1e-4];
 
+/// Products of a factorization from which on parts of it may be left out. How many times as many rows are kept then, about, as a molecule is joined to: near the
+/// step where the fastest bonds resonate, which is a matter of single molecules, and for F + S near its least eigenvalue.
+const WORTH_LEAVING_OUT: f64 = 1e10;
+const FAR: f64 = 9.0;
+const FARTHER: f64 = 16.0;
+
 /// Shifts, relative to the norms, by which F + S is positive definite in doubles.
 const SHIFTED: [f64; 3] = [1e-9, 1e-7, 1e-5];
 
@@ -156,7 +164,7 @@ impl SparseLevels {
         let ((size, terms), image) = (both.size_of(&total), both.times(&total, &rigid));
         let rounding = 2.0 * (terms as f64 + 2.0) * U * size * norm::frobenius(&rigid);
         let leak = 3.1 * (norm::frobenius(&image) + rounding);
-        let (ends, held, first, blocks) = Default::default();
+        let (ends, held, first, blocks, molecules) = Default::default();
         let (sizes, roots) = (sizes.map(|(size, _)| size), masses.iter().map(|m| m.sqrt()).collect());
         Ok(SparseLevels {
             both,
@@ -172,6 +180,7 @@ impl SparseLevels {
             ends,
             held,
             blocks,
+            molecules,
             first,
         })
     }
@@ -229,13 +238,13 @@ impl SparseLevels {
         let known = bisected((0.0, most), 1e-3, |epsilon| Some(self.is_below_first(outer, epsilon))).0;
         let line = if known >= total.min(most / (1.0 + NEAR)) {
             known
-        } else if total < most && self.is_above(outer, total) {
+        } else if total < most && self.is_above(outer, total, Some(quotients)) {
             total
         } else {
-            largest_below(most.min(total), 0.01, |epsilon| self.is_above(outer, epsilon))
+            largest_below(most.min(total), 0.01, |epsilon| self.is_above(outer, epsilon, Some(quotients)))
         };
         let margin = line.min(total);
-        (margin > 0.0 || self.is_above(outer, 0.0)).then_some(margin)
+        (margin > 0.0 || self.is_above(outer, 0.0, Some(quotients))).then_some(margin)
     }
 
     /// The largest ε up to `most`, rounded down, for which F + S is definite by as much.
@@ -290,6 +299,12 @@ impl SparseLevels {
         [&self.fast, &self.slow].map(|own| free(self.both.times(own, &y)).col_as_slice(0).to_vec())
     }
 
+    /// The first region's end, where it was sought before.
+    fn known_first(&self, inner_steps: u64) -> Option<First> {
+        let known = self.first.lock().unwrap_or_else(PoisonError::into_inner);
+        known.get(&inner_steps).cloned().flatten()
+    }
+
     fn first(&self, inner_steps: u64) -> Option<First> {
         let mut known = self.first.lock().unwrap_or_else(PoisonError::into_inner);
         known.entry(inner_steps).or_insert_with(|| self.find_first(inner_steps)).clone()
@@ -298,7 +313,8 @@ impl SparseLevels {
     fn find_first(&self, inner_steps: u64) -> Option<First> {
         let [_, high] = self.ends(0.0)?;
         let at = |step: f64| Outer::new(step, inner_steps).ok();
-        let is_proven = |step: f64| at(step).is_some_and(|outer| self.is_above(&outer, 0.0));
+        let is_proven =
+            |step: f64, own: [f64; 2]| at(step).is_some_and(|outer| self.is_above(&outer, 0.0, Some(own)));
         // At the latest where the fastest mode alone has p θ = π.
         let angle = std::f64::consts::PI / (2.0 * inner_steps as f64);
         let top = inner_steps as f64 * 2.0 * angle.sin() / high.sqrt();
@@ -319,7 +335,8 @@ impl SparseLevels {
             }
         }
         let begin = BELOW_LIMIT.iter().map(|part| part * hi).chain(FROM.iter().map(|part| part * top));
-        let mut lo = begin.into_iter().find(|&step| step < hi && is_proven(step))?;
+        let mut quotients = self.quotients(&along);
+        let mut lo = begin.into_iter().find(|&step| step < hi && is_proven(step, quotients))?;
         while hi > lo * (1.0 + WIDTH) {
             let Some(next) =
                 self.above(&at(lo)?).and_then(|own| own.least(along.clone(), &self.rigid, STEPS_BELOW))
@@ -327,11 +344,11 @@ impl SparseLevels {
                 break;
             };
             along = next;
+            quotients = self.quotients(&along);
             hi = hi.min(limit(&along, (lo, hi)));
-            let Some(found) = nearer(lo, &mut hi, is_proven) else { break };
+            let Some(found) = nearer(lo, &mut hi, |step| is_proven(step, quotients)) else { break };
             lo = found;
         }
-        let quotients = self.quotients(&along);
         let unstable = |step: f64| at(step).is_some_and(|outer| self.resonates_along(quotients, &outer, 0.0));
         let first =
             (0..40).map(|k| lo * (1.0 + WIDTH / 16.0 * 1.5f64.powi(k))).take_while(|&step| step < top);
@@ -352,16 +369,32 @@ impl SparseLevels {
     pub(super) fn is_proven(&self, outer: &Outer, epsilon: f64) -> bool {
         // (3) of proofs/REGION.md follows where F + S > 0.
         let off: f64 = (0..2).map(|k| self.errors[k] + epsilon * self.sizes[k]).sum();
-        self.is_total_definite(off) && self.is_above(outer, epsilon)
+        let known = self.known_first(outer.inner_steps).map(|first| first.quotients);
+        self.is_total_definite(off) && self.is_above(outer, epsilon, known)
     }
 
-    /// Whether (1) and (2) of proofs/REGION.md are proven.
-    fn is_above(&self, outer: &Outer, epsilon: f64) -> bool {
+    /// Whether (1) and (2) of proofs/REGION.md are proven. Of the vector that is stretched least the quotients, where known, say by how much about.
+    fn is_above(&self, outer: &Outer, epsilon: f64, quotients: Option<[f64; 2]>) -> bool {
         let line = self.ends(epsilon).and_then(|[low, high]| chord(outer, low, high));
         line.is_some_and(|line| {
             let ([fast, slow], slack) = self.form(outer, line, epsilon);
-            self.both.is_definite(line[0], &[(fast, &self.fast), (slow, &self.slow)], slack)
+            let least = quotients.map_or(0.0, |own| self.form_along(own, outer, epsilon));
+            let terms = [(fast, &self.fast[..]), (slow, &self.slow)];
+            self.is_definite(line[0], &terms, slack, [least, FAR])
         })
+    }
+
+    /// Whether every matrix within `slack` of a sum is positive definite. Where it is large, by an incomplete factorization first, if that is expected to be
+    /// faster: its `least` eigenvalue is about so large, and its factors `reach` so many times as far as it.
+    fn is_definite(&self, c: f64, terms: &[(f64, &[f64])], slack: f64, [least, reach]: [f64; 2]) -> bool {
+        let by_parts = || {
+            let molecules =
+                self.molecules.get_or_init(|| Molecules::new(&self.alone, &self.both).map(Arc::new));
+            let own = molecules.as_ref().filter(|own| own.cost(reach) < self.products())?;
+            Some(own.is_definite(&self.both, &self.both.lowered(c, terms, slack)?, least))
+        };
+        least > 0.0 && self.products() > WORTH_LEAVING_OUT && by_parts() == Some(true)
+            || self.both.is_definite(c, terms, slack)
     }
 
     /// The factors that prove it.
@@ -451,7 +484,8 @@ impl SparseLevels {
         };
         let off = self.errors[0] + self.errors[1];
         let above = off + (least - off) / (1.0 + 0.9 * NEAR);
-        let is_held = least > off && self.both.is_definite(0.0, &self.total(), self.total_slack(above));
+        let slack = self.total_slack(above);
+        let is_held = least > off && self.is_definite(0.0, &self.total(), slack, [least - above, FARTHER]);
         is_held.then_some(Held { not_proven: Some(0), least: Some(least), above })
     }
 
