@@ -96,7 +96,7 @@ pub fn compare<S: Decidable>(
 ) -> Result<Comparison> {
     const BITS: u32 = 64;
     let trace = decide_from(Tier::Refine, clocks, limits)?.decision();
-    let tan = tan::criterion(clocks, limits)?.verdict();
+    let tan = tan::criterion(clocks, limits)?;
     let angle = clocks.angle();
     let outcome = angle
         .as_ref()
