@@ -104,7 +104,7 @@ pub struct Answer {
     /// The longest outer step, a multiple of the step before it, that is proven stable for every period in the band; `None`: not even
     /// that step itself.
     pub largest: Option<Rational>,
-    /// As above, and below T/3 of the fastest mode.
+    /// The longest multiple that is `largest` at most and below T/3 of the fastest mode.
     pub safe: Option<Rational>,
     /// Where nothing is known to be on the outermost clock: the shortest period there, in fs, for which the scheme is proven stable for
     /// every period in the band; rounded up.

@@ -102,7 +102,7 @@ pub struct DirectFinding {
     pub within_run: Option<bool>,
     /// The longest multiple up to which all are proven to add little, within the band too.
     pub largest: Option<Rational>,
-    /// As above, and below T/3 of the fastest motion.
+    /// The longest multiple that is `largest` at most and below T/3 of the fastest motion.
     pub safe: Option<Rational>,
     /// The longest multiple up to which the friction given is proven to mask all growth.
     pub masked: Option<Rational>,

@@ -68,7 +68,7 @@ pub fn decide_along(
 
 const NOT_DECIDED: &str = "doubles do not decide along the orbit";
 
-/// How much larger the accuracies are, each time, whose verdicts tell the margin.
+/// The factor between the accuracies whose verdicts enclose the margin.
 const FINER: f64 = 2.0;
 
 /// Margins beyond so many times the accuracy, or below its inverse, are not looked for.

@@ -100,7 +100,7 @@ pub(in crate::system) fn follow_proven<'a>(
     follow_looking(drifts, events, kick, |_, _| ())
 }
 
-/// The same, and `look` is shown every event and the rows of positions there, 2n columns each, within [`Propagated::error_on_the_way`].
+/// Follows with a bound, and shows `look` every event and the rows of positions there, 2n columns each, within [`Propagated::error_on_the_way`].
 pub(in crate::system) fn follow_looking<'a>(
     drifts: &Drifts,
     events: impl Iterator<Item = Event>,

@@ -97,7 +97,7 @@ impl Level {
         levels.iter().filter(|own| own.fine.contains(&i)).map(|own| own.substeps).product()
     }
 
-    /// As above, for a system of one clock without a phase and with lumped masses.
+    /// As [`Level::check`], of a system of one clock without a phase and with lumped masses.
     ///
     /// # Errors
     /// A mass matrix that is not diagonal, several clocks, a phase; as [`Level::check`].

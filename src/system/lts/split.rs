@@ -116,7 +116,7 @@ impl Subcycles {
         self.first().map(|own| own.0)
     }
 
-    /// The same, and whether all that is proven at its upper end is the multiplier −1.
+    /// The first unstable step, and whether all that is proven at its upper end is the multiplier −1.
     fn first(&self) -> Option<((f64, f64), bool)> {
         let (clock, mass) = (self.plain.clocks().first()?, self.plain.mass());
         let stiffness = &clock.stiffness;

@@ -67,7 +67,7 @@ pub(in crate::system) struct Dominant {
     z: Vec<c64>,
 }
 
-/// The same in an answer: of the first half of z, the positions, each by its own scale.
+/// The mode as answers have it: the first half of z, the positions, each by its own scale.
 pub(in crate::system) fn growing(
     Dominant { lambda, z }: Dominant,
     scale: impl Fn(usize) -> f64,

@@ -14,7 +14,7 @@ pub enum ExactEdge {
     Rational(Rational),
     /// p θ = m π exactly: s = 4 sin²(m π/(2p)).
     Resonance,
-    /// As above, for the angle of the slow clock, q θ' = m π: s ρ (p/q)² = 4 sin²(m π/(2q)).
+    /// q θ' = m π exactly, θ' the angle of the slow clock: s ρ (p/q)² = 4 sin²(m π/(2q)).
     SlowResonance,
 }
 

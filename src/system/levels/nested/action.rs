@@ -15,7 +15,7 @@ impl Steps<'_> {
         self.chain(step, bounds, &free.map(|node| (node, 1.0)).collect::<Vec<_>>())
     }
 
-    /// That of a whole period between ends with x(T) = e^(iφ) x(0), s = cos² φ/2, as a real chain (`proofs/REGION.md`, section 10): from t = 0 to T/2, what meets
+    /// The action of a whole period between ends with x(T) = e^(iφ) x(0), s = cos² φ/2, as a real chain (`proofs/REGION.md`, section 10): from t = 0 to T/2, what meets
     /// there times √s, and back to where 0 is held, what meets times √(1 − s).
     fn twisted(&self, step: f64, bounds: &Bounds, s: f64) -> Envelope {
         let last = self.events.len() - 1;
