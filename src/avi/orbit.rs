@@ -11,7 +11,7 @@ use nalgebra::{DMatrix, DVector};
 use super::force::{Bond, Force};
 use crate::error::{Error, Result};
 use crate::number::rational::to_f64;
-use crate::schedule::{Schedule, Weight};
+use crate::schedule::Schedule;
 
 /// Iterations of Newton's method before it is given up: it converges quadratically from nearby or not at all.
 const ITERATIONS: usize = 50;
@@ -106,7 +106,7 @@ impl Clocked<'_> {
             }
             let mut met = Vec::new();
             for clock in event.clocks() {
-                let weight = if event.weight == Weight::Full { 1.0 } else { 0.5 };
+                let weight = event.weight.share();
                 let step = weight * tick * self.schedule.clocks()[clock].step() as f64;
                 let (force, hessian) = self.at(clock, &x);
                 p += step * &force;

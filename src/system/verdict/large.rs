@@ -102,7 +102,7 @@ impl State<f64> for Column {
 
     fn kick(&mut self, i: usize, row: &Row<f64>, weight: Weight) {
         let force: f64 = row.iter().map(|(j, a)| a * self.x[*j]).sum();
-        self.p[i] -= if weight == Weight::Full { force } else { force / 2.0 };
+        self.p[i] -= weight.share() * force;
     }
 }
 

@@ -2,7 +2,6 @@
 
 use super::levels::{ROUNDINGS, Steps};
 use crate::parallel::both;
-use crate::schedule::Weight;
 use crate::system::signs::envelope::{Envelope, Sign};
 
 /// Stiffnesses that bound others: factor (K + shift I) of each level.
@@ -43,7 +42,7 @@ impl Steps<'_> {
                     matrix.add(row(place, i), row(place - 1, i), -factor * x);
                 }
             }
-            let weight = if event.weight == Weight::Half { 0.5 } else { 1.0 };
+            let weight = event.weight.share();
             for k in event.clocks() {
                 let [factor, shift] = bounds[k];
                 let factor = -(weight * (square * self.kicks[k])) * factor;
