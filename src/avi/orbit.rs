@@ -24,8 +24,6 @@ const VANISHING: f64 = 1e-13;
 pub struct PeriodicOrbit {
     /// y, the positions at t = 0 in the middle of the kicks there; the momenta are 0.
     pub start: Vec<f64>,
-    /// |p(T/2)| over the sum of all |kicks| of the half period, in the largest entry: what Newton's method left.
-    pub residual: f64,
     /// The Hessian of each clock that kicks in each event of the half period, in their order.
     pub hessians: Vec<Vec<DMatrix<f64>>>,
 }
@@ -67,19 +65,14 @@ impl Clocked<'_> {
             let half = self.half(&y);
             // Forces that vanish one by one, but for the roundings of the equilibrium: it is the orbit, at an edge of stability too.
             if last.is_infinite() && half.kicks <= VANISHING * half.stiffness * y.amax().max(1.0) {
-                return Ok(PeriodicOrbit { start: start.to_vec(), residual: 0.0, hessians: half.hessians });
+                return Ok(PeriodicOrbit { start: start.to_vec(), hessians: half.hessians });
             }
             let Some(step) = half.tangent.clone().lu().solve(&half.p) else { break };
             let size = step.amax();
             // The step is at its rounding level, or has ceased to shrink there (a few hundred roundings of |y|).
             let scale = y.amax().max(1.0);
             if size <= 1e-15 * scale || (size <= 1e-12 * scale && size >= last / 2.0) {
-                let residual = half.p.amax() / half.kicks.max(f64::MIN_POSITIVE);
-                return Ok(PeriodicOrbit {
-                    start: y.iter().copied().collect(),
-                    residual,
-                    hessians: half.hessians,
-                });
+                return Ok(PeriodicOrbit { start: y.iter().copied().collect(), hessians: half.hessians });
             }
             if !size.is_finite() {
                 break;
