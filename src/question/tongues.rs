@@ -6,6 +6,7 @@ use super::field::flag;
 use super::field::notation;
 use super::ratios::{MOST_SUM, Ratios};
 use crate::error::{Error, Result};
+use crate::named::named;
 use crate::number::{Laurent, Ratio, Rational};
 use crate::tongue::{self, Labels, Range, Request, Selection, StepWindow, Stiffness, Wanted};
 
@@ -49,14 +50,16 @@ question! {
     }
 }
 
-/// The quantity shown by the colours of an atlas.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
-pub enum Colour {
-    /// The a of the dominant family.
-    Family,
-    /// The fastest growth inside the tongue.
-    Growth,
+named! {
+    /// The quantity shown by the colours of an atlas.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+    pub enum Colour {
+        /// The a of the dominant family.
+        Family = "family",
+        /// The fastest growth inside the tongue.
+        Growth = "growth",
+    }
 }
 
 impl Colour {
@@ -65,15 +68,8 @@ impl Colour {
         Wanted { family: true, growth: self == Colour::Growth, ..Wanted::default() }
     }
 
-    fn name(self) -> &'static str {
-        match self {
-            Colour::Family => "family",
-            Colour::Growth => "growth",
-        }
-    }
-
     fn read(field: &str, text: &str) -> Result<Colour> {
-        let known = [Colour::Family, Colour::Growth].into_iter().find(|own| own.name() == text);
+        let known = Colour::ALL.into_iter().find(|own| own.name() == text);
         known.ok_or_else(|| Error::input(field, text, "choose family or growth"))
     }
 }

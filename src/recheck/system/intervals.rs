@@ -51,8 +51,7 @@ rows! {
 
 impl Row {
     fn stretch(&self) -> Checked<Stretch> {
-        let known = [Holds::Stable, Holds::Unstable, Holds::NotTold];
-        let verdict = known.into_iter().find(|own| own.name() == self.verdict);
+        let verdict = Holds::ALL.into_iter().find(|own| own.name() == self.verdict);
         let verdict = verdict.ok_or_else(|| Fault::Wrong(format!("{} is no verdict", self.verdict)))?;
         Ok(Stretch { lo: self.lo, hi: self.hi, verdict })
     }
