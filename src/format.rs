@@ -1,22 +1,26 @@
 //! The forms in which results are written.
 
-/// The form of a file, of standard output, of a scene's product.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-#[non_exhaustive]
-pub enum Format {
-    Json,
-    Csv,
-    Latex,
-    Text,
-    Svg,
-    Pdf,
-    Png,
-    /// NumPy arrays; of maps alone.
-    Npz,
-    /// Extended XYZ; of the modes of systems alone.
-    Xyz,
-    /// VTK's unstructured grids; of the same.
-    Vtu,
+use crate::named::named;
+
+named! {
+    /// The form of a file, of standard output, of a scene's product.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+    #[non_exhaustive]
+    pub enum Format {
+        Json = "json",
+        Csv = "csv",
+        Latex = "latex",
+        Text = "text",
+        Svg = "svg",
+        Pdf = "pdf",
+        Png = "png",
+        /// NumPy arrays; of maps alone.
+        Npz = "npz",
+        /// Extended XYZ; of the modes of systems alone.
+        Xyz = "xyz",
+        /// VTK's unstructured grids; of the same.
+        Vtu = "vtu",
+    }
 }
 
 impl Format {
@@ -46,8 +50,8 @@ impl Format {
         Format::Vtu,
     ];
 
-    /// All forms of maps, and of what scenes want.
-    pub const ALL: [Format; 8] = [
+    /// The forms of maps, and of what scenes want.
+    pub const MAP: [Format; 8] = [
         Format::Json,
         Format::Csv,
         Format::Latex,
@@ -58,35 +62,18 @@ impl Format {
         Format::Npz,
     ];
 
-    /// Its name.
-    pub fn name(self) -> &'static str {
-        match self {
-            Format::Latex => "latex",
-            Format::Text => "text",
-            other => other.extension(),
-        }
-    }
-
     /// The extension of its files.
     pub fn extension(self) -> &'static str {
         match self {
-            Format::Json => "json",
-            Format::Csv => "csv",
             Format::Latex => "tex",
             Format::Text => "txt",
-            Format::Svg => "svg",
-            Format::Pdf => "pdf",
-            Format::Png => "png",
-            Format::Npz => "npz",
-            Format::Xyz => "xyz",
-            Format::Vtu => "vtu",
+            other => other.name(),
         }
     }
 
     /// The form of files with this extension, in capitals or not; `None` where there is none.
     pub fn of_extension(extension: &str) -> Option<Format> {
-        let mut all = Format::ALL.into_iter().chain(Format::MODES);
-        all.find(|format| format.extension().eq_ignore_ascii_case(extension))
+        Format::ALL.into_iter().find(|format| format.extension().eq_ignore_ascii_case(extension))
     }
 
     /// Whether it is drawn.

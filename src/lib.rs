@@ -119,6 +119,7 @@ pub mod error;
 pub mod explore;
 pub mod format;
 pub mod map;
+mod named;
 pub mod number;
 mod orbit;
 pub mod parallel;

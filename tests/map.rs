@@ -2,12 +2,12 @@
 
 use kickdrift::error::Kind as ErrorKind;
 use kickdrift::map::{
-    Band, Counters, Grid, Map, Pairs, Products, Resources, Shard, Store, decide_all, instruction_sets, merge,
+    Band, Counters, Grid, Map, Pairs, Products, Resources, Shard, Store, instruction_sets, merge,
 };
+use kickdrift::number::Laurent;
 use kickdrift::number::parse::parse;
 use kickdrift::number::rational::ratio;
-use kickdrift::number::{Laurent, Ratio};
-use kickdrift::propagator::{Oscillator, TwoClocks};
+use kickdrift::propagator::Oscillator;
 use kickdrift::verdict::{Kind, Limits, Tier, decide, decide_from, growth};
 use rayon::prelude::*;
 
@@ -414,25 +414,27 @@ fn a_map_is_a_vector_and_stops_when_told() {
 fn scattered_pairs_side_by_side_are_those_of_the_ladder() {
     let mut numbers = random::Random::new(20_261_122);
     let mut pair = || {
-        let (p, q) = (1 + numbers.below(200), 1 + numbers.below(200));
-        let common = num_integer::gcd(p, q);
-        // Beyond Verlet's limit, with no force and with a repelling one too.
-        let part = |n: u64, over: i64, less: i64| ratio(n as i64 - less, over);
-        let s = part(numbers.below(4500), 1000, 200);
-        TwoClocks::with_rho(
-            Ratio::new(p / common, q / common).unwrap(),
-            s,
-            part(numbers.below(1000), 500, 100),
-        )
+        // Beyond Verlet's limit, with no slow force and with a repelling one too.
+        let lambda1 = ratio(1 + numbers.below(4300) as i64, 1000);
+        let lambda2 = &lambda1 * ratio(numbers.below(1000) as i64 - 100, 500);
+        let h2 = ratio(1 + numbers.below(200) as i64, 1 + numbers.below(200) as i64);
+        [lambda1, lambda2, ratio(1, 1), h2].map(Laurent::from_rational)
     };
-    let pairs: Vec<_> = (0..3000).map(|_| pair()).collect();
-    let found = decide_all(&pairs, &Resources::default()).unwrap();
-    assert_eq!(found.len(), pairs.len());
-    for (clocks, found) in pairs.iter().zip(found) {
-        assert_eq!(found.verdict, decide(clocks, &Limits::default()).unwrap().verdict, "{clocks:?}");
+    let all: Vec<[Laurent; 4]> = (0..3000).map(|_| pair()).collect();
+    let picked = std::array::from_fn(|_| (0..all.len()).collect());
+    let quantities = std::array::from_fn(|k| all.iter().map(|own| own[k].clone()).collect());
+    let pairs = Pairs::new(quantities, picked).unwrap();
+    let found = pairs.verdicts(&Resources::default()).unwrap();
+    assert_eq!(found.len(), all.len());
+    for (own, found) in all.into_iter().zip(found) {
+        let shown = format!("{own:?}");
+        let [lambda1, lambda2, h1, h2] = own;
+        let oscillator = Oscillator::new(lambda1, lambda2, h1, h2).unwrap();
+        let truth = decide(&oscillator.clocks().unwrap(), &Limits::default()).unwrap().verdict;
+        assert_eq!(found.verdict, truth, "{shown}");
     }
     let few = Resources { limits: Limits { kicks: 3 }, ..Resources::default() };
-    assert_eq!(decide_all(&pairs, &few).unwrap_err().kind(), ErrorKind::Budget);
+    assert_eq!(pairs.verdicts(&few).unwrap_err().kind(), ErrorKind::Budget);
 }
 
 #[test]

@@ -10,43 +10,29 @@ use super::mode::Mode;
 use super::question::Question;
 use crate::band::unstable_ratios;
 use crate::error::Result;
+use crate::named::named;
 use crate::number::rational::{enclose_f64, from_f64_exact, to_f64};
 use crate::number::{Ball, Laurent, Ratio, Rational};
 use crate::system::Limits;
 
 const BITS: u32 = 128;
 
-/// The judgement of a scheme, the best first.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Status {
-    /// Proven stable for every period in the band, and below all that is published.
-    Safe,
-    /// Proven stable for every period in the band; beyond a published limit.
-    Caution,
-    /// Below the first unstable interval of the periods given, not of all in the band.
-    Near,
-    /// Stable for the periods given, but above an unstable interval.
-    Island,
-    /// Within the accuracy of the measured stiffnesses no verdict is proven.
-    NotTold,
-    /// Unstable.
-    Unstable,
-}
-
-impl Status {
-    pub const ALL: [Status; 6] =
-        [Status::Safe, Status::Caution, Status::Near, Status::Island, Status::Unstable, Status::NotTold];
-
-    /// The name in documents.
-    pub fn name(self) -> &'static str {
-        match self {
-            Status::Safe => "safe",
-            Status::Caution => "caution",
-            Status::Near => "near",
-            Status::Island => "island",
-            Status::Unstable => "unstable",
-            Status::NotTold => "not told",
-        }
+named! {
+    /// The judgement of a scheme, the best first.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+    pub enum Status {
+        /// Proven stable for every period in the band, and below all that is published.
+        Safe = "safe",
+        /// Proven stable for every period in the band; beyond a published limit.
+        Caution = "caution",
+        /// Below the first unstable interval of the periods given, not of all in the band.
+        Near = "near",
+        /// Stable for the periods given, but above an unstable interval.
+        Island = "island",
+        /// Within the accuracy of the measured stiffnesses no verdict is proven.
+        NotTold = "not told",
+        /// Unstable.
+        Unstable = "unstable",
     }
 }
 
@@ -104,7 +90,7 @@ pub struct Answer {
     /// The longest outer step, a multiple of the step before it, that is proven stable for every period in the band; `None`: not even
     /// that step itself.
     pub largest: Option<Rational>,
-    /// As above, and below T/3 of the fastest mode.
+    /// The longest multiple that is `largest` at most and below T/3 of the fastest mode.
     pub safe: Option<Rational>,
     /// Where nothing is known to be on the outermost clock: the shortest period there, in fs, for which the scheme is proven stable for
     /// every period in the band; rounded up.

@@ -79,7 +79,7 @@ pub const SLOW: [Slow; 3] = [
 ];
 
 impl Slow {
-    /// That of this name.
+    /// The period that is known by this name.
     pub fn of(name: &str) -> Option<&'static Slow> {
         SLOW.iter().find(|own| own.name == name.trim())
     }

@@ -14,6 +14,7 @@ use super::levels::Scheme;
 use super::names::Names;
 use super::question::{check_band, check_friction, check_length};
 use crate::error::{Error, Result};
+use crate::named::named;
 use crate::number::Rational;
 use crate::number::rational::{from_f64_exact, to_f64};
 use crate::system::friction::Damping;
@@ -41,25 +42,16 @@ pub struct Direct {
     names: Names,
 }
 
-/// The growth that the steps add to that of the forces.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Adds {
-    /// Growth is proven to be at most [`TIMES`] that without steps, none where that is none; or tenfold after 1 µs at the earliest.
-    Little,
-    /// It is proven to be more.
-    Much,
-    /// Neither is proven.
-    NotTold,
-}
-
-impl Adds {
-    /// The name in documents.
-    pub fn name(self) -> &'static str {
-        match self {
-            Adds::Little => "little",
-            Adds::Much => "much",
-            Adds::NotTold => "not told",
-        }
+named! {
+    /// The growth that the steps add to that of the forces.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum Adds {
+        /// Growth is proven to be at most [`TIMES`] that without steps, none where that is none; or tenfold after 1 µs at the earliest.
+        Little = "little",
+        /// It is proven to be more.
+        Much = "much",
+        /// Neither is proven.
+        NotTold = "not told",
     }
 }
 
@@ -102,7 +94,7 @@ pub struct DirectFinding {
     pub within_run: Option<bool>,
     /// The longest multiple up to which all are proven to add little, within the band too.
     pub largest: Option<Rational>,
-    /// As above, and below T/3 of the fastest motion.
+    /// The longest multiple that is `largest` at most and below T/3 of the fastest motion.
     pub safe: Option<Rational>,
     /// The longest multiple up to which the friction given is proven to mask all growth.
     pub masked: Option<Rational>,

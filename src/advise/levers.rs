@@ -16,34 +16,25 @@ use super::mode::Mode;
 use super::question::Question;
 use super::unit::decimal;
 use crate::error::Result;
+use crate::named::named;
 use crate::number::rational::{enclose_f64, from_f64_exact, ratio};
 use crate::number::{Ball, Laurent, Rational, Real};
 use crate::word::Trigonometric;
 
 const BITS: u32 = 96;
 
-/// The kind of bound on a step.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Bound {
-    /// All periods of the band are proven stable below it.
-    Band,
-    /// A third of the fastest period: published of kicks and drifts.
-    Third,
-    /// A fifth of the shortest slow period, which is then followed by Verlet's rule.
-    SlowFifth,
-    /// The friction given masks what grows for the periods given; nothing is proven of the band.
-    Friction,
-}
-
-impl Bound {
-    /// In documents.
-    pub fn name(self) -> &'static str {
-        match self {
-            Bound::Band => "band",
-            Bound::Third => "T/3",
-            Bound::SlowFifth => "slow T/5",
-            Bound::Friction => "friction, no band",
-        }
+named! {
+    /// The kind of bound on a step.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum Bound {
+        /// All periods of the band are proven stable below it.
+        Band = "band",
+        /// A third of the fastest period: published of kicks and drifts.
+        Third = "T/3",
+        /// A fifth of the shortest slow period, which is then followed by Verlet's rule.
+        SlowFifth = "slow T/5",
+        /// The friction given masks what grows for the periods given; nothing is proven of the band.
+        Friction = "friction, no band",
     }
 }
 

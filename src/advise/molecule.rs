@@ -74,7 +74,7 @@ pub struct Finding {
     pub band_edge: Option<f64>,
     /// The longest multiple of the inner step that is proven so, all shorter ones too.
     pub largest: Option<Rational>,
-    /// As above, and below T/3 of the fastest mode.
+    /// The longest multiple that is `largest` at most and below T/3 of the fastest mode.
     pub safe: Option<Rational>,
     pub within_run: Option<bool>,
 }
@@ -94,7 +94,7 @@ pub struct Findings {
     pub groups: Vec<Group>,
     /// The shortest period of the slowest stiffness alone, in fs, rounded.
     pub slow: f64,
-    /// Those of the levels between, from the inside out.
+    /// The shortest periods of the levels between, each alone, from the inside out.
     pub between: Vec<f64>,
     pub removed: Option<Removed>,
     pub accuracy: f64,

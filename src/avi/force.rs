@@ -44,12 +44,6 @@ impl<S: Ring> Linear<S> {
     pub fn tether(particle: usize, k: S) -> Self {
         Linear { particles: vec![particle], entries: vec![k] }
     }
-
-    /// A spring between two particles, V = k (x_i − x_j)²/2.
-    pub fn spring(i: usize, j: usize, k: S) -> Self {
-        let minus = -k.clone();
-        Linear { particles: vec![i, j], entries: vec![k.clone(), minus.clone(), minus, k] }
-    }
 }
 
 impl<S: Ring> Force<S> for Linear<S> {

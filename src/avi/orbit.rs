@@ -11,7 +11,7 @@ use nalgebra::{DMatrix, DVector};
 use super::force::{Bond, Force};
 use crate::error::{Error, Result};
 use crate::number::rational::to_f64;
-use crate::schedule::{Schedule, Weight};
+use crate::schedule::Schedule;
 
 /// Iterations of Newton's method before it is given up: it converges quadratically from nearby or not at all.
 const ITERATIONS: usize = 50;
@@ -24,8 +24,6 @@ const VANISHING: f64 = 1e-13;
 pub struct PeriodicOrbit {
     /// y, the positions at t = 0 in the middle of the kicks there; the momenta are 0.
     pub start: Vec<f64>,
-    /// |p(T/2)| over the sum of all |kicks| of the half period, in the largest entry: what Newton's method left.
-    pub residual: f64,
     /// The Hessian of each clock that kicks in each event of the half period, in their order.
     pub hessians: Vec<Vec<DMatrix<f64>>>,
 }
@@ -67,19 +65,14 @@ impl Clocked<'_> {
             let half = self.half(&y);
             // Forces that vanish one by one, but for the roundings of the equilibrium: it is the orbit, at an edge of stability too.
             if last.is_infinite() && half.kicks <= VANISHING * half.stiffness * y.amax().max(1.0) {
-                return Ok(PeriodicOrbit { start: start.to_vec(), residual: 0.0, hessians: half.hessians });
+                return Ok(PeriodicOrbit { start: start.to_vec(), hessians: half.hessians });
             }
             let Some(step) = half.tangent.clone().lu().solve(&half.p) else { break };
             let size = step.amax();
             // The step is at its rounding level, or has ceased to shrink there (a few hundred roundings of |y|).
             let scale = y.amax().max(1.0);
             if size <= 1e-15 * scale || (size <= 1e-12 * scale && size >= last / 2.0) {
-                let residual = half.p.amax() / half.kicks.max(f64::MIN_POSITIVE);
-                return Ok(PeriodicOrbit {
-                    start: y.iter().copied().collect(),
-                    residual,
-                    hessians: half.hessians,
-                });
+                return Ok(PeriodicOrbit { start: y.iter().copied().collect(), hessians: half.hessians });
             }
             if !size.is_finite() {
                 break;
@@ -106,7 +99,7 @@ impl Clocked<'_> {
             }
             let mut met = Vec::new();
             for clock in event.clocks() {
-                let weight = if event.weight == Weight::Full { 1.0 } else { 0.5 };
+                let weight = event.weight.share();
                 let step = weight * tick * self.schedule.clocks()[clock].step() as f64;
                 let (force, hessian) = self.at(clock, &x);
                 p += step * &force;

@@ -5,6 +5,7 @@
 
 use super::force::Force;
 use crate::error::{Error, Result};
+use crate::named::named;
 use crate::number::{Laurent, Rational, Ring};
 use crate::schedule::{Clock, Clocks, Queue};
 
@@ -32,13 +33,15 @@ impl Ticks for Laurent {
     }
 }
 
-/// How the kicks at the two ends of a run are taken.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ends {
-    /// Algorithm 1 as it stands: whole kicks at the start, none at the end.
-    Staggered,
-    /// Time-symmetric: half of each kick at the start and at the end.
-    Symmetric,
+named! {
+    /// How the kicks at the two ends of a run are taken.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum Ends {
+        /// Algorithm 1 as it stands: whole kicks at the start, none at the end.
+        Staggered = "staggered",
+        /// Time-symmetric: half of each kick at the start and at the end.
+        Symmetric = "symmetric",
+    }
 }
 
 /// Particles of one degree of freedom each, potentials with clocks, and the state.

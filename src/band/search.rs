@@ -39,7 +39,7 @@ const RESOLVED: f64 = 0.15;
 /// Where a range of ratios is cut, as shares of it.
 const MIDDLE: [f64; 2] = [0.3, 0.7];
 
-/// Ranges that are narrower than this share of the ratio are not cut: doubles tell their ends apart, and no more.
+/// Ranges that are narrower than this share of the ratio are not cut: doubles separate their ends, and no more.
 const NARROW: f64 = 1e-11;
 
 /// The ratios of a window differ by more than this share.

@@ -22,7 +22,7 @@ const USAGES: [(&str, &str); 7] = [
     ("word", "(WORD | --method <NAME> | --list) [--lambda1 <X>] [--lambda2 <Y>] [--h <H>]"),
 ];
 
-/// Those of commands that are no question of their own.
+/// Examples of commands that are no question of their own.
 const EXAMPLES: [(&str, &[&str]); 16] = [
     (
         "verdict",

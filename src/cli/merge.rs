@@ -22,7 +22,7 @@ pub struct Args {
 
 impl Args {
     pub fn run(&self, common: &Common) -> Result<()> {
-        let format = common.format_of_table(&Format::ALL)?;
+        let format = common.format_of_table(&Format::MAP)?;
         let parts = self.parts.iter().map(|directory| Part::open(directory)).collect::<Result<Vec<_>>>()?;
         let map = Part::common_map(&parts)?;
         self.check(format, &map)?;

@@ -5,8 +5,8 @@
 //! of the base clock's turns made once a column and once a row. What the filter cannot certify goes up the ladder
 //! as any single pair does. Bands come in order and depend on the grid alone, not on threads, shards or the machine.
 //!
-//! [`Map`] computes all of it into one vector, into a slice, or band by band; [`decide_all`] and
-//! [`Pairs`] take pairs that lie on no grid.
+//! [`Map`] computes all of it into one vector, into a slice, or band by band; [`Pairs`] are
+//! pairs that lie on no grid.
 
 mod band;
 mod bases;
@@ -32,7 +32,6 @@ pub use pairs::Pairs;
 pub use products::{Growing, Products};
 pub use resources::Resources;
 pub use run::{Map, merge, uncertified_unstable};
-pub use scattered::decide_all;
 pub use shard::Shard;
 pub use store::Store;
 

@@ -5,8 +5,6 @@ use std::ops::Range;
 
 use num_traits::ToPrimitive;
 
-use super::resources::Resources;
-use super::scattered::{Source, decide_each};
 use super::work::LANES;
 use crate::error::{Error, Result};
 use crate::number::{ExactSign, Laurent, Rational, Real, Sign, Twofold};
@@ -95,16 +93,6 @@ impl Pairs {
         Pairs::new([vec![lambda1], vec![lambda2], first, second], [one.clone(), one, each.clone(), each])
     }
 
-    /// The verdicts in the order of the pairs: those of [`decide_steps`], with pairs of about the same number of updates run side
-    /// by side.
-    ///
-    /// # Errors
-    /// A pair whose steps have an irrational ratio, a budget error where one would compose more kicks than the limits allow,
-    /// and `Stopped`.
-    pub fn verdicts(&self, resources: &Resources) -> Result<Vec<Decision>> {
-        decide_each(self, resources)
-    }
-
     fn known(&self, n: usize) -> [&Known; 4] {
         std::array::from_fn(|k| &self.known[k][self.picked[k][n]])
     }
@@ -114,14 +102,14 @@ impl Pairs {
             std::array::from_fn(|k| self.quantities[k][self.picked[k][n]].clone());
         Oscillator::new(lambda1, lambda2, h1, h2)
     }
-}
 
-impl Source for Pairs {
-    fn count(&self) -> usize {
+    /// How many pairs there are.
+    pub(super) fn count(&self) -> usize {
         self.picked[0].len()
     }
 
-    fn strengths(&self, part: Range<usize>, mut each: impl FnMut(usize, Strengths)) {
+    /// Hands these pairs on in doubles, in their order and with their numbers, without those that doubles do not serve.
+    pub(super) fn strengths(&self, part: Range<usize>, mut each: impl FnMut(usize, Strengths)) {
         let (instructions, end) = (Instructions::best(), part.end);
         for first in part.step_by(LANES) {
             let count = LANES.min(end - first);
@@ -131,7 +119,8 @@ impl Source for Pairs {
         }
     }
 
-    fn decide(&self, n: usize, limits: &Limits) -> Result<Decision> {
+    /// The verdict on the n-th pair by the ladder.
+    pub(super) fn decide(&self, n: usize, limits: &Limits) -> Result<Decision> {
         decide_steps(&self.oscillator(n)?, limits)
     }
 }

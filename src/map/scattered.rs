@@ -2,80 +2,35 @@
 
 use std::ops::Range;
 
+use super::pairs::Pairs;
 use super::resources::Resources;
 use super::work::{LANES, MOST_TOGETHER, by_counting, in_groups};
 use crate::error::Result;
 use crate::orbit::filter::UNDECIDED;
 use crate::orbit::strengths::{Placed, Strengths};
 use crate::parallel::try_map;
-use crate::propagator::TwoClocks;
-use crate::verdict::{Decidable, Decision, Limits, Tier, Verdict, decide};
+use crate::verdict::{Decision, Tier, Verdict};
 
 /// Pairs that are sorted by their strengths and their numbers of updates together: enough for each to find company, few enough for
 /// the processor's caches.
 const TOGETHER: usize = 1 << 15;
 
-/// The verdicts of any pairs, in their order: those of [`decide`], with pairs of about the same number of updates run
-/// side by side.
-///
-/// ```
-/// use kickdrift::map::{Resources, decide_all};
-/// use kickdrift::number::{Ratio, rational::ratio};
-/// use kickdrift::propagator::TwoClocks;
-/// use kickdrift::verdict::{Limits, decide};
-/// let steps = Ratio::new(7, 3).unwrap();
-/// let pairs: Vec<_> = (1..200).map(|n| TwoClocks::with_rho(steps, ratio(n, 60), ratio(1, 25))).collect();
-/// let decisions = decide_all(&pairs, &Resources::default()).unwrap();
-/// assert_eq!(decisions[70].verdict, decide(&pairs[70], &Limits::default()).unwrap().verdict);
-/// ```
-///
-/// # Errors
-/// A budget error where a pair would compose more kicks than the limits allow, and `Stopped`.
-pub fn decide_all<S: Decidable + Sync>(
-    pairs: &[TwoClocks<S>],
-    resources: &Resources,
-) -> Result<Vec<Decision>> {
-    decide_each(pairs, resources)
-}
-
-/// Where pairs come from.
-pub(super) trait Source: Sync {
-    fn count(&self) -> usize;
-
-    /// Hands these pairs on in doubles, in their order and with their numbers, without those that doubles do not serve.
-    fn strengths(&self, part: Range<usize>, each: impl FnMut(usize, Strengths));
-
-    /// Its verdict by the ladder.
-    fn decide(&self, n: usize, limits: &Limits) -> Result<Decision>;
-}
-
-impl<S: Decidable + Sync> Source for [TwoClocks<S>] {
-    fn count(&self) -> usize {
-        self.len()
+impl Pairs {
+    /// The verdicts in the order of the pairs: those of [`decide_steps`](crate::verdict::decide_steps), with pairs of about the same number of updates run side
+    /// by side.
+    ///
+    /// # Errors
+    /// A pair whose steps have an irrational ratio, a budget error where one would compose more kicks than the limits allow,
+    /// and `Stopped`.
+    pub fn verdicts(&self, resources: &Resources) -> Result<Vec<Decision>> {
+        let count = self.count();
+        let parts: Vec<Range<usize>> =
+            (0..count).step_by(TOGETHER).map(|first| first..count.min(first + TOGETHER)).collect();
+        let done = resources
+            .pool()?
+            .install(|| try_map(&parts, |part: &Range<usize>| together(self, part.clone(), resources)))?;
+        Ok(done.concat())
     }
-
-    fn strengths(&self, part: Range<usize>, mut each: impl FnMut(usize, Strengths)) {
-        part.for_each(|n| {
-            if let Some(pair) = Strengths::of(&self[n]) {
-                each(n, pair);
-            }
-        });
-    }
-
-    fn decide(&self, n: usize, limits: &Limits) -> Result<Decision> {
-        decide(&self[n], limits).map(|answer| answer.decision())
-    }
-}
-
-/// The verdicts of all pairs of a source.
-pub(super) fn decide_each<P: Source + ?Sized>(source: &P, resources: &Resources) -> Result<Vec<Decision>> {
-    let count = source.count();
-    let parts: Vec<Range<usize>> =
-        (0..count).step_by(TOGETHER).map(|first| first..count.min(first + TOGETHER)).collect();
-    let done = resources
-        .pool()?
-        .install(|| try_map(&parts, |part: &Range<usize>| together(source, part.clone(), resources)))?;
-    Ok(done.concat())
 }
 
 /// Pairs on their way to their groups.
@@ -110,17 +65,13 @@ impl Unsorted {
     }
 }
 
-fn together<P: Source + ?Sized>(
-    source: &P,
-    part: Range<usize>,
-    resources: &Resources,
-) -> Result<Vec<Decision>> {
+fn together(all: &Pairs, part: Range<usize>, resources: &Resources) -> Result<Vec<Decision>> {
     resources.go_on()?;
     let limits = &resources.limits;
     // The ladder says so where one is longer than the limits allow.
     let allowed = |pair: &Strengths| pair.updates() < limits.kicks.min(MOST_TOGETHER);
     let (first, mut unsorted) = (part.start, Unsorted::of_at_most(part.len()));
-    source.strengths(part.clone(), |n, strengths| {
+    all.strengths(part.clone(), |n, strengths| {
         if allowed(&strengths) {
             unsorted.push(Placed { strengths, place: (n - first) as u32 });
         }
@@ -146,7 +97,7 @@ fn together<P: Source + ?Sized>(
             UNDECIDED => {
                 resources.go_on()?;
                 resources.count(1);
-                source.decide(n, limits)?
+                all.decide(n, limits)?
             }
             verdict => Decision { verdict: Verdict::ALL[usize::from(verdict)], decided_by: Tier::Filter },
         });

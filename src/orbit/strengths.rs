@@ -5,9 +5,8 @@
 
 use super::floquet::{LARGEST_MODULUS, LONGEST_QUICK, NEAR_LIMIT, Phase, TINY, shears, within_range};
 use super::kernel::{Constants, InLanes};
-use crate::number::{Ratio, Real, Twofold};
-use crate::propagator::TwoClocks;
-use crate::vector::{double_of, each, largest};
+use crate::number::Twofold;
+use crate::vector::{each, largest};
 
 /// A pair in doubles: the other clock's kicks strike at the multiples of p/q base steps.
 #[derive(Clone, Copy, Debug)]
@@ -33,23 +32,6 @@ impl Strengths {
             & (p < LARGEST_MODULUS as f64)
             & (q < LARGEST_MODULUS as f64)
             & (p / q + 1.0 < LONGEST_QUICK as f64)
-    }
-
-    /// With the first clock as the base, where that serves.
-    fn new(ratio: Ratio, s: Twofold, kick: Twofold) -> Option<Strengths> {
-        let (p, q) = ratio.terms();
-        let pair = Strengths { s, kick: kick.hi, p: double_of(p), q: double_of(q) };
-        pair.serves().then_some(pair)
-    }
-
-    /// The clock of more kicks is the base, or the other one where that does not serve.
-    pub fn of<S: Real>(clocks: &TwoClocks<S>) -> Option<Strengths> {
-        let two = |x: &S| x.two_doubles().map(|(hi, lo)| Twofold { hi, lo });
-        let on_first =
-            |clocks: &TwoClocks<S>| Strengths::new(clocks.ratio(), two(clocks.fast())?, two(clocks.slow())?);
-        let on_second = || on_first(&clocks.swapped());
-        let (p, q) = clocks.ratio().terms();
-        if p >= q { on_first(clocks).or_else(on_second) } else { on_second().or_else(|| on_first(clocks)) }
     }
 
     /// The first where the condition holds, else the second: by bits, without a branch.
@@ -231,7 +213,7 @@ impl InLanes for Placed {
 mod tests {
     use super::*;
     use crate::number::rational::ratio;
-    use crate::number::{Ball, U};
+    use crate::number::{Ball, Ratio, U};
     use crate::orbit::floquet::{Base, Pair};
     use proptest::prelude::*;
 
@@ -246,8 +228,9 @@ mod tests {
                 .filter_map(|&(a, close, p, q, short)| {
                     let s = if close { ratio((4 << 60) - (a << 2), 1 << 60) } else { ratio(a, 1 << 38) };
                     let steps = Ratio::new(p, q >> short).ok()?;
-                    let strengths = Strengths::new(steps, Twofold::from_rational(&s), Twofold::sum(1.0, 0.0))?;
-                    Some((Ball::from_rational(&s, 300), steps, strengths))
+                    let (p, q) = (steps.p() as f64, steps.q() as f64);
+                    let strengths = Strengths { s: Twofold::from_rational(&s), kick: 1.0, p, q };
+                    strengths.serves().then(|| (Ball::from_rational(&s, 300), steps, strengths))
                 })
                 .collect();
             prop_assume!(!pairs.is_empty());

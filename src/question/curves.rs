@@ -22,7 +22,7 @@ question! {
         /// The spacing of h1 of a scene's grid, on which curves do not depend.
         #[arg(skip)]
         step1: Option<Laurent>,
-        /// That of h2.
+        /// The spacing of h2.
         #[arg(skip)]
         step2: Option<Laurent>,
         /// The closed range of h1.

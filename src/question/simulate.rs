@@ -65,21 +65,14 @@ impl Displacement {
     }
 }
 
-fn form(ends: &Ends) -> &'static str {
-    match ends {
-        Ends::Symmetric => "symmetric",
-        Ends::Staggered => "staggered",
-    }
-}
-
 fn ends(field: &str, text: &str) -> Result<Ends> {
-    let known = [Ends::Symmetric, Ends::Staggered].into_iter().find(|own| form(own) == text);
+    let known = Ends::ALL.into_iter().find(|own| own.name() == text);
     known.ok_or_else(|| Error::input(field, text, "is symmetric or staggered"))
 }
 
 notation! {
     Displacement: Displacement::parsed, |own: &Displacement| own.text.clone();
-    Ends: ends, form;
+    Ends: ends, |own: &Ends| own.name();
 }
 
 /// The most periods: the series is kept in memory, and is written as some 50 MB.
@@ -117,7 +110,7 @@ impl Question for Simulate {
     #[cfg(feature = "figure")]
     fn figure(&self, Answer { scene, run }: &Answer, _: &Work) -> Result<Option<Figure>> {
         let foot = Foot::default().words(scene.title()).value("periods", self.periods);
-        let foot = foot.value("displaced by", &self.displace.text).words(form(&self.form));
+        let foot = foot.value("displaced by", &self.displace.text).words(self.form.name());
         let figure = report::figure(run, scene.title()).footed(&foot);
         Ok(Some(figure.in_units_of(scene.time_unit().unwrap_or("time"))))
     }

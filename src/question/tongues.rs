@@ -1,49 +1,65 @@
 //! Which tongues are asked for.
 
 use super::asking::question;
+#[cfg(feature = "cli")]
+use super::field::flag;
 use super::field::notation;
 use super::ratios::{MOST_SUM, Ratios};
 use crate::error::{Error, Result};
+use crate::named::named;
 use crate::number::{Laurent, Ratio, Rational};
 use crate::tongue::{self, Labels, Range, Request, Selection, StepWindow, Stiffness, Wanted};
 
 question! {
     /// Tongues of one ratio or of all, at one ρ. What else is wanted of each is seen in the document's rows.
     #[derive(Default)]
-    struct Tongues {
+    args struct Tongues {
         /// h2/h1 = p/q.
+        #[arg(skip)]
         ratio: Option<Ratio>,
         /// In place of one ratio: all coprime p + q up to this number.
+        #[arg(skip)]
         max_sum: Option<u64>,
         /// λ2/λ1, not negative; where both stiffnesses are given, their quotient.
+        #[arg(skip)]
         rho: Rational,
         /// The fast stiffness: edges are given in h1 and h2 too.
+        #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
         lambda1: Option<Laurent>,
-        /// The slow stiffness.
+        /// The slow stiffness, in place of --rho.
+        #[arg(long, value_name = "Y", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
         lambda2: Option<Laurent>,
-        /// Only tongues that meet this closed range of h1.
+        /// Only tongues that meet this closed range of h1 (needs --lambda1).
+        #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<(Laurent, Laurent)>)]
         h1_range: Option<Range>,
-        /// Only tongues that meet this closed range of h2.
+        /// Only tongues that meet this closed range of h2 (needs --lambda1).
+        #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<(Laurent, Laurent)>)]
         h2_range: Option<Range>,
-        /// Only these labels.
+        /// Only these labels, as 4 or 1,3,7..9.
+        #[arg(long, value_name = "LIST", allow_hyphen_values = true, value_parser = flag::<Labels>)]
         m: Option<Labels>,
         /// Only tongues whose dominant family has its a in this range.
+        #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<(i64, i64)>)]
         a: Option<(i64, i64)>,
         /// Only tongues whose dominant family has its b in this range.
+        #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<(i64, i64)>)]
         b: Option<(i64, i64)>,
-        /// Significant digits of the edges, more or fewer than doubles have.
+        /// Give the edges to so many significant digits, more or fewer than doubles have.
+        #[arg(long, value_name = "N", value_parser = flag::<u32>)]
         digits: Option<u32>,
     }
 }
 
-/// The quantity shown by the colours of an atlas.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
-pub enum Colour {
-    /// The a of the dominant family.
-    Family,
-    /// The fastest growth inside the tongue.
-    Growth,
+named! {
+    /// The quantity shown by the colours of an atlas.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+    pub enum Colour {
+        /// The a of the dominant family.
+        Family = "family",
+        /// The fastest growth inside the tongue.
+        Growth = "growth",
+    }
 }
 
 impl Colour {
@@ -52,15 +68,8 @@ impl Colour {
         Wanted { family: true, growth: self == Colour::Growth, ..Wanted::default() }
     }
 
-    fn name(self) -> &'static str {
-        match self {
-            Colour::Family => "family",
-            Colour::Growth => "growth",
-        }
-    }
-
     fn read(field: &str, text: &str) -> Result<Colour> {
-        let known = [Colour::Family, Colour::Growth].into_iter().find(|own| own.name() == text);
+        let known = Colour::ALL.into_iter().find(|own| own.name() == text);
         known.ok_or_else(|| Error::input(field, text, "choose family or growth"))
     }
 }

@@ -67,9 +67,9 @@ impl Want {
         let default = if product.is_figure() { Format::Svg } else { Format::Json };
         let format = match format {
             Some(format) => {
-                let known = Format::ALL.map(Format::extension).join(", ");
+                let known = Format::MAP.map(Format::extension).join(", ");
                 Format::of_extension(format)
-                    .filter(|own| Format::ALL.contains(own))
+                    .filter(|own| Format::MAP.contains(own))
                     .ok_or_else(|| unknown(text, "the formats are", &known))?
             }
             None => default,

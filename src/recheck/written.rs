@@ -63,28 +63,23 @@ impl TryFrom<RawWhole> for Whole {
     }
 }
 
-macro_rules! named {
-    ($($type:ty: $field:literal, $all:expr;)*) => {
+macro_rules! by_name {
+    ($($type:ty: $field:literal;)*) => {
         $(impl Notation for $type {
             fn parsed(_: &str, text: &str) -> Result<Self> {
-                one_of($field, text, $all, <$type>::name)
+                one_of($field, text, <$type>::ALL, <$type>::name)
             }
         })*
     };
 }
 
-named! {
-    Kind: "kind", [Kind::Elliptic, Kind::Hyperbolic, Kind::Parabolic, Kind::Coexistence];
-    Tier: "tier", Tier::ALL;
-    tongue::Entry: "entry", tongue::Entry::ALL;
-    tongue::Resonance: "resonance", [tongue::Resonance::Fast, tongue::Resonance::Slow];
-    tongue::Side: "position", SIDES;
+by_name! {
+    Kind: "kind";
+    Tier: "tier";
+    tongue::Entry: "entry";
+    tongue::Resonance: "resonance";
+    tongue::Side: "position";
 }
-
-const SIDES: [tongue::Side; 5] = {
-    use tongue::Side::{Above, Below, Inside, OnLower, OnUpper};
-    [Below, OnLower, Inside, OnUpper, Above]
-};
 
 /// A flag, which stands in a document only where it is set.
 impl Notation for bool {

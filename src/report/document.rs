@@ -91,6 +91,12 @@ impl Document {
         self
     }
 
+    /// Adds entries to the JSON body, in order; none of an `Option` that is `None`.
+    #[must_use]
+    pub fn entries<'a, V: Into<Value>>(self, given: impl IntoIterator<Item = (&'a str, V)>) -> Self {
+        given.into_iter().fold(self, |document, (key, value)| document.entry(key, value))
+    }
+
     /// The rows for CSV, LaTeX and text; in JSON too, under the table's name, unless the body has that key.
     #[must_use]
     pub fn rows(mut self, table: Table) -> Self {

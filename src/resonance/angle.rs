@@ -44,22 +44,6 @@ impl<S: Real> Angle<S> {
         self.theta(bits + 8).div(&Ball::pi(bits + 16), bits + 8).expect("pi > 0")
     }
 
-    /// T½ = π h1/θ, for the given h1: half the effective period T_eff = 2π h1/θ.
-    pub fn half_period(&self, h1: &Ball, bits: u32) -> Ball {
-        h1.div(&self.over_pi(bits + 8), bits + 8).expect("theta > 0")
-    }
-
-    /// alpha = h1 h2 L2/(2 sin θ), the strength of a slow kick in the paper's r-RESPA trace
-    /// Tr = 2 [cos(p θ) − alpha sin(p θ)].
-    pub fn alpha(&self, slow: &S, bits: u32) -> Ball {
-        let bits = bits + 16;
-        let mut rest = S::from_rational(&Rational::from_integer(4.into()));
-        rest -= self.s.clone();
-        // 2 sin θ = √(s (4 − s)).
-        let sin2 = S::product(&self.s, &rest).enclosure(bits).sqrt(bits).expect("0 < s < 4");
-        slow.enclosure(bits).div(&sin2, bits).expect("sin theta > 0")
-    }
-
     /// The nearest resonance of a ratio with numerator p; its distance is exact where a double can hold it and
     /// θ/π is rational, so exactly 0 on a resonance.
     ///

@@ -19,22 +19,25 @@
 use super::angle::Nearest;
 use super::tan;
 use crate::error::{Error, Result};
+use crate::named::named;
 use crate::number::{Laurent, Ratio, Rational};
 use crate::parallel::{go_on, try_map};
 use crate::propagator::TwoClocks;
 use crate::verdict::{Decidable, Decision, Limits, Tier, Verdict, decide_from};
 
-/// The rule of thumb held against the verdict of a pair.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Outcome {
-    /// Unstable and near a resonance.
-    Hit,
-    /// Stable and away from all resonances.
-    Quiet,
-    /// Unstable, but away from all resonances.
-    Miss,
-    /// Stable, but near a resonance.
-    FalseAlarm,
+named! {
+    /// The rule of thumb held against the verdict of a pair.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+    pub enum Outcome {
+        /// Unstable and near a resonance.
+        Hit = "hit",
+        /// Stable and away from all resonances.
+        Quiet = "quiet",
+        /// Unstable, but away from all resonances.
+        Miss = "miss",
+        /// Stable, but near a resonance.
+        FalseAlarm = "false alarm",
+    }
 }
 
 impl Outcome {
@@ -45,16 +48,6 @@ impl Outcome {
             (true, false) => Outcome::Quiet,
             (false, false) => Outcome::Miss,
             (true, true) => Outcome::FalseAlarm,
-        }
-    }
-
-    /// The outcome's name in documents.
-    pub fn name(self) -> &'static str {
-        match self {
-            Outcome::Hit => "hit",
-            Outcome::Quiet => "quiet",
-            Outcome::Miss => "miss",
-            Outcome::FalseAlarm => "false alarm",
         }
     }
 
@@ -96,7 +89,7 @@ pub fn compare<S: Decidable>(
 ) -> Result<Comparison> {
     const BITS: u32 = 64;
     let trace = decide_from(Tier::Refine, clocks, limits)?.decision();
-    let tan = tan::criterion(clocks, limits)?.verdict();
+    let tan = tan::criterion(clocks, limits)?;
     let angle = clocks.angle();
     let outcome = angle
         .as_ref()

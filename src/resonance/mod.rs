@@ -12,7 +12,7 @@
 //! use kickdrift::verdict::Limits;
 //! // 7/3 just below p th = 4 pi, weak slow force: unstable, tongue m = 4 = 1·7 − 1·3.
 //! let clocks = TwoClocks::with_rho("7/3".parse().unwrap(), ratio(2385, 1000), ratio(1, 25));
-//! assert!(tan::criterion(&clocks, &Limits::default()).unwrap().is_unstable());
+//! assert!(!tan::criterion(&clocks, &Limits::default()).unwrap().is_stable());
 //! assert_eq!(dominant_family("7/3".parse().unwrap(), 4), (1, -1));
 //! ```
 

@@ -59,7 +59,7 @@ impl Witness {
         let (p, q) = self.ratio.terms();
         let period = Rational::from(self.ratio) * Rational::from_integer(q.into());
         let turns = half_period(p, self.m) * Rational::from_integer(self.m.into());
-        period == turns && chebyshev_closes(p, self.m)
+        period == turns && closes_in(&field(p), p, self.m)
     }
 }
 
@@ -85,17 +85,12 @@ pub fn resonance_on_curve(ratio: Ratio, a: i64, b: i64) -> Option<u64> {
     (m.is_integer() && m > Rational::zero()).then(|| u64::try_from(m.to_integer()).ok()).flatten()
 }
 
-/// T_p(1 − s/2) = (−1)^m at s = 2 − 2 cos(m π/p).
-fn chebyshev_closes(p: u64, m: u64) -> bool {
-    closes_in(&field(p), p, m)
-}
-
 /// Q(2 cos(π/p)).
 fn field(p: u64) -> CyclotomicField {
     CyclotomicField::new(u32::try_from(p).expect("a p whose field fits in memory"))
 }
 
-/// Decides the same by 2 T_p(x/2) =: V_p(x), V_{k+1} = x V_k − V_{k−1}, x = 2 cos(m π/p).
+/// Whether T_p(1 − s/2) = (−1)^m at s = 2 − 2 cos(m π/p), by V_p(x) = 2 T_p(x/2), V_{k+1} = x V_k − V_{k−1}, x = 2 cos(m π/p).
 fn closes_in(field: &CyclotomicField, p: u64, m: u64) -> bool {
     let x = field.two_cos(m as i64);
     let two = <Cyclotomic as Ring>::from_rational(&fraction(2, 1));
@@ -160,56 +155,6 @@ fn backward(ratio: Ratio, max: i64, closes: &[bool], result: &mut Check) {
     }
 }
 
-/// For fixed h1 with T½/h1 = p/m in lowest terms, the resonant slow steps below h1 p: h2 = (p/q) h1 for every
-/// 1 ≤ q < p coprime to p. In units of h1.
-pub fn resonant_steps(p: u64) -> Vec<Rational> {
-    (1..p.max(2)).filter(|q| q.gcd(&p) == 1).map(|q| fraction(p, q)).collect()
-}
-
 fn fraction(p: u64, q: u64) -> Rational {
     Rational::new(p.into(), q.into())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_gap_in_the_papers_proof_is_closed() {
-        // p = 1: the Bézout pair (1, 0) would give h2 = 0/0. θ < π leaves m = 0 only, but the identity
-        // m = a p + b q holds for every m with b != 0.
-        for q in 1..20 {
-            for m in 1..20 {
-                assert_ne!(witness(Ratio::new(1, q).unwrap(), m).b, 0);
-            }
-        }
-    }
-
-    #[test]
-    fn holds_for_small_ratios_both_ways() {
-        let check = check(12, |_| ());
-        assert!(check.failures.is_empty(), "{:?}", check.failures);
-        assert!(check.forward > 400 && check.backward > 1000);
-    }
-
-    #[test]
-    fn a_wrong_witness_fails() {
-        let right = witness("7/3".parse().unwrap(), 4);
-        assert!(!Witness { a: right.a + 1, ..right }.lies_on_its_curve());
-        assert!(!Witness { m: 3, ..right }.lies_on_its_curve());
-        assert!(!chebyshev_closes_at(7, 4, 5));
-    }
-
-    /// Whether θ = k π/p solves p θ = m π in sign as well: T_p = (−1)^m.
-    fn chebyshev_closes_at(p: u64, k: u64, m: u64) -> bool {
-        chebyshev_closes(p, k) && k % 2 == m % 2
-    }
-
-    #[test]
-    fn resonant_steps_are_resonant() {
-        for step in resonant_steps(10) {
-            let q = u64::try_from(step.denom().clone()).unwrap();
-            assert!(witness(Ratio::new(10, q).unwrap(), 3).is_resonant());
-        }
-    }
 }

@@ -29,36 +29,16 @@
 
 use std::cmp::Ordering;
 
-use nalgebra::Matrix2;
-use num_traits::{One, Signed, Zero};
-
 use crate::error::Result;
-use crate::number::{Ball, Enclosed, ExactSign, Rational, Real, Ring, Sign};
+use crate::number::{Ball, Enclosed, ExactSign, Rational, Real, Ring};
 use crate::propagator::TwoClocks;
-use crate::propagator::methods::respa::power;
-use crate::verdict::{Decidable, HalfSigns, Kind, Limits, PartialSigns, Tier, Verdict};
-
-/// The prediction of the tan criterion for a pair.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Criterion(Verdict);
-
-impl Criterion {
-    /// t strictly between two critical values: |Tr Q| > 2.
-    pub fn is_unstable(self) -> bool {
-        self.0.kind() == Kind::Hyperbolic
-    }
-
-    /// The whole verdict: t on a critical value is parabolic, or coexistence where two of them meet.
-    pub fn verdict(self) -> Verdict {
-        self.0
-    }
-}
+use crate::verdict::{Decidable, HalfSigns, Limits, PartialSigns, Tier, Verdict};
 
 /// The tan criterion for any q: the four forms enclosed, else computed exactly. q/2 slow kicks, whatever p.
 ///
 /// # Errors
 /// A budget error where only exact arithmetic would decide, and it costs more than the limits allow.
-pub fn criterion<S: Decidable>(clocks: &TwoClocks<S>, limits: &Limits) -> Result<Criterion> {
+pub fn criterion<S: Decidable>(clocks: &TwoClocks<S>, limits: &Limits) -> Result<Verdict> {
     let kicks = clocks.q();
     // A kick and the turn before it lose some two bits in balls, so long periods are worth more of them. For s > 4 the turns grow
     // like e^(γ n), cosh γ = s/2 − 1, and each of q/2 kicks at n up to p/2 loses 2 γ n/ln 2 of them.
@@ -72,7 +52,7 @@ pub fn criterion<S: Decidable>(clocks: &TwoClocks<S>, limits: &Limits) -> Result
         .or_else(|| pays(32_768).then(|| enclosed_forms::<S, 32_768>(clocks))?)
         .or_else(|| pays(131_072).then(|| enclosed_forms::<S, 131_072>(clocks))?);
     if let Some(verdict) = enclosed {
-        return Ok(Criterion(verdict));
+        return Ok(verdict);
     }
     // Turns and kicks apart make numbers twice as long as the half period's.
     limits.allow(S::exact_cost(clocks, clocks.ratio().kicks()), Tier::Exact)?;
@@ -83,8 +63,8 @@ pub fn criterion<S: Decidable>(clocks: &TwoClocks<S>, limits: &Limits) -> Result
 const MOST_BITS: u64 = 1 << 26;
 
 /// The tan criterion for any q by exact arithmetic in the ring of s and the slow kick.
-pub fn exact_criterion<S: ExactSign>(clocks: &TwoClocks<S>) -> Criterion {
-    Criterion(exact_forms(clocks).verdict())
+pub fn exact_criterion<S: ExactSign>(clocks: &TwoClocks<S>) -> Verdict {
+    exact_forms(clocks).verdict()
 }
 
 /// The signs of the four forms at T/2, each times a positive factor.
@@ -224,60 +204,6 @@ impl<S: Ring> HalfTurn<S> {
             ),
         }
     }
-}
-
-/// The paper's criterion for r-RESPA, exactly: for q = 1 and rational s, 0 < s < 4, is
-/// tan φ > 1/alpha > 0 or 0 > tan φ > −alpha?
-///
-/// With τ = tan(θ/2), τ² = s/(4 − s), both tan φ/τ = Y/X, from (1 + iτ)^p = X + iτY, and alpha τ = h1 h2 L2
-/// (1 + τ²)/4 are rational: no root is taken. For alpha < 0 (L2 < 0) the inequalities are mirrored:
-/// tan φ < 1/alpha < 0 or 0 < tan φ < −alpha.
-///
-/// `None` unless q = 1 and 0 < s < 4.
-pub fn papers_criterion(clocks: &TwoClocks<Rational>) -> Option<bool> {
-    let (four, s) = (Rational::from_integer(4.into()), clocks.fast());
-    if clocks.q() != 1 || !s.is_positive() || *s >= four {
-        return None;
-    }
-    let tau2 = s / (&four - s);
-    // The matrix [[1, −τ²], [1, 1]] acts on (X, Y) as multiplication by 1 + iτ.
-    let one = Rational::one;
-    let turned = power(Matrix2::new(one(), -tau2.clone(), one(), one()), clocks.p());
-    let (x, y) = (&turned[(0, 0)], &turned[(1, 0)]);
-    let alpha_tau = clocks.slow() * (one() + &tau2) / &four;
-    // alpha tan φ > 1 is alpha τ Y/X > 1; tan φ/alpha in (−1, 0) is τ² Y/X / (alpha τ) in (−1, 0).
-    if x.is_zero() || alpha_tau.is_zero() {
-        // At a pole of tan, cos φ = 0 and Tr = −2 exactly: an edge. Without a slow force nothing is unstable.
-        return Some(false);
-    }
-    let tan = y / x;
-    let share = &tau2 * &tan / &alpha_tau;
-    Some(&alpha_tau * &tan > one() || (share.is_negative() && share > -one()))
-}
-
-/// Theorem `tan_criterion_q2` in proofs/, for q = 2: with t = tan φ and c2 = cos²(θ/2), Tr < −2 iff
-/// (1 − alpha t)(1 − alpha c2 t) < 0, and Tr > 2 iff t [t (1 − alpha² c2) + alpha (1 + c2)] < 0.
-///
-/// The side of the instability as a sign (zero: none), for rational 0 < s < 4; `None` unless q = 2 and there.
-/// (p is odd, so t/τ = Y/X with τ = tan(θ/2), as in [`papers_criterion`].)
-pub fn two_slow_kicks(clocks: &TwoClocks<Rational>) -> Option<Sign> {
-    let (one, four, s) = (Rational::one(), Rational::from_integer(4.into()), clocks.fast());
-    if clocks.q() != 2 || !s.is_positive() || *s >= four {
-        return None;
-    }
-    let tau2 = s / (&four - s);
-    let turned = power(Matrix2::new(one.clone(), -tau2.clone(), one.clone(), one.clone()), clocks.p());
-    let (x, y) = (&turned[(0, 0)], &turned[(1, 0)]);
-    let c2 = &one / (&one + &tau2);
-    let alpha_tau = clocks.slow() * (&one + &tau2) / &four;
-    // Everything is multiplied by X²: alpha t = alpha τ Y/X, t² = τ² Y²/X², alpha² = (alpha τ)²/τ².
-    let below = (x - &alpha_tau * y) * (x - &alpha_tau * &c2 * y);
-    let above = y * (y * (&tau2 - &alpha_tau * &alpha_tau * &c2) + &alpha_tau * (&one + &c2) * x);
-    Some(match (below.is_negative(), above.is_negative()) {
-        (true, _) => Sign::Negative,
-        (_, true) => Sign::Positive,
-        _ => Sign::Zero,
-    })
 }
 
 #[cfg(test)]

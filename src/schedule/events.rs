@@ -2,12 +2,25 @@
 
 use super::clocks::Clock;
 use super::queue::Queue;
+use crate::number::Rational;
 
 /// How much of each kick an event carries: half of it where a half period begins or ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Weight {
     Half,
     Full,
+}
+
+impl Weight {
+    /// 1/2 or 1.
+    pub fn share(self) -> f64 {
+        if self == Weight::Full { 1.0 } else { 0.5 }
+    }
+
+    /// x/2 or x.
+    pub fn of(self, x: &Rational) -> Rational {
+        if self == Weight::Full { x.clone() } else { x / Rational::from_integer(2.into()) }
+    }
 }
 
 /// One kick time: drift `drift` ticks since the event before, then let the clocks in `kicks`
@@ -25,6 +38,18 @@ impl Event {
         let kicks = self.kicks;
         (0..(64 - kicks.leading_zeros()) as usize).filter(move |clock| kicks >> clock & 1 == 1)
     }
+}
+
+/// The events of a span from its end to its beginning: each drift comes after the kicks that it led to.
+pub fn reversed(events: &[Event]) -> Vec<Event> {
+    let mut drift = 0;
+    let back = events
+        .iter()
+        .rev()
+        .map(|event| Event { drift: std::mem::replace(&mut drift, event.drift), ..*event });
+    let mut back: Vec<Event> = back.collect();
+    back.extend((drift > 0).then_some(Event { drift, kicks: 0, weight: Weight::Full }));
+    back
 }
 
 /// How the kicks at the two ends of the span are taken.

@@ -20,7 +20,7 @@ mod period;
 mod queue;
 
 pub use clocks::{Clock, Clocks};
-pub use events::{Event, Events, Weight};
+pub use events::{Event, Events, Weight, reversed};
 pub use kicks::{KickDrift, Kicks};
 pub use period::Schedule;
 pub use queue::Queue;

@@ -133,7 +133,7 @@ pub(crate) trait Vector: Copy {
         (sum, self.sub(sum.sub(part)).add(other.sub(part)))
     }
 
-    /// As above, for a difference.
+    /// The rounded difference, and what rounding took from it, exactly.
     #[inline(always)]
     fn two_sub(self, other: Self) -> (Self, Self) {
         let difference = self.sub(other);

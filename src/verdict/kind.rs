@@ -23,34 +23,27 @@
 
 use std::fmt;
 
+use crate::named::named;
 use crate::number::Sign::{self, Negative, Positive, Zero};
 use crate::propagator::{HalfSigns, PartialSigns};
 
-/// How the powers of Q behave: a [`Verdict`] without its side, which many clocks do not have.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum Kind {
-    /// Powers bounded, no eigenvalue ±1.
-    Elliptic,
-    /// Exponential growth.
-    Hyperbolic,
-    /// Linear growth: a Jordan block.
-    Parabolic,
-    /// Powers bounded, an eigenvalue ±1.
-    Coexistence,
+named! {
+    /// How the powers of Q behave: a [`Verdict`] without its side, which many clocks do not have.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+    #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+    pub enum Kind {
+        /// Powers bounded, no eigenvalue ±1.
+        Elliptic = "elliptic",
+        /// Exponential growth.
+        Hyperbolic = "hyperbolic",
+        /// Linear growth: a Jordan block.
+        Parabolic = "parabolic",
+        /// Powers bounded, an eigenvalue ±1.
+        Coexistence = "coexistence",
+    }
 }
 
 impl Kind {
-    /// The kind's name in documents.
-    pub fn name(self) -> &'static str {
-        match self {
-            Kind::Elliptic => "elliptic",
-            Kind::Hyperbolic => "hyperbolic",
-            Kind::Parabolic => "parabolic",
-            Kind::Coexistence => "coexistence",
-        }
-    }
-
     /// Whether the powers of Q are bounded (theorem `bounded_iff` in proofs/).
     pub fn is_stable(self) -> bool {
         matches!(self, Kind::Elliptic | Kind::Coexistence)

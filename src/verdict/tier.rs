@@ -1,31 +1,20 @@
 //! The tiers of the ladder, and how much work each may do.
 
 use crate::error::{Error, Result};
+use crate::named::named;
 
-/// Which tier decided.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum Tier {
-    /// Doubles in Floquet coordinates, min(p, q)/2 updates, with a proven bound; where there are none, kick by kick,
-    /// and a closed form where only one clock kicks.
-    Filter,
-    /// Kicks and drifts in multiple precision, p + q of them, with the same bound.
-    Refine,
-    /// Exact arithmetic.
-    Exact,
-}
-
-impl Tier {
-    /// All tiers, the cheapest first.
-    pub const ALL: [Tier; 3] = [Tier::Filter, Tier::Refine, Tier::Exact];
-
-    /// The tier's name in documents.
-    pub fn name(self) -> &'static str {
-        match self {
-            Tier::Filter => "filter",
-            Tier::Refine => "refine",
-            Tier::Exact => "exact",
-        }
+named! {
+    /// Which tier decided.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+    #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+    pub enum Tier {
+        /// Doubles in Floquet coordinates, min(p, q)/2 updates, with a proven bound; where there are none, kick by kick,
+        /// and a closed form where only one clock kicks.
+        Filter = "filter",
+        /// Kicks and drifts in multiple precision, p + q of them, with the same bound.
+        Refine = "refine",
+        /// Exact arithmetic.
+        Exact = "exact",
     }
 }
 

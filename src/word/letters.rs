@@ -12,9 +12,9 @@ use crate::number::{Radical, Rational};
 pub enum Force {
     /// The whole force.
     All,
-    /// That of Λ1.
+    /// The force of Λ1.
     First,
-    /// That of Λ2.
+    /// The force of Λ2.
     Second,
 }
 

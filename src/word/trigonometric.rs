@@ -26,24 +26,27 @@ use num_traits::{One, Signed, Zero};
 
 use super::enclosed::{Piece, pieces};
 use super::letters::{Force, Item, Letter, Word};
+use crate::named::named;
 use crate::number::rational::{from_f64_exact, ratio};
 use crate::number::{Ball, Laurent, Rational, Real, Sign};
 
-/// A trigonometric integrator, by its filters.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Trigonometric {
-    /// No filter: g = sinc h w.
-    Impulse,
-    /// g = sinc²(h w/2).
-    Gautschi,
-    /// MOLLY, positions averaged over a short time: g = sinc h w sinc²(h w/2).
-    Short,
-    /// MOLLY, the average weighted linearly: g = sinc h w sinc⁴(h w/2).
-    Linear,
-    /// MOLLY, positions averaged over the whole step: g = sinc³ h w.
-    Long,
-    /// g = sinc² h w.
-    HairerLubich,
+named! {
+    /// A trigonometric integrator, by its filters.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum Trigonometric {
+        /// No filter: g = sinc h w.
+        Impulse = "impulse",
+        /// g = sinc²(h w/2).
+        Gautschi = "gautschi",
+        /// MOLLY, positions averaged over a short time: g = sinc h w sinc²(h w/2).
+        Short = "molly-short",
+        /// MOLLY, the average weighted linearly: g = sinc h w sinc⁴(h w/2).
+        Linear = "molly-linear",
+        /// MOLLY, positions averaged over the whole step: g = sinc³ h w.
+        Long = "molly-long",
+        /// g = sinc² h w.
+        HairerLubich = "hairer-lubich",
+    }
 }
 
 /// Bits of the balls; intervals are halved to fewer.
@@ -53,26 +56,6 @@ const BITS: u32 = 96;
 const MOST_BITS: u32 = 1 << 13;
 
 impl Trigonometric {
-    pub const ALL: [Trigonometric; 6] = [
-        Trigonometric::Impulse,
-        Trigonometric::Gautschi,
-        Trigonometric::Short,
-        Trigonometric::Linear,
-        Trigonometric::Long,
-        Trigonometric::HairerLubich,
-    ];
-
-    pub fn name(self) -> &'static str {
-        match self {
-            Trigonometric::Impulse => "impulse",
-            Trigonometric::Gautschi => "gautschi",
-            Trigonometric::Short => "molly-short",
-            Trigonometric::Linear => "molly-linear",
-            Trigonometric::Long => "molly-long",
-            Trigonometric::HairerLubich => "hairer-lubich",
-        }
-    }
-
     /// (i, k) of g = c^i (s/y)^k.
     fn powers(self) -> (u32, u32) {
         match self {

@@ -83,3 +83,36 @@ fn a_double_that_came_by_a_few_roundings_is_what_was_meant() {
     }
     assert!(from_f64_meant(f64::NAN).is_none() && from_f64_meant(f64::INFINITY).is_none());
 }
+
+#[test]
+fn the_simplest_rational_has_the_least_denominator_of_all() {
+    let mut seen = 0;
+    for (a, b) in (1..60i64).flat_map(|b| (1..4 * b).map(move |a| (a, b))) {
+        for width in [ratio(0, 1), ratio(1, 7 * b), ratio(1, 97), ratio(5, 3)] {
+            let (lo, hi) = (ratio(a, b), ratio(a, b) + width);
+            let found = simplest(&lo, &hi);
+            assert!(lo <= found && found <= hi, "{found} in {lo}..{hi}");
+            let least = (1..).map(BigInt::from).find(|d| {
+                let numerator = (&lo * Rational::from_integer(d.clone())).ceil();
+                numerator <= &hi * Rational::from_integer(d.clone())
+            });
+            assert_eq!(Some(found.denom()), least.as_ref(), "{lo}..{hi}");
+            assert_eq!(Rational::new(found.numer().clone(), found.denom().clone()), found);
+            seen += 1;
+        }
+    }
+    assert!(seen > 10_000);
+}
+
+#[test]
+fn rounded_numbers_stand_for_simple_ones() {
+    for (p, q) in (1..200).flat_map(|q| (1..3 * q).map(move |p| (p, q))) {
+        assert_eq!(simplest_beside(p as f64 / q as f64), Some(ratio(p, q)));
+        assert_eq!(simplest_beside(-p as f64 / q as f64), Some(ratio(-p, q)));
+    }
+    assert_eq!(simplest_beside(0.0), Some(ratio(0, 1)));
+    assert_eq!(simplest_beside(f64::NAN), None);
+    for x in [f64::from_bits(1), f64::MIN_POSITIVE, f64::MAX, 0.1 + 0.2, std::f64::consts::PI] {
+        assert_eq!(simplest_beside(x).map(|beside| to_f64(&beside)), Some(x), "{x}");
+    }
+}

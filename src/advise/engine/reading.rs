@@ -6,36 +6,24 @@ use crate::advise::constraint::Constraints;
 use crate::advise::levels::Scheme;
 use crate::advise::unit::decimal;
 use crate::error::{Error, Result};
+use crate::named::named;
 use crate::number::Rational;
 use crate::number::parse::parse_rational;
 
-/// A simulation engine.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Engine {
-    OpenMm,
-    Lammps,
-    Gromacs,
-    Namd,
-    Tinker,
-    Ipi,
+named! {
+    /// A simulation engine.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum Engine {
+        OpenMm = "OpenMM",
+        Lammps = "LAMMPS",
+        Gromacs = "GROMACS",
+        Namd = "NAMD",
+        Tinker = "Tinker",
+        Ipi = "i-PI",
+    }
 }
 
 impl Engine {
-    pub const ALL: [Engine; 6] =
-        [Engine::OpenMm, Engine::Lammps, Engine::Gromacs, Engine::Namd, Engine::Tinker, Engine::Ipi];
-
-    /// Its name.
-    pub fn name(self) -> &'static str {
-        match self {
-            Engine::OpenMm => "OpenMM",
-            Engine::Lammps => "LAMMPS",
-            Engine::Gromacs => "GROMACS",
-            Engine::Namd => "NAMD",
-            Engine::Tinker => "Tinker",
-            Engine::Ipi => "i-PI",
-        }
-    }
-
     /// Which step its dt is.
     pub fn dt(self) -> &'static str {
         match self {

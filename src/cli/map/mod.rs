@@ -44,7 +44,7 @@ pub struct Args {
 
 impl Args {
     pub fn run(&self, common: &Common) -> Result<()> {
-        let format = common.format_of_table(&Format::ALL)?;
+        let format = common.format_of_table(&Format::MAP)?;
         let shard = self.shard(format)?;
         let coloured = self.drawing.products(format)?;
         let shown = self.columns.products(format)?;

@@ -19,7 +19,7 @@ use crate::question::{Colour, MOST_SUM, Question as _, Ratios, Survey, THINNEST,
 use crate::report::certificate::coq_of_tongue;
 use crate::report::file::write_output;
 use crate::report::tongues::needed;
-use crate::tongue::{self, Labels, Range, Selection, Stiffness, Tongues, Wanted};
+use crate::tongue::{self, Selection, Stiffness, Tongues, Wanted};
 pub use atlas::Atlas;
 pub use output::{Stream, put};
 
@@ -35,30 +35,8 @@ pub struct Args {
     /// rho = lambda2/lambda1, not negative.
     #[arg(long, value_name = "R", allow_hyphen_values = true, value_parser = flag::<Rational>)]
     rho: Option<Rational>,
-    /// The fast stiffness: edges are given in h1 and h2 too.
-    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
-    lambda1: Option<Laurent>,
-    /// The slow stiffness, in place of --rho.
-    #[arg(long, value_name = "Y", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
-    lambda2: Option<Laurent>,
-    /// Only tongues that meet this closed range of h1 (needs --lambda1).
-    #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<(Laurent, Laurent)>)]
-    h1_range: Option<Range>,
-    /// Only tongues that meet this closed range of h2 (needs --lambda1).
-    #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<(Laurent, Laurent)>)]
-    h2_range: Option<Range>,
-    /// Only these labels, as 4 or 1,3,7..9.
-    #[arg(long, value_name = "LIST", allow_hyphen_values = true, value_parser = flag::<Labels>)]
-    m: Option<Labels>,
-    /// Only tongues whose dominant family has its a in this range.
-    #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<(i64, i64)>)]
-    a: Option<(i64, i64)>,
-    /// Only tongues whose dominant family has its b in this range.
-    #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<(i64, i64)>)]
-    b: Option<(i64, i64)>,
-    /// Give the edges to so many significant digits, more or fewer than doubles have.
-    #[arg(long, value_name = "N", value_parser = flag::<u32>)]
-    digits: Option<u32>,
+    #[command(flatten)]
+    asked: Asked,
     /// Columns by the names that csv has, or groups [default: all; with --max-sum all but growth; in LaTeX edges].
     ///
     /// Groups: edges, exact, growth (takes longest), predicted, first-order.
@@ -135,7 +113,7 @@ impl Args {
                 let Ratios::One(ratio) = self.ratios()? else {
                     return Err(Error::missing("ratio", "traces are of one ratio: give --ratio P/Q"));
                 };
-                put(figures::trace(ratio, &self.stiffness()?.rho, self.m.as_ref())?)
+                put(figures::trace(ratio, &self.stiffness()?.rho, self.asked.m.as_ref())?)
             }
             (Format::Svg | Format::Pdf | Format::Png, Some(Drawn::Diagram)) => {
                 put(figures::diagram(self.several()?, &self.stiffness()?.rho, self.paper.width_mm())?)
@@ -161,8 +139,8 @@ impl Args {
         let one = |remedy| Error::input("--certificate", path.display(), remedy);
         let [ratio] = self.ratios()?.list()[..] else { return Err(one("is for one ratio")) };
         within(ratio.kicks(), EDGES_WORTH_CERTIFYING, common.budget)?;
-        let gaps =
-            Tongues::new(ratio, &rho)?.select(&Selection { m: self.m.clone(), ..Selection::default() })?;
+        let gaps = Tongues::new(ratio, &rho)?
+            .select(&Selection { m: self.asked.m.clone(), ..Selection::default() })?;
         let [gap] = &gaps[..] else { return Err(one("is for one tongue: choose it with --m")) };
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         write_output(Some(path), coq_of_tongue(ratio, &rho, gap, &name)?.as_bytes())?;
@@ -194,7 +172,7 @@ impl Args {
             ),
             ("thinnest", self.thinnest.is_some() && !self.survey, "is for --survey"),
             ("columns", self.columns.is_some() && (figure || self.survey), "is for tables"),
-            ("digits", self.digits.is_some() && (figure || self.survey), "is for tables"),
+            ("digits", self.asked.digits.is_some() && (figure || self.survey), "is for tables"),
         ];
         match wrong.iter().find(|(_, wrong, _)| *wrong) {
             Some((flag, _, remedy)) => Err(Error::input(&format!("--{flag}"), "given", remedy)),
@@ -206,11 +184,11 @@ impl Args {
     /// A survey and a figure of strengths are of all tongues.
     fn check_bare(&self) -> Result<()> {
         let given = [
-            ("--h1-range", self.h1_range.is_some()),
-            ("--h2-range", self.h2_range.is_some()),
-            ("--m", self.m.is_some() && self.figure != Some(Drawn::Trace)),
-            ("--a", self.a.is_some()),
-            ("--b", self.b.is_some()),
+            ("--h1-range", self.asked.h1_range.is_some()),
+            ("--h2-range", self.asked.h2_range.is_some()),
+            ("--m", self.asked.m.is_some() && self.figure != Some(Drawn::Trace)),
+            ("--a", self.asked.a.is_some()),
+            ("--b", self.asked.b.is_some()),
         ];
         unused(&given, "this result is of all tongues; leave it out")
     }
@@ -242,14 +220,12 @@ impl Args {
     }
 
     fn stiffness(&self) -> Result<Stiffness> {
-        Stiffness::new(self.rho.clone(), self.lambda1.clone(), self.lambda2.clone())
+        Stiffness::new(self.rho.clone(), self.asked.lambda1.clone(), self.asked.lambda2.clone())
     }
 
     fn question(&self, wanted: Wanted) -> Result<Stream> {
-        let (h1_range, h2_range) = (self.h1_range.clone(), self.h2_range.clone());
-        let (m, a, b, digits) = (self.m.clone(), self.a, self.b, self.digits);
-        let all = Asked::of(self.ratios()?, self.stiffness()?);
-        Stream::new(Asked { h1_range, h2_range, m, a, b, digits, ..all }, wanted)
+        let ((ratio, max_sum), rho) = (self.ratios()?.fields(), self.stiffness()?.rho);
+        Stream::new(Asked { ratio, max_sum, rho, ..self.asked.clone() }, wanted)
     }
 
     /// The groups of `--columns`, where it names groups and not columns.
@@ -263,10 +239,10 @@ impl Args {
             (None, _) if format == Format::Latex => Wanted { family: true, ..Wanted::default() },
             (None, _) => Wanted { growth: self.max_sum.is_none(), ..Wanted::all() },
             (Some(names), None) => {
-                let lambda1 = self.lambda1.clone();
+                let lambda1 = self.asked.lambda1.clone();
                 needed(
                     names,
-                    &tongue::Request { lambda1, digits: self.digits, ..tongue::Request::default() },
+                    &tongue::Request { lambda1, digits: self.asked.digits, ..tongue::Request::default() },
                 )?
             }
             (Some(_), Some(list)) => {

@@ -25,19 +25,6 @@ pub fn propagator<S: Ring>(h1: S, m: u64, lambda1: S, lambda2: S) -> Matrix2<S> 
     &slow * power(verlet::velocity_form(h1, lambda1), m) * &slow
 }
 
-/// (Q_fast)^m = G R(m th) G⁻¹, with G = diag(1, sin(th)/h1) and R(m th) = [[cos, sin], [−sin, cos]].
-///
-/// Rounded (`f64`): for comparison with the exact power. NaN unless 0 < h1² L1 < 4.
-pub fn rotated(h1: f64, m: u64, lambda1: f64) -> Matrix2<f64> {
-    let s = h1 * h1 * lambda1;
-    let (sin, cos) = ((s * (1.0 - s / 4.0)).sqrt(), 1.0 - s / 2.0);
-    let (sin_m, cos_m) = (m as f64 * sin.atan2(cos)).sin_cos();
-    let g = sin / h1;
-    Matrix2::new(1.0, 0.0, 0.0, g)
-        * Matrix2::new(cos_m, sin_m, -sin_m, cos_m)
-        * Matrix2::new(1.0, 0.0, 0.0, 1.0 / g)
-}
-
 /// Q^m by repeated squaring: about 2 log2 m matrix products.
 pub fn power<S: Ring>(mut q: Matrix2<S>, mut m: u64) -> Matrix2<S> {
     let mut result = Matrix2::new(S::one(), S::zero(), S::zero(), S::one());

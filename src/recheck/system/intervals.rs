@@ -51,8 +51,7 @@ rows! {
 
 impl Row {
     fn stretch(&self) -> Checked<Stretch> {
-        let known = [Holds::Stable, Holds::Unstable, Holds::NotTold];
-        let verdict = known.into_iter().find(|own| own.name() == self.verdict);
+        let verdict = Holds::ALL.into_iter().find(|own| own.name() == self.verdict);
         let verdict = verdict.ok_or_else(|| Fault::Wrong(format!("{} is no verdict", self.verdict)))?;
         Ok(Stretch { lo: self.lo, hi: self.hi, verdict })
     }
@@ -203,7 +202,7 @@ impl Decided<'_> {
 const HALF: &str = "the half period in doubles, kick by kick, at five places of each stretch; the order of Krein's signs between them";
 const STEP: &str = "the growth of the dense step in doubles, at five places of each stretch";
 
-/// What the first leaves.
+/// The part of the claim that half periods at five places leave open.
 const BETWEEN: &str =
     "that nothing grows between these places where the order of the signs is the same at both";
 

@@ -3,6 +3,7 @@
 use num_traits::Signed;
 
 use super::rows::{Edge, Input};
+use crate::number::rational::simplest;
 use crate::number::{Ball, Cyclotomic, Laurent, Ratio, Rational, Ring, Sign};
 use crate::propagator::TwoClocks;
 use crate::recheck::context::{Checked, Fault, holds};
@@ -149,13 +150,4 @@ impl Zero<'_> {
             format!("{}: p theta = m pi lies elsewhere", self.name)
         })
     }
-}
-
-/// The rational of the least denominator in an interval of positive ends: the continued fraction that both ends share.
-pub fn simplest(lo: &Rational, hi: &Rational) -> Rational {
-    let whole = lo.floor();
-    if whole == *lo || &whole + fraction(1, 1) <= *hi {
-        return lo.ceil();
-    }
-    &whole + simplest(&(hi - &whole).recip(), &(lo - &whole).recip()).recip()
 }

@@ -14,5 +14,4 @@ mod edge;
 mod listing;
 mod rows;
 
-pub use edge::simplest;
 pub use rows::{Claim, Tongue};

@@ -21,6 +21,7 @@ const UNKNOWN: [&str; 2] = [
 pub(super) fn document(findings: &DirectFindings, reading: Option<&Reading>, notes: &[String]) -> Document {
     let (rows, ladder) = (rows(findings), ladder(findings));
     let best = &findings.schemes[0];
+    let step = advised(&best.scheme, &best.safe, &best.largest);
     let document = Document::new("advise-direct")
         .entry("asymmetries", findings.asymmetries.clone())
         .entry("accuracy", findings.accuracy)
@@ -30,12 +31,8 @@ pub(super) fn document(findings: &DirectFindings, reading: Option<&Reading>, not
         .entry("rows", rows.to_json_rows())
         .entry("ladder", ladder.to_json_rows())
         .entry("published", published(FASTEST, |parts| (findings.fastest / parts as f64).into()))
-        .entry("unknown", UNKNOWN.to_vec());
-    let document = match reading {
-        Some(reading) => document
-            .entry("engine", tables::engine(advised(&best.scheme, &best.safe, &best.largest), reading)),
-        None => document,
-    };
+        .entry("unknown", UNKNOWN.to_vec())
+        .entries(reading.map(|own| ("engine", tables::engine(step, own))));
     let has_friction = findings.friction.is_some();
     let shown = |key: &str| match key {
         "damped" | "masked" => has_friction,

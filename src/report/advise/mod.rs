@@ -73,10 +73,8 @@ fn of_periods(advice: &Advice, reading: Option<&Reading>) -> Document {
     let document = document.long_rows(rows).for_people(row_table(advice, false));
     let document = levers::add(document, advice.levers.as_ref()).and_rows(modes);
     let document = if pairs.rows().is_empty() { document } else { document.and_rows(pairs) };
-    let document = match reading {
-        Some(reading) => document.entry("engine", engine(lines::of_answer(&advice.schemes[0]), reading)),
-        None => document,
-    };
+    let step = lines::of_answer(&advice.schemes[0]);
+    let document = document.entries(reading.map(|own| ("engine", engine(step, own))));
     document.summary(&lines::of(advice, reading))
 }
 

@@ -18,12 +18,9 @@ pub(super) fn document(findings: &Findings, reading: Option<&Reading>, notes: &[
     let removed = findings.removed.as_ref();
     let fastest = &findings.groups[0];
     let (groups, rows, intervals) = (groups(findings), rows(findings), intervals(findings));
-    let document = Document::new("advise-system");
-    let document = match findings.between.as_slice() {
-        [] => document,
-        between => document.entry("between_periods", between.to_vec()),
-    };
-    let document = document
+    let (best, between) = (&findings.schemes[0], &findings.between);
+    let document = Document::new("advise-system")
+        .entries((!between.is_empty()).then(|| ("between_periods", between.clone())))
         .entry("rigid_motions.count", removed.map(|own| own.count))
         .entry("rigid_motions.found_by", removed.map(|own| own.found_by))
         .entry("accuracy", findings.accuracy)
@@ -32,17 +29,13 @@ pub(super) fn document(findings: &Findings, reading: Option<&Reading>, notes: &[
         .entry("rows", rows.to_json_rows())
         .entry("intervals", intervals.to_json_rows())
         .entry("published", published(called(fastest), |parts| (fastest.period.0 / parts as f64).into()))
-        .entry("unknown", UNKNOWN.to_vec());
-    let best = &findings.schemes[0];
-    let document = match reading {
-        Some(reading) => document.entry("engine", tables::engine(advised_step(best), reading)),
-        None => document,
-    };
-    let document = document.long_rows(for_people(&rows, |key| match key {
-        "holds" => false,
-        "masked_above" | "damped" => findings.friction.is_some(),
-        _ => true,
-    }));
+        .entry("unknown", UNKNOWN.to_vec())
+        .entries(reading.map(|own| ("engine", tables::engine(advised_step(best), own))))
+        .long_rows(for_people(&rows, |key| match key {
+            "holds" => false,
+            "masked_above" | "damped" => findings.friction.is_some(),
+            _ => true,
+        }));
     super::levers::add(document, findings.levers.as_ref())
         .and_rows(for_people(&intervals, |_| true))
         .and_rows(for_people(&groups, |_| true))

@@ -1,6 +1,7 @@
 //! How wide a table is, and what fits.
 
 use super::typeset::{escaped, shown};
+use crate::named::named;
 use crate::report::table::{Align, Column, Table};
 
 /// The widths, in points, of a column of a two-column article on A4 and of the text of a one-column one, both in
@@ -17,24 +18,17 @@ const SIZES: [(&str, f64, f64); 4] = [
     ("\\scriptsize\\setlength{\\tabcolsep}{4pt}", 0.8, 4.0),
 ];
 
-/// The environment of a table that is not longer than a page.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
-pub enum Float {
-    /// As wide as the column it stands in; in an article of two columns a wide one runs over.
-    #[cfg_attr(feature = "cli", value(name = "table"))]
-    Column,
-    /// Across both columns of an article of two.
-    #[cfg_attr(feature = "cli", value(name = "table*"))]
-    Page,
-}
-
-impl Float {
-    fn name(self) -> &'static str {
-        match self {
-            Float::Column => "table",
-            Float::Page => "table*",
-        }
+named! {
+    /// The environment of a table that is not longer than a page.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+    pub enum Float {
+        /// As wide as the column it stands in; in an article of two columns a wide one runs over.
+        #[cfg_attr(feature = "cli", value(name = "table"))]
+        Column = "table",
+        /// Across both columns of an article of two.
+        #[cfg_attr(feature = "cli", value(name = "table*"))]
+        Page = "table*",
     }
 }
 

@@ -31,7 +31,7 @@ pub fn document(tally: &MapTally, rows: Option<Table>) -> Document {
         format!("  decided by {} {filter}, {} {refine}, {} {exact}", tiers[0], tiers[1], tiers[2]),
     ];
     lines.extend(tally.lines());
-    let mut document = Document::new("map")
+    let document = Document::new("map")
         .entry("pairs", counts.pairs)
         .entry("stable", counts.stable)
         .entry("unstable", counts.unstable)
@@ -41,10 +41,8 @@ pub fn document(tally: &MapTally, rows: Option<Table>) -> Document {
         // The kicks composed: the cost of the map, the same on every machine.
         .entry("work.kicks", tally.counters.kicks)
         .entry("work.kicks_again", tally.counters.kicks_again)
-        .entry("work.escalated", tally.counters.escalated);
-    for (key, value) in tally.entries() {
-        document = document.entry(key, value);
-    }
+        .entry("work.escalated", tally.counters.escalated)
+        .entries(tally.entries());
     match rows {
         Some(table) => document.long_rows(table),
         None => document,

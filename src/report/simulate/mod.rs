@@ -36,19 +36,15 @@ pub fn document(run: &Run) -> Document {
             "  growth rate, measured        none: the run overflows".into()
         },
     ];
-    let document = Document::new("simulate")
+    if let Some(off) = run.displacement {
+        lines.push(format!("  growth, about the integrator's own orbit, {off:.3e} from the equilibrium"));
+    }
+    Document::new("simulate")
         .entry("growth_rate_predicted", run.predicted)
         .entry("growth_rate_measured", run.measured)
         .entry("linear", run.linear)
-        .entry("irreversibility", run.irreversibility);
-    let document = match run.displacement {
-        Some(off) => {
-            lines.push(format!("  growth, about the integrator's own orbit, {off:.3e} from the equilibrium"));
-            document.entry("own_orbit", serde_json::json!({"displacement": off}))
-        }
-        None => document,
-    };
-    document
+        .entry("irreversibility", run.irreversibility)
+        .entries(run.displacement.map(|off| ("own_orbit", serde_json::json!({"displacement": off}))))
         .rows(record().table("series", "Energy, momentum and amplitude over time", &run.series))
         .summary_alone(&lines)
 }

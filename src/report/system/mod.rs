@@ -51,13 +51,9 @@ pub fn document(analysis: &Analysis, beside: &Beside) -> Document {
         .entry("growth_rate", analysis.growth_rate().map(enclosure))
         .entry("rigid_modes", analysis.rigid_modes.len())
         .entry("parts", parts().map(part).collect::<Vec<_>>())
-        .entry("warnings", analysis.warnings.clone());
-    let document = match &analysis.measured {
-        Some(own) => document.entry("measured", measured::value(own)),
-        None => document,
-    };
-    let entries = beside::entries(beside, analysis).into_iter();
-    let document = entries.fold(document, |document, (key, value)| document.entry(key, value));
+        .entry("warnings", analysis.warnings.clone())
+        .entries(analysis.measured.as_ref().map(|own| ("measured", measured::value(own))))
+        .entries(beside::entries(beside, analysis));
     document.long_rows(table).summary_alone(&lines(analysis, beside))
 }
 

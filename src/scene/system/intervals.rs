@@ -202,7 +202,7 @@ impl SystemScene {
         Ok((level, factor))
     }
 
-    /// The largest growth rate at each value of the number, per unit time, rounded; `None` where it is not told.
+    /// The largest growth rate at each value of the number, per unit time, rounded; `None` where it is not known.
     ///
     /// # Errors
     /// As [`SystemScene::intervals`] and [`Model::decide`].

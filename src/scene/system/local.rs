@@ -112,7 +112,7 @@ impl MeshDocument {
         levels.iter().enumerate().map(level).collect()
     }
 
-    /// Those of all nodes of some elements.
+    /// The degrees of freedom of all nodes of some elements.
     fn degrees_of_freedom(
         &self,
         elements: &BTreeSet<usize>,

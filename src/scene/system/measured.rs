@@ -245,20 +245,20 @@ impl Document {
         self.potentials.iter().any(|own| matches!(own.stiffness, Reference::Csr { .. }))
     }
 
-    /// One of each degree of freedom, where any are given.
+    /// The mass of each degree of freedom, where masses are given.
     pub fn masses(&self, n: usize, arrays: &Arrays) -> Result<Option<Vec<f64>>> {
         let masses = self.masses.as_ref().map(|at| at.read("masses", arrays)).transpose()?;
         masses.map(|own| spread(own.into_values(), n)).transpose()
     }
 
-    /// Those of the particles, where any are given; and that what is said of particles fits to them.
+    /// The positions of the particles, where they are given. Elements and bonds are checked against the number of particles.
     pub fn positions(&self, n: usize, arrays: &Arrays) -> Result<Option<Vec<[f64; 3]>>> {
         let positions = self.positions.as_ref().map(|at| at.read("positions", arrays)).transpose()?;
         let positions = positions.map(|own| triples(&own.into_values(), n)).transpose()?;
         self.check_atoms(n).map(|()| positions)
     }
 
-    /// That of the file, or the usual one.
+    /// The accuracy that the file gives, or the usual one.
     pub fn accuracy(&self) -> Result<f64> {
         let given = self.accuracy.as_ref().map(|number| number.read("accuracy")).transpose()?;
         Ok(given.map_or(USUAL_ACCURACY, |own| to_f64(&own)))

@@ -138,7 +138,7 @@ impl SystemFile {
         Ok(SystemFile { source: json::from_str(text).map_err(no_system)?, text: Some(text.into()) })
     }
 
-    /// The same with other texts in some of its fields, where they are given.
+    /// This file with other texts in some of its fields, where they are given.
     #[must_use]
     pub fn with<const N: usize>(&self, fields: [(&str, Option<String>); N]) -> SystemFile {
         fields.into_iter().filter_map(|(key, own)| Some((key, own?))).fold(
@@ -189,7 +189,7 @@ impl SystemScene {
         SystemScene::read_in("", text)
     }
 
-    /// The same, as [`SystemFile::read`].
+    /// Reads a system from a text whose arrays are in a folder or in memory, as [`SystemFile::read`].
     ///
     /// # Errors
     /// As [`SystemScene::read`].
@@ -197,7 +197,7 @@ impl SystemScene {
         SystemFile::of_text(text)?.read(arrays)
     }
 
-    /// The same from JSON.
+    /// Reads a system from JSON whose arrays are in a folder or in memory.
     ///
     /// # Errors
     /// As [`SystemFile::read`].
@@ -236,7 +236,7 @@ impl SystemScene {
         scene.asked(None, false, friction.as_ref(), method)
     }
 
-    /// The same with what is asked of it beside its file: another accuracy of measured stiffnesses, relative to their norms; their rigid
+    /// This system with what is asked of it beside its file: another accuracy of measured stiffnesses, relative to their norms; their rigid
     /// motions left in; friction of a rate per unit time, O in the middle of every drift; another integrator of two levels.
     ///
     /// # Errors
@@ -293,7 +293,7 @@ impl SystemScene {
         self.friction.as_ref().map(|rate| self.model.friction(rate, limits)).transpose()
     }
 
-    /// What each degree of freedom is called, where the file tells.
+    /// The name of each degree of freedom, where the file has names.
     pub fn labels(&self) -> Option<&[String]> {
         self.labels.as_deref()
     }

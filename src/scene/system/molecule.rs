@@ -54,7 +54,7 @@ impl SystemScene {
         Ok(Some(Direct::new(own.clone(), self.femtoseconds()?, names)))
     }
 
-    /// What the file tells of atoms.
+    /// The names of atoms, from the labels, elements and bonds of the file.
     fn names(&self, body: &Body) -> Result<Names> {
         #[derive(Deserialize)]
         struct Document {

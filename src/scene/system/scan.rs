@@ -178,7 +178,7 @@ impl SystemScene {
         (words.replace('_', " "), time)
     }
 
-    /// The same file with other numbers at some of its paths; `field` is what errors name.
+    /// This file with other numbers at some of its paths; `field` is what errors name.
     pub(crate) fn with(&self, field: &str, numbers: &[(&str, &Rational)]) -> Result<SystemScene> {
         let mut file = self.source.clone();
         for (path, value) in numbers.iter().filter(|(path, _)| *path != OUTER) {

@@ -9,7 +9,7 @@ use super::model::{Along, Rigid, beside};
 use crate::error::{Error, Result};
 use crate::number::rational::{from_f64_exact, to_f64};
 use crate::number::{Laurent, Rational, U};
-use crate::schedule::{Event, Schedule, Weight};
+use crate::schedule::{Event, Schedule};
 use crate::system::exact::decide::{MuCount, judged_blocks};
 use crate::system::half::float::FloatBlocks;
 use crate::system::half::norm;
@@ -68,7 +68,7 @@ pub fn decide_along(
 
 const NOT_DECIDED: &str = "doubles do not decide along the orbit";
 
-/// How much larger the accuracies are, each time, whose verdicts tell the margin.
+/// The factor between the accuracies whose verdicts enclose the margin.
 const FINER: f64 = 2.0;
 
 /// Margins beyond so many times the accuracy, or below its inverse, are not looked for.
@@ -174,9 +174,9 @@ impl Along {
                 for (clock, k) in event.clocks().zip(own) {
                     let two = Rational::from_integer(2.into());
                     let mean = |i: usize, j: usize| (exact(k[(i, j)]) + exact(k[(j, i)])) / &two;
-                    let step = self.step(clock)
-                        / if event.weight == Weight::Full { exact(1.0) } else { two.clone() };
-                    p -= DMatrix::from_fn(self.size(), self.size(), mean) * &x * step;
+                    p -= DMatrix::from_fn(self.size(), self.size(), mean)
+                        * &x
+                        * event.weight.of(&self.step(clock));
                 }
             }
             (x, p)
@@ -199,8 +199,7 @@ impl Along {
         let tick = to_f64(self.schedule.tick());
         let kick = |x: &DMatrix<f64>, event: &Event, own: &[DMatrix<f64>], v: &mut DMatrix<f64>| {
             for (clock, k) in event.clocks().zip(own) {
-                let share = if event.weight == Weight::Full { 1.0 } else { 0.5 };
-                *v -= weighted(k) * x * (share * to_f64(&self.step(clock)));
+                *v -= weighted(k) * x * (event.weight.share() * to_f64(&self.step(clock)));
             }
         };
         let events: Vec<Event> = self.schedule.half_period().collect();

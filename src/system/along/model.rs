@@ -83,7 +83,7 @@ impl Along {
         Along::of_events(masses, schedule, hessians)
     }
 
-    /// The same event by event.
+    /// From the Hessians of each event, those of its clocks in increasing order.
     pub(super) fn of_events(
         masses: &[f64],
         schedule: Schedule,
@@ -99,7 +99,7 @@ impl Along {
         Ok(Along { masses: masses.to_vec(), schedule, hessians, accuracy, rigid, clocks })
     }
 
-    /// The same with every Hessian known to this times the largest norm of those of its clock.
+    /// With every Hessian known to this times the largest norm of those of its clock.
     ///
     /// # Errors
     /// An accuracy that is not in (0, 1/10).
@@ -108,7 +108,7 @@ impl Along {
         Ok(Along { accuracy: Some(accuracy), ..self })
     }
 
-    /// The same without the rigid motions of a free molecule, whose atoms are at these positions where the orbit starts and where it turns: for
+    /// Without the rigid motions of a free molecule, whose atoms are at these positions where the orbit starts and where it turns: for
     /// forces that turn with the atoms.
     ///
     /// # Errors
@@ -158,7 +158,7 @@ impl Along {
         Err(Error::input("rigid", format!("{given:?}"), remedy))
     }
 
-    /// The same without the translations of a periodic box.
+    /// Without the translations of a periodic box.
     ///
     /// # Errors
     /// Masses that are not those of atoms of three coordinates.

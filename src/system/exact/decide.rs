@@ -39,8 +39,6 @@ pub struct ExactVerdict {
     pub kind: Kind,
     /// The eigenvalues μ of Bᵀ C by place, each counted once.
     pub roots: MuCount,
-    /// Bᵀ C, exactly.
-    pub half_product: DMatrix<Rational>,
 }
 
 /// The eigenvalues μ of Bᵀ C by place: λ + 1/λ = 2 + 4 μ.
@@ -182,7 +180,7 @@ fn estimate(system: &System, frame: &Frame, program: &IntegerProgram) -> u64 {
 fn judge(blocks: &IntegerBlocks) -> ExactVerdict {
     let (product, d) = (blocks.product(), &blocks.scale);
     let (kind, roots) = judged(&product, d, [&blocks.a, &blocks.b, &blocks.c, &blocks.d]);
-    ExactVerdict { kind, roots, half_product: product.map(|x| Rational::new(x, d.clone())) }
+    ExactVerdict { kind, roots }
 }
 
 /// The kind from S and the blocks A, B, C, D of the half period over ℚ.

@@ -201,13 +201,7 @@ impl<S: Ring> State<S> for Columns<S> {
     }
 
     fn kick(&mut self, i: usize, row: &Row<S>, weight: Weight) {
-        let weight = S::from_rational(&Rational::new(
-            (-1).into(),
-            match weight {
-                Weight::Full => 1.into(),
-                Weight::Half => 2.into(),
-            },
-        ));
+        let weight = S::from_rational(&weight.of(&-Rational::one()));
         for (j, a) in row {
             let factor = S::product(&weight, a);
             add(&mut self.p[i], &factor, &self.x[*j]);

@@ -217,7 +217,7 @@ impl State<f64> for Rows {
 
     fn kick(&mut self, i: usize, row: &Row<f64>, weight: Weight) {
         let m = self.columns;
-        let weight = if weight == Weight::Full { -1.0 } else { -0.5 };
+        let weight = -weight.share();
         self.enter(Side::Momenta, i);
         let before = self.p_norms[i];
         let mut size = before.sqrt();

@@ -100,7 +100,7 @@ pub(in crate::system) fn follow_proven<'a>(
     follow_looking(drifts, events, kick, |_, _| ())
 }
 
-/// The same, and `look` is shown every event and the rows of positions there, 2n columns each, within [`Propagated::error_on_the_way`].
+/// Follows with a bound, and shows `look` every event and the rows of positions there, 2n columns each, within [`Propagated::error_on_the_way`].
 pub(in crate::system) fn follow_looking<'a>(
     drifts: &Drifts,
     events: impl Iterator<Item = Event>,
@@ -230,7 +230,7 @@ impl Propagated {
     /// p ← p − w F x; more than the error. The sizes as in `drift`.
     fn kick(&mut self, stiff: &Stiff, weight: Weight, [x_size, p_size]: &mut [f64; 2]) -> Step {
         let columns = 2 * self.n;
-        let weight = if weight == Weight::Full { -1.0 } else { -0.5 };
+        let weight = -weight.share();
         let squares = match &stiff.stiffness {
             Stiffness::Rows(rows) => self.kick_rows(rows, weight),
             Stiffness::Whole(stiffness) => self.kick_whole(stiffness, weight),

@@ -8,10 +8,10 @@ use faer::Mat;
 use nalgebra::DMatrix;
 
 use super::model::Jacobians;
-use super::orbit::{Doubles, State, lead};
+use super::orbit::{Doubles, Strike, lead};
 use crate::number::rational::{from_f64_exact, to_f64};
 use crate::number::{Ball, Rational};
-use crate::schedule::{Event, Weight};
+use crate::schedule::KickDrift;
 use crate::system::friction::Damping;
 use crate::system::spectrum::discs::{Spectrum, components};
 
@@ -62,7 +62,7 @@ impl Jacobians {
         let whole = Mat::<f64>::identity(2 * n, 2 * n);
         let (x, v) = (whole.subrows(0, n).to_owned(), whole.subrows(n, n).to_owned());
         let mut state = Damped { rate, own: Doubles::new(self, x, v), tick: &self.tick };
-        lead(&self.schedule.symmetric_period().collect::<Vec<Event>>(), false, &mut state);
+        lead(self, self.schedule.symmetric_period(), &mut state);
         let (x, v) = (&state.own.x, &state.own.v);
         let period = Mat::from_fn(2 * n, 2 * n, |i, j| if i < n { x[(i, j)] } else { v[(i - n, j)] });
         (period, state.own.error())
@@ -98,7 +98,7 @@ struct Damped<'a> {
     own: Doubles<'a>,
 }
 
-impl State for Damped<'_> {
+impl KickDrift<Strike> for Damped<'_> {
     fn drift(&mut self, ticks: u64) {
         let time = self.tick * Rational::from_integer(ticks.into());
         let half = 0.5 * to_f64(&time);
@@ -108,7 +108,7 @@ impl State for Damped<'_> {
         self.own.moved(half);
     }
 
-    fn kick(&mut self, clock: usize, weight: Weight) {
-        self.own.kick(clock, weight);
+    fn kick(&mut self, strike: &Strike) {
+        self.own.kick(strike);
     }
 }

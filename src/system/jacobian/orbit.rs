@@ -9,35 +9,26 @@ use nalgebra::DMatrix;
 use super::model::Jacobians;
 use crate::number::rational::to_f64;
 use crate::number::{Rational, U};
-use crate::schedule::{Event, Weight};
+use crate::schedule::{Event, KickDrift, Kicks, Weight, reversed};
 use crate::system::half::norm;
 
-/// Positions and velocities, a column a solution.
-pub(super) trait State {
-    fn drift(&mut self, ticks: u64);
-    fn kick(&mut self, clock: usize, weight: Weight);
+/// A clock that kicks, and how much of its kick.
+pub(super) type Strike = (usize, Weight);
+
+/// Leads positions and velocities, a column a solution, through the events.
+pub(super) fn lead(
+    own: &Jacobians,
+    events: impl IntoIterator<Item = Event>,
+    state: &mut impl KickDrift<Strike>,
+) {
+    let strikes = |clock| [Weight::Full, Weight::Half].map(|weight| (clock, weight));
+    Kicks::of_clocks(0..own.clocks.len(), strikes).lead(events, state);
 }
 
-/// Events one after the other, or in the opposite order.
-pub(super) fn lead(events: &[Event], is_reversed: bool, state: &mut impl State) {
-    let mut one = |event: &Event| {
-        let drift = |state: &mut _| {
-            if event.drift > 0 {
-                State::drift(state, event.drift)
-            }
-        };
-        if !is_reversed {
-            drift(state);
-        }
-        event.clocks().for_each(|clock| state.kick(clock, event.weight));
-        if is_reversed {
-            drift(state);
-        }
-    };
-    match is_reversed {
-        false => events.iter().for_each(&mut one),
-        true => events.iter().rev().for_each(&mut one),
-    }
+/// The events of half a period, from t = 0 or back from T/2.
+fn events(own: &Jacobians, is_reversed: bool) -> Vec<Event> {
+    let events: Vec<Event> = own.schedule.half_period().collect();
+    if is_reversed { reversed(&events) } else { events }
 }
 
 /// Bounds on the errors of positions and velocities, in Frobenius's norm.
@@ -66,8 +57,7 @@ impl<'a> Doubles<'a> {
         let (one, zero) = (Mat::identity(n, n), Mat::zeros(n, n));
         let (x, v) = if is_reversed { (zero, one) } else { (one, zero) };
         let mut state = Doubles::new(own, x, v);
-        let events: Vec<_> = own.schedule.half_period().collect();
-        lead(&events, is_reversed, &mut state);
+        lead(own, events(own, is_reversed), &mut state);
         state
     }
 }
@@ -95,14 +85,14 @@ impl Doubles<'_> {
     }
 }
 
-impl State for Doubles<'_> {
+impl KickDrift<Strike> for Doubles<'_> {
     fn drift(&mut self, ticks: u64) {
         self.moved(to_f64(&(&self.own.tick * Rational::from_integer(ticks.into()))));
     }
 
-    fn kick(&mut self, clock: usize, weight: Weight) {
+    fn kick(&mut self, &(clock, weight): &Strike) {
         let clock = &self.own.clocks[clock];
-        let step = to_f64(&clock.step) * if weight == Weight::Full { 1.0 } else { 0.5 };
+        let step = to_f64(&clock.step) * weight.share();
         let (x, v) = (norm::frobenius(&self.x), norm::frobenius(&self.v));
         self.v -= step * (&clock.matrix * &self.x);
         // Sums of n products, the step, a product and a sum.
@@ -136,15 +126,15 @@ struct Exact<'a> {
     v: DMatrix<Rational>,
 }
 
-impl State for Exact<'_> {
+impl KickDrift<Strike> for Exact<'_> {
     fn drift(&mut self, ticks: u64) {
         let time = &self.own.tick * Rational::from_integer(ticks.into());
         self.x.iter_mut().zip(self.v.iter()).for_each(|(x, v)| *x += v * &time);
     }
 
-    fn kick(&mut self, clock: usize, weight: Weight) {
+    fn kick(&mut self, &(clock, weight): &Strike) {
         let clock = &self.own.clocks[clock];
-        let step = &clock.step / Rational::from_integer(if weight == Weight::Full { 1 } else { 2 }.into());
+        let step = weight.of(&clock.step);
         let moved = clock.rational().as_ref() * &self.x;
         self.v.iter_mut().zip(moved.iter()).for_each(|(v, a)| *v -= a * &step);
     }
@@ -158,12 +148,12 @@ pub(super) struct Blocks {
 
 /// The blocks of rational matrices, or of the doubles that stand for them.
 pub(super) fn exact(own: &Jacobians) -> Blocks {
-    let (n, events) = (own.size(), own.schedule.half_period().collect::<Vec<_>>());
+    let n = own.size();
     let half = |is_reversed: bool, starts_moving: bool| {
         let (one, zero) = (DMatrix::identity(n, n), DMatrix::zeros(n, n));
         let (x, v) = if starts_moving { (zero, one) } else { (one, zero) };
         let mut state = Exact { own, x, v };
-        lead(&events, is_reversed, &mut state);
+        lead(own, events(own, is_reversed), &mut state);
         (state.x, state.v)
     };
     let ((a, c), (b, d), (back, _)) = (half(false, false), half(false, true), half(true, true));

@@ -152,10 +152,6 @@ impl Kernel {
         Kernel { method, ..self }
     }
 
-    pub fn method(&self) -> Method {
-        self.method
-    }
-
     /// Upper bounds of the 2-norms of both stiffnesses, of sums of potentials that share a clock those of the sums of their norms: what all are
     /// known relative to.
     pub fn norms(&self) -> [f64; 2] {

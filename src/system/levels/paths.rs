@@ -40,7 +40,7 @@ impl Hessians {
         (self.size() as u64).saturating_pow(3).saturating_mul(cubes)
     }
 
-    /// Those of a scheme's actions, about: ten matrices, each reduced or factorized.
+    /// About the products that a scheme's actions take: ten matrices, each reduced or factorized.
     pub fn cost_of_paths(&self, inner_steps: u64) -> u64 {
         let rows = (self.size() as u64).saturating_mul(Hessians::nodes(inner_steps) as u64);
         rows.saturating_pow(3).saturating_mul(20)

@@ -32,7 +32,7 @@ impl Frame {
         Frame { rigid, kept }
     }
 
-    /// That of n degrees of freedom without rigid modes.
+    /// The frame of n degrees of freedom without rigid modes.
     pub fn whole(n: usize) -> Self {
         Frame { rigid: Vec::new(), kept: (0..n).collect() }
     }

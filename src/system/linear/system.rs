@@ -23,7 +23,7 @@ pub struct Potential {
 }
 
 impl Potential {
-    /// That of the stiffness K, its first kick at t = 0.
+    /// The potential of the stiffness K, its first kick at t = 0.
     pub fn new(stiffness: Symmetric, step: Rational) -> Self {
         Potential { stiffness, step, phase: Rational::default() }
     }

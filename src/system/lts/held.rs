@@ -70,7 +70,7 @@ impl SparseSubcycles {
         SparseSubcycles::within(masses, stiffness, levels, 0.0)
     }
 
-    /// As above, for entries that are each off by so much, relative to their size.
+    /// As [`SparseSubcycles::new`], for entries that are each off by so much, relative to their size.
     pub(super) fn within(
         masses: &[f64],
         stiffness: &Triplets,
@@ -140,7 +140,7 @@ impl SparseSubcycles {
         self.first().map(|own| own.0)
     }
 
-    /// The same, and whether all that is proven at its upper end is the multiplier −1.
+    /// The first unstable step, and whether all that is proven at its upper end is the multiplier −1.
     pub(super) fn first(&self) -> Option<((f64, f64), bool)> {
         let ((lo, hi), (_, singular)) = (self.edge()?, self.end?);
         Some(((lo, hi.unwrap_or(singular)), hi.is_none())).filter(|own| own.0.1.is_finite())

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use num_traits::Zero;
 
 use crate::error::{Error, Result};
+use crate::named::named;
 use crate::number::rational::{ratio, to_f64};
 use crate::number::{Rational, U};
 use crate::system::levels::sparse::Pattern;
@@ -18,25 +19,16 @@ pub struct Level {
     pub substeps: u32,
 }
 
-/// The meaning of levels of steps.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Scheme {
-    /// Leapfrog with local time steps: forces on what is not fine stand still (Diaz and Grote 2009).
-    Lts,
-    /// Explicit Newmark subcycling: what is not fine moves on with its velocity (Belytschko, Yen and Mullen 1979).
-    Newmark,
-    /// Asynchronous variational integrators: elements kick with steps of their own (Lew, Marsden, Ortiz and West 2003).
-    Avi,
-}
-
-impl Scheme {
-    /// As files and documents name it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Scheme::Lts => "lts",
-            Scheme::Newmark => "newmark",
-            Scheme::Avi => "avi",
-        }
+named! {
+    /// The meaning of levels of steps.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum Scheme {
+        /// Leapfrog with local time steps: forces on what is not fine stand still (Diaz and Grote 2009).
+        Lts = "lts",
+        /// Explicit Newmark subcycling: what is not fine moves on with its velocity (Belytschko, Yen and Mullen 1979).
+        Newmark = "newmark",
+        /// Asynchronous variational integrators: elements kick with steps of their own (Lew, Marsden, Ortiz and West 2003).
+        Avi = "avi",
     }
 }
 
@@ -97,7 +89,7 @@ impl Level {
         levels.iter().filter(|own| own.fine.contains(&i)).map(|own| own.substeps).product()
     }
 
-    /// As above, for a system of one clock without a phase and with lumped masses.
+    /// As [`Level::check`], of a system of one clock without a phase and with lumped masses.
     ///
     /// # Errors
     /// A mass matrix that is not diagonal, several clocks, a phase; as [`Level::check`].

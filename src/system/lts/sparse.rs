@@ -98,7 +98,7 @@ impl SparseSteps {
         SparseSteps::within(masses, stiffness, levels, 0.0)
     }
 
-    /// As above, for entries that are each off by so much, relative to their size.
+    /// As [`SparseSteps::new`], for entries that are each off by so much, relative to their size.
     pub(super) fn within(
         masses: &[f64],
         stiffness: &Triplets,

@@ -116,7 +116,7 @@ impl Subcycles {
         self.first().map(|own| own.0)
     }
 
-    /// The same, and whether all that is proven at its upper end is the multiplier −1.
+    /// The first unstable step, and whether all that is proven at its upper end is the multiplier −1.
     fn first(&self) -> Option<((f64, f64), bool)> {
         let (clock, mass) = (self.plain.clocks().first()?, self.plain.mass());
         let stiffness = &clock.stiffness;
@@ -151,7 +151,7 @@ impl std::str::FromStr for Scheme {
     /// # Errors
     /// Another name.
     fn from_str(name: &str) -> Result<Scheme> {
-        let found = [Scheme::Lts, Scheme::Newmark, Scheme::Avi].into_iter().find(|own| own.name() == name);
+        let found = Scheme::ALL.into_iter().find(|own| own.name() == name);
         found.ok_or_else(|| {
             let remedy = "name lts (leapfrog with local time steps), newmark (subcycling with held velocities) or avi (a clock for each element)";
             Error::input("scheme", name, remedy)

@@ -115,7 +115,7 @@ impl Model {
         }
     }
 
-    /// Those of [`Model::nearest_unstable`].
+    /// The products of doubles that [`Model::nearest_unstable`] takes, roughly.
     ///
     /// # Errors
     /// As [`Family::cost`].

@@ -54,7 +54,6 @@ pub struct MeasuredSystem {
 pub struct TwoLevels<'a> {
     pub kernel: &'a Kernel,
     pub body: &'a Body,
-    pub inner: Rational,
     pub outer: Rational,
     /// Every stiffness is known to this times its norm.
     pub accuracy: f64,
@@ -354,10 +353,10 @@ impl MeasuredSystem {
         Ok(Some(hessians.growth_of_step(self.method, outer.step(), inner_steps)))
     }
 
-    /// The eigenbasis with the inner and the outer step, and how well the stiffnesses are known.
+    /// The eigenbasis with the outer step, and how well the stiffnesses are known.
     pub(super) fn two_levels(&self) -> Result<TwoLevels<'_>> {
-        let [inner, outer] = self.two_steps()?;
-        Ok(TwoLevels { kernel: self.kernel()?, body: &self.body, inner, outer, accuracy: self.accuracy })
+        let [_, outer] = self.two_steps()?;
+        Ok(TwoLevels { kernel: self.kernel()?, body: &self.body, outer, accuracy: self.accuracy })
     }
 
     /// The inner and the outer step.

@@ -68,7 +68,7 @@ impl PiSystem {
         Ok(PiSystem { system, terms, near })
     }
 
-    /// Those of a part of the system.
+    /// A part of the system, with the same powers of π.
     pub(super) fn of_part(&self, system: System) -> Result<Self> {
         PiSystem::of(system, self.terms.clone())
     }

@@ -235,7 +235,7 @@ impl Action {
             }
         }
         for (time, clocks, weight) in &self.events {
-            let weight = if *weight == Weight::Full { -1.0 } else { -0.5 };
+            let weight = -weight.share();
             for (i, row) in clocks.iter().flat_map(|&clock| &self.kicks[clock]) {
                 let Some(a) = unknown(*i, *time) else { continue };
                 let own = row.iter().filter(|(j, _)| j <= i);

@@ -30,7 +30,7 @@ impl Inertia {
         }
     }
 
-    /// That of c times the matrix, c of the sign given.
+    /// The inertia of c times the matrix, c of the sign given.
     pub fn times(self, sign: i8) -> Inertia {
         if sign >= 0 { self } else { Inertia { positive: self.negative, negative: self.positive, ..self } }
     }

@@ -43,7 +43,7 @@ pub(in crate::system) struct Spectrum {
 }
 
 impl Spectrum {
-    /// That of the half period; `None` where the eigenvalue iteration fails: never seen, but not excluded.
+    /// The spectrum of the half period; `None` where the eigenvalue iteration fails: never seen, but not excluded.
     pub fn new(blocks: &FloatBlocks) -> Option<Spectrum> {
         let (s, s_error) = product(blocks);
         Spectrum::of(s, s_error)
@@ -54,7 +54,7 @@ impl Spectrum {
         scales.iter().enumerate().map(|(k, scale)| self.vectors[(k, i)] / scale).collect()
     }
 
-    /// That of S, which is within `s_error` (2-norm) of the true one; `None` as of [`Spectrum::new`].
+    /// The spectrum of S, which is within `s_error` (2-norm) of the true one; `None` as of [`Spectrum::new`].
     pub fn of(s: Mat<f64>, s_error: Option<f64>) -> Option<Spectrum> {
         let m = s.nrows();
         if (0..m).any(|j| (0..m).any(|i| !s[(i, j)].is_finite())) {

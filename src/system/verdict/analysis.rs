@@ -130,7 +130,7 @@ impl Part {
         Some(rate::per_time(complete, &self.period))
     }
 
-    /// That of one of its multipliers.
+    /// The growth rate of one of its multipliers, enclosed, per unit time.
     pub fn growth_rate_of(&self, multiplier: &Multiplier) -> Option<(f64, f64)> {
         match self.kind {
             Some(Kind::Hyperbolic) | None => Some(rate::per_time(multiplier.growth?, &self.period)),
@@ -179,7 +179,7 @@ impl Analysis {
         self.parts.iter().all(|part| part.multipliers.len() >= part.size)
     }
 
-    /// That of a system which is one part, all of its degrees of freedom its own.
+    /// The analysis of a system that is one part.
     pub(in crate::system) fn of_part(part: Part, clocks: usize, warnings: Vec<String>) -> Self {
         Analysis {
             size: part.dofs.len(),

@@ -121,7 +121,7 @@ pub fn verdict_cost(system: &System) -> u64 {
     compose::cost(system).saturating_add(n.saturating_pow(3).saturating_mul(per_cube))
 }
 
-/// That of a system of these parts: exponential growth is one whatever the others do.
+/// The kind of a system of these parts: it grows exponentially where one of them does.
 fn severest(kinds: impl Iterator<Item = Option<Kind>>) -> Option<Kind> {
     // One that is not decided may grow.
     let place = |kind: &Option<Kind>| {

@@ -67,7 +67,7 @@ pub(in crate::system) struct Dominant {
     z: Vec<c64>,
 }
 
-/// The same in an answer: of the first half of z, the positions, each by its own scale.
+/// The mode as answers have it: the first half of z, the positions, each by its own scale.
 pub(in crate::system) fn growing(
     Dominant { lambda, z }: Dominant,
     scale: impl Fn(usize) -> f64,
@@ -102,7 +102,7 @@ impl State<f64> for Column {
 
     fn kick(&mut self, i: usize, row: &Row<f64>, weight: Weight) {
         let force: f64 = row.iter().map(|(j, a)| a * self.x[*j]).sum();
-        self.p[i] -= if weight == Weight::Full { force } else { force / 2.0 };
+        self.p[i] -= weight.share() * force;
     }
 }
 

@@ -1,6 +1,7 @@
 //! How far a verdict on measured stiffnesses stands.
 
 use crate::error::{Error, Result};
+use crate::named::named;
 use crate::verdict::Kind;
 
 /// Rigid motions that were projected out of every potential.
@@ -27,15 +28,17 @@ pub(in crate::system) fn check_accuracy(accuracy: f64) -> Result<()> {
     Err(Error::input("accuracy", accuracy, "give a positive number below 1/10, as 1e-6"))
 }
 
-/// Whether a verdict holds for every matrix within the accuracy of the data.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Holds {
-    /// Stable for all of them.
-    Stable,
-    /// Unstable for all of them.
-    Unstable,
-    /// The data cannot decide: some matrices are stable and some are not, or no verdict was proven for all.
-    NotTold,
+named! {
+    /// Whether a verdict holds for every matrix within the accuracy of the data.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum Holds {
+        /// Stable for all of them.
+        Stable = "stable",
+        /// Unstable for all of them.
+        Unstable = "unstable",
+        /// The data cannot decide: some matrices are stable and some are not, or no verdict was proven for all.
+        NotTold = "the data do not tell",
+    }
 }
 
 impl From<Option<Kind>> for Holds {
@@ -52,15 +55,6 @@ impl Holds {
     /// Whether it is stable, where that is decided.
     pub fn is_stable(self) -> Option<bool> {
         (self != Holds::NotTold).then_some(self == Holds::Stable)
-    }
-
-    /// The name in documents.
-    pub fn name(self) -> &'static str {
-        match self {
-            Holds::Stable => "stable",
-            Holds::Unstable => "unstable",
-            Holds::NotTold => "the data do not tell",
-        }
     }
 }
 

@@ -202,7 +202,7 @@ impl Edges {
         self.sharpened(edge, &Enclosure::from(edge), digits)
     }
 
-    /// As above, from an enclosure that may hold more digits than the edge. Where it holds another zero, or one on its
+    /// The edge to `digits` significant digits, from an enclosure that may be narrower than the edge's own. Where it holds another zero, or one on its
     /// end, proven counts identify the edge.
     pub fn sharpened(&self, edge: &Edge, start: &Enclosure, digits: u32) -> Result<Enclosure> {
         self.precise.fetch_add(1, Ordering::Relaxed);

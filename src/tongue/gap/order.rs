@@ -66,7 +66,7 @@ impl Gap {
         Gap::thin(edges, open, m, lower, upper)
     }
 
-    /// As above, for edges whose enclosures overlap or nearly do.
+    /// The tongue between two edges whose enclosures overlap or nearly do.
     fn thin(edges: &Edges, open: &Openness, m: u64, a: Edge, b: Edge) -> Result<Gap> {
         if edges.rho().is_zero() {
             return Ok(Gap { m, lower: a, upper: Some(b), closed: true, width: (0.0, 0.0) });

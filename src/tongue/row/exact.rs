@@ -3,6 +3,7 @@
 use num_traits::Zero;
 
 use crate::error::Result;
+use crate::named::named;
 use crate::number::{Ratio, Rational, rational};
 use crate::tongue::edge::{Edge, Edges, Enclosure, simplest};
 use crate::tongue::string::Entry;
@@ -14,7 +15,7 @@ pub enum ExactEdge {
     Rational(Rational),
     /// p θ = m π exactly: s = 4 sin²(m π/(2p)).
     Resonance,
-    /// As above, for the angle of the slow clock, q θ' = m π: s ρ (p/q)² = 4 sin²(m π/(2q)).
+    /// q θ' = m π exactly, θ' the angle of the slow clock: s ρ (p/q)² = 4 sin²(m π/(2q)).
     SlowResonance,
 }
 
@@ -44,24 +45,18 @@ fn rational_edge(edges: &Edges, edge: &Edge) -> Result<Option<Rational>> {
     Ok(is_zero.then_some(candidate))
 }
 
-/// A clock whose own resonance an edge sits on exactly.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Resonance {
-    /// p θ = m π: the paper's eq. (9), q h2 = m T½.
-    Fast,
-    /// q θ' = m π, θ' the slow clock's angle: the same with the clocks exchanged.
-    Slow,
+named! {
+    /// A clock whose own resonance an edge sits on exactly.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+    pub enum Resonance {
+        /// p θ = m π: the paper's eq. (9), q h2 = m T½.
+        Fast = "p theta = m pi",
+        /// q θ' = m π, θ' the slow clock's angle: the same with the clocks exchanged.
+        Slow = "q theta' = m pi",
+    }
 }
 
 impl Resonance {
-    /// The name in documents.
-    pub fn name(self) -> &'static str {
-        match self {
-            Resonance::Fast => "p theta = m pi",
-            Resonance::Slow => "q theta' = m pi",
-        }
-    }
-
     /// The resonance on which an edge in closed form sits, if any; a rational edge does where its angle is
     /// π/3, π/2 or 2π/3.
     pub fn of(ratio: Ratio, m: u64, rho: &Rational, edge: &ExactEdge) -> Option<Resonance> {

@@ -4,32 +4,22 @@ use num_traits::{Signed, Zero};
 
 use super::exact::{ExactEdge, exact_edge};
 use crate::error::Result;
+use crate::named::named;
 use crate::number::{Ball, Cyclotomic, Ring, Sign, rational};
 use crate::propagator::TwoClocks;
 use crate::tongue::edge::{Edge, Edges};
 use crate::tongue::gap::Gap;
 use crate::verdict::{Kind, Limits, decide};
 
-/// Where the predicted point lies.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Side {
-    Below,
-    OnLower,
-    Inside,
-    OnUpper,
-    Above,
-}
-
-impl Side {
-    /// The name in documents.
-    pub fn name(self) -> &'static str {
-        match self {
-            Side::Below => "below",
-            Side::OnLower => "on the lower edge",
-            Side::Inside => "inside",
-            Side::OnUpper => "on the upper edge",
-            Side::Above => "above",
-        }
+named! {
+    /// Where the predicted point lies.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+    pub enum Side {
+        Below = "below",
+        OnLower = "on the lower edge",
+        Inside = "inside",
+        OnUpper = "on the upper edge",
+        Above = "above",
     }
 }
 

@@ -1,27 +1,27 @@
 //! The four eigenvalue problems of a half period.
 
+use crate::named::named;
 use std::ops::RangeInclusive;
 
 /// The range of indices that is wanted of each of the four problems, in the order of [`Entry::ALL`].
 pub(crate) type Indices = [Option<RangeInclusive<usize>>; 4];
 
-/// An entry of the half-period propagator, as the problem whose eigenvalues are its zeros.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Entry {
-    /// Even at 0 (free), odd at T/2 (pinned).
-    A,
-    /// Odd at both ends.
-    B,
-    /// Even at both ends; its zero s = 0, a rigid shift, is not counted.
-    C,
-    /// Odd at 0, even at T/2.
-    D,
+named! {
+    /// An entry of the half-period propagator, as the problem whose eigenvalues are its zeros.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+    pub enum Entry {
+        /// Even at 0 (free), odd at T/2 (pinned).
+        A = "A",
+        /// Odd at both ends.
+        B = "B",
+        /// Even at both ends; its zero s = 0, a rigid shift, is not counted.
+        C = "C",
+        /// Odd at 0, even at T/2.
+        D = "D",
+    }
 }
 
 impl Entry {
-    /// All four.
-    pub const ALL: [Entry; 4] = [Entry::A, Entry::B, Entry::C, Entry::D];
-
     /// Whether the string is free at t = 0.
     pub(crate) fn starts_free(self) -> bool {
         matches!(self, Entry::A | Entry::C)
@@ -50,15 +50,5 @@ impl Entry {
     /// The two entries whose zeros bound the tongues of odd or of even m.
     pub fn of_tongue(odd: bool) -> [Entry; 2] {
         if odd { [Entry::A, Entry::D] } else { [Entry::B, Entry::C] }
-    }
-
-    /// The entry's name in documents.
-    pub fn name(self) -> &'static str {
-        match self {
-            Entry::A => "A",
-            Entry::B => "B",
-            Entry::C => "C",
-            Entry::D => "D",
-        }
     }
 }

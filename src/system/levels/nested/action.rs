@@ -2,7 +2,6 @@
 
 use super::levels::{ROUNDINGS, Steps};
 use crate::parallel::both;
-use crate::schedule::Weight;
 use crate::system::signs::envelope::{Envelope, Sign};
 
 /// Stiffnesses that bound others: factor (K + shift I) of each level.
@@ -15,7 +14,7 @@ impl Steps<'_> {
         self.chain(step, bounds, &free.map(|node| (node, 1.0)).collect::<Vec<_>>())
     }
 
-    /// That of a whole period between ends with x(T) = e^(iφ) x(0), s = cos² φ/2, as a real chain (`proofs/REGION.md`, section 10): from t = 0 to T/2, what meets
+    /// The action of a whole period between ends with x(T) = e^(iφ) x(0), s = cos² φ/2, as a real chain (`proofs/REGION.md`, section 10): from t = 0 to T/2, what meets
     /// there times √s, and back to where 0 is held, what meets times √(1 − s).
     fn twisted(&self, step: f64, bounds: &Bounds, s: f64) -> Envelope {
         let last = self.events.len() - 1;
@@ -43,7 +42,7 @@ impl Steps<'_> {
                     matrix.add(row(place, i), row(place - 1, i), -factor * x);
                 }
             }
-            let weight = if event.weight == Weight::Half { 0.5 } else { 1.0 };
+            let weight = event.weight.share();
             for k in event.clocks() {
                 let [factor, shift] = bounds[k];
                 let factor = -(weight * (square * self.kicks[k])) * factor;

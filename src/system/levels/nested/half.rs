@@ -6,7 +6,7 @@ use num_complex::Complex64;
 use super::levels::{ROUNDINGS, Steps};
 use crate::number::rational::{from_f64_exact, to_f64};
 use crate::number::{Rational, U};
-use crate::schedule::{Event, Weight};
+use crate::schedule::Event;
 use crate::system::friction::{Damping, Radius, damping};
 use crate::system::half::float::FloatBlocks;
 use crate::system::half::norm;
@@ -175,7 +175,7 @@ impl Steps<'_> {
         // What meets E at each event, and the positions there.
         let mut nodes: Vec<(f64, [Mat<f64>; 2])> = Vec::new();
         let state = self.followed(&kicks, turning, |event, x| {
-            let weight = if event.weight == Weight::Half { 0.5 } else { 1.0 };
+            let weight = event.weight.share();
             let size = event.clocks().map(|k| weight * errors[k]).sum();
             let block = |first: usize| Mat::from_fn(n, n, |i, j| x[2 * n * i + first + j]);
             nodes.push((size, [block(0), block(n)]));
@@ -202,7 +202,7 @@ impl Steps<'_> {
         let (mut x, mut p) = (one(0), one(n));
         for event in &self.events {
             x += faer::Scale(event.drift as f64) * &p;
-            let weight = if event.weight == Weight::Half { 0.5 } else { 1.0 };
+            let weight = event.weight.share();
             let kick = event.clocks().fold(Mat::<f64>::zeros(n, n), |sum, k| {
                 sum + faer::Scale(weight * square * self.kicks[k]) * &self.nested.levels[k].stiffness
             });

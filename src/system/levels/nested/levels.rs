@@ -111,7 +111,7 @@ impl Nested {
         self.levels[1..].iter().map(highest).collect()
     }
 
-    /// The same with the steps of all levels, innermost first, in the stiffnesses' unit of time: to be scaled together.
+    /// These levels with their steps, innermost first, in the stiffnesses' unit of time. The steps are scaled together.
     ///
     /// # Errors
     /// As many steps as levels; steps that meet too late for the action's matrix.

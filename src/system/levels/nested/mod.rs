@@ -61,12 +61,13 @@ impl Steps<'_> {
         self.nested.is_definite_within(epsilon) && self.is_positive(step, &self.within(epsilon, 1.0))
     }
 
-    /// What is proven of all stiffnesses within ε of their sizes.
+    /// The verdict that is proven for all stiffnesses within ε of their sizes.
     pub fn verdict_within(&self, step: f64, epsilon: f64) -> Holds {
         if self.is_in_first_region(step, epsilon) { Holds::Stable } else { self.beyond([step; 2], epsilon) }
     }
 
-    /// The same of all outer steps between two, by the index, too: at one step it tells little that discs do not, and costs a dozen counts.
+    /// The verdict that is proven on all outer steps between two, by the index, too. At one step the index rarely decides what discs do not, and costs a dozen
+    /// counts.
     fn verdict_between(&self, ends: [f64; 2], epsilon: f64) -> Holds {
         let is_stable = self.is_in_first_region(ends[1], epsilon) || self.is_stable_by_index(ends, epsilon);
         if is_stable { Holds::Stable } else { self.beyond(ends, epsilon) }
@@ -84,8 +85,8 @@ impl Steps<'_> {
         signs::proven(&blocks).or_else(|| self.by_discs_between(ends, epsilon)).or_else(by_clusters).into()
     }
 
-    /// What is proven of all stiffnesses within ε of their sizes on all outer steps from `lo` to `hi`, as stretches that cover them; no interval wider than
-    /// `width` times the larger end is missed of which the data tell.
+    /// The verdicts that are proven for all stiffnesses within ε of their sizes, as stretches that cover the outer steps from `lo` to `hi`. No interval wider than
+    /// `width` times the larger end is missed that these stiffnesses have in common.
     ///
     /// # Errors
     /// As [`cover`].
@@ -201,7 +202,7 @@ impl Steps<'_> {
     /// Growth from an unstable outer step on, as of two levels.
     ///
     /// # Errors
-    /// Those of two levels; here there are none.
+    /// None: the signature is that of two levels.
     pub fn growing(&self, from: f64, width: f64) -> Result<Vec<Growing>> {
         Grows::growing(self, from, width)
     }

@@ -74,7 +74,7 @@ pub(super) const PLACES: [u64; 3] = [0x9e37_79b9, 0x7f4a_7c15, 0x85eb_ca6b];
 const MOST_PRIMES: usize = 40;
 
 impl Half {
-    /// That of a line.
+    /// The half period of the systems on a line.
     ///
     /// # Errors
     /// As [`Line::at`].

@@ -44,7 +44,7 @@ pub(super) fn gaps(
     Ok(found.concat())
 }
 
-/// Those of one that is squarefree.
+/// The roots of a squarefree polynomial.
 fn roots(f: &[BigInt], ends: (f64, f64), place: &impl Fn(&Rational) -> Rational) -> Vec<Gap> {
     if f.len() < 2 {
         return Vec::new();
