@@ -64,10 +64,14 @@ impl Molecules {
         }
         let mut group = vec![0; both.size()];
         rows.iter().enumerate().for_each(|(k, own)| own.iter().for_each(|&i| group[i] = k));
-        let ones = vec![0.0; both.entries()];
-        let mut pairs: Vec<[usize; 2]> =
-            both.triplets(&ones).map(|(i, j, _)| [group[i], group[j]]).filter(|[a, b]| a != b).collect();
-        pairs.iter_mut().for_each(|pair| pair.sort_unstable());
+        let mut pairs: Vec<[usize; 2]> = Vec::new();
+        for (i, j) in both.places() {
+            let pair = [group[i].min(group[j]), group[i].max(group[j])];
+            // The rows of a group are beside each other most often.
+            if pair[0] != pair[1] && pairs.last() != Some(&pair) {
+                pairs.push(pair);
+            }
+        }
         pairs.sort_unstable();
         pairs.dedup();
         let mut joined = vec![Vec::new(); rows.len()];

@@ -102,6 +102,11 @@ impl Pattern {
         (0..self.size()).flat_map(move |j| self.column(j).map(move |(at, i)| (i, j, values[at])))
     }
 
+    /// Row and column of every entry of the lower triangle, column by column.
+    pub fn places(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+        (0..self.size()).flat_map(move |j| self.column(j).map(move |(_, i)| (i, j)))
+    }
+
     /// Adds x to the entry in a row and a column of the pattern.
     pub fn add(&self, values: &mut [f64], at: [usize; 2], x: f64) {
         let (i, j) = (at[0].max(at[1]), at[0].min(at[1]));

@@ -114,7 +114,7 @@ const FROM: [f64; 8] = [0.9, 0.5, 0.2, 0.1, 0.03, 0.01, 1e-3, 1e-4];
 /// Products of a factorization from which on parts of it may be left out. How many times as many rows are kept then, about, as a molecule is joined to: near the
 /// step where the fastest bonds resonate, which is a matter of single molecules, and for F + S near its least eigenvalue.
 const WORTH_LEAVING_OUT: f64 = 1e10;
-const FAR: f64 = 9.0;
+const FAR: f64 = 11.0;
 const FARTHER: f64 = 16.0;
 
 /// Shifts, relative to the norms, by which F + S is positive definite in doubles.
