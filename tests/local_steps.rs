@@ -208,3 +208,22 @@ fn what_is_no_scheme_is_refused_by_the_name_of_its_field() {
         assert!(!error.to_string().contains('\n'), "{error}");
     }
 }
+
+/// Of one mass on a spring p substeps of leapfrog are one step with 2 - 2 T_p(1 - s/2), s = dt^2 k/p^2, whatever p: by the recurrence of T.
+#[test]
+fn substeps_of_one_mass_are_chebyshevs_polynomials() {
+    for p in (1..=33).chain([256, 1021]) {
+        let diagonal = |x| Symmetric::diagonal(&[x]);
+        let plain =
+            System::new(diagonal(ratio(1, 1)), vec![Potential::new(diagonal(ratio(7, 3)), ratio(1, 5))]);
+        let own = LocalSteps::new(plain.unwrap(), vec![Level { fine: [0].into(), substeps: p }]).unwrap();
+        let square = ratio(1, 25);
+        let x = ratio(1, 1) - &square * ratio(7, 6) / ratio(i64::from(p) * i64::from(p), 1);
+        let (mut before, mut now) = (ratio(1, 1), x.clone());
+        for _ in 1..p {
+            let next = ratio(2, 1) * &x * &now - &before;
+            (before, now) = (now, next);
+        }
+        assert_eq!(own.effective(&square).get(0, 0) * &square, ratio(2, 1) - ratio(2, 1) * now, "{p}");
+    }
+}

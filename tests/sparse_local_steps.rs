@@ -174,3 +174,13 @@ fn the_first_unstable_step_is_as_sharp_where_a_resonance_is_hardly_coupled() {
     let expected = |y: f64| 8.0 * (std::f64::consts::PI / 8.0).sin() / f64::sqrt(y);
     assert!(expected(160.0) < lo && hi < expected(120.0), "{lo} {hi}");
 }
+
+/// A width of 0 halved cells until the stack ended.
+#[test]
+fn widths_that_no_double_has_are_refused() {
+    let levels = vec![Level { fine: [1].into(), substeps: 2 }];
+    let sparse = SparseSteps::new(&[1.0; 3], &chain(&[1.0; 4], false), levels).unwrap();
+    for width in [0.0, -1.0, 1e-30, 0.2, f64::NAN] {
+        assert!(sparse.stretches((0.1, 3.0), width).is_err(), "{width}");
+    }
+}

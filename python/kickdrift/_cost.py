@@ -68,7 +68,7 @@ class Work:
         free = _memory()
         if self.bytes > free:
             raise KickdriftError("system", who, f"there are {free / 1e9:.2g} GB for {self}: {remedy}")
-        if self.seconds > most:
+        if not self.seconds <= most:
             raise KickdriftError("system", who, f"{self}, more than {most:g} s: give longest=SECONDS, or {remedy}")
         if is_told:
             print(self, file=sys.stderr, flush=True)
@@ -108,8 +108,20 @@ LONGEST = 3600.0
 
 
 def seconds_of(force: Force, positions: Doubles) -> float:
-    """How long a force takes, the second time."""
-    force(positions)
+    """How long a force takes, the second time.
+
+    Raises
+    ------
+    KickdriftError
+        Where it has no finite forces at these positions: nothing could be measured about them.
+    """
+    found = force(positions)
+    if np.shape(found) != np.shape(positions):
+        raise KickdriftError("forces", f"shape {np.shape(found)}", f"give shape {np.shape(positions)}")
+    if not np.isfinite(found).all():
+        atom = int(np.argwhere(~np.isfinite(found))[0][0])
+        remedy = "there is no finite force at these positions: do two particles share a place?"
+        raise KickdriftError("forces", f"{found[atom]} on particle {atom}", remedy)
     begin = perf_counter()
     force(positions)
     return perf_counter() - begin

@@ -244,6 +244,19 @@ def simplest(value: float, ulps: Fraction | int = Fraction(1, 2)) -> Fraction:
     return _between(Fraction(known) - width, Fraction(known) + width)
 
 
+def positive(field: str, value: Any) -> float:
+    """A positive finite double.
+
+    Raises
+    ------
+    KickdriftError
+        Any other value.
+    """
+    if not (isinstance(value, int | float | np.floating) and 0 < value < np.inf):
+        raise KickdriftError(field, shown(value), "give a positive finite number")
+    return float(value)
+
+
 def _between(lo: Fraction, hi: Fraction) -> Fraction:
     """The rational of least denominator in a closed interval of positive numbers, by continued fractions."""
     whole = -(-lo.numerator // lo.denominator)

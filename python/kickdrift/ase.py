@@ -12,11 +12,11 @@ from typing import Any
 import numpy as np
 
 from kickdrift._cost import LONGEST
-from kickdrift._errors import KickdriftError, needs
+from kickdrift._errors import KickdriftError, needs, shown
 from kickdrift._groups import Groups
 from kickdrift._hessians import Force
 from kickdrift._monodromy import Monodromy
-from kickdrift._numbers import Exact, doubles, duration
+from kickdrift._numbers import Exact, doubles, duration, positive
 from kickdrift._progress import Progress
 from kickdrift._rigid import Doubles
 from kickdrift._system import System
@@ -87,7 +87,8 @@ def system(
     >>> found.decide().stable
     True
     """
-    return _groups(atoms, groups).system(minimize, difference, progress, symmetric, longest)
+    width = positive("difference", difference)
+    return _groups(atoms, groups).system(minimize, width, progress, symmetric, longest)
 
 
 def oscillations(
@@ -124,12 +125,19 @@ def oscillations(
     >>> kickdrift.ase.oscillations(ase.Atoms("Cu2", [[0, 0, 0], [2.2, 0, 0]]), {"all": (EMT(), 5)}).stable
     True
     """
-    return _groups(atoms, groups).oscillations(about, minimize, difference, "fs", progress, longest)
+    width = positive("difference", difference)
+    return _groups(atoms, groups).oscillations(about, minimize, width, "fs", progress, longest)
 
 
 def _groups(atoms: Any, groups: Mapping[str, tuple[Any, Exact]]) -> Groups:
     if not groups:
         raise KickdriftError("groups", None, "give a calculator and a step for each group of forces")
+    masses = np.asarray(atoms.get_masses(), dtype=np.float64)
+    if not len(masses):
+        raise KickdriftError("atoms", "none", "give at least one")
+    if not (masses > 0).all():
+        atom = int(np.argmin(masses > 0))
+        raise KickdriftError("atoms", f"mass {masses[atom]:g} of atom {atom}", "a mass must be positive")
     if atoms.constraints:
         raise KickdriftError("atoms", f"{len(atoms.constraints)} constraints", "constraints are not handled here")
     forces: dict[str, Force] = {}
@@ -138,12 +146,12 @@ def _groups(atoms: Any, groups: Mapping[str, tuple[Any, Exact]]) -> Groups:
         if not (isinstance(own, tuple | list) and len(own) == 2):
             raise KickdriftError(f"groups[{name}]", type(own).__name__, "give (calculator, step), as (EMT(), '0.5fs')")
         calculator, step = own
-        forces[name] = _force(atoms, calculator)
+        forces[name] = _force(atoms, calculator, f"groups[{name}]")
         steps.append(duration(f"groups[{name}]", step, "fs"))
     return Groups(
         forces,
         steps,
-        masses=np.asarray(atoms.get_masses(), dtype=np.float64),
+        masses=masses,
         where=doubles("atoms", atoms.positions),
         time="fs",
         length="Å",
@@ -154,10 +162,13 @@ def _groups(atoms: Any, groups: Mapping[str, tuple[Any, Exact]]) -> Groups:
     )
 
 
-def _force(atoms: Any, calculator: Any) -> Force:
-    if isinstance(calculator, tuple):
-        dear, cheap = (_force(atoms, own) for own in calculator)
+def _force(atoms: Any, calculator: Any, field: str) -> Force:
+    if isinstance(calculator, tuple) and len(calculator) == 2:
+        dear, cheap = (_force(atoms, own, field) for own in calculator)
         return lambda positions: dear(positions) - cheap(positions)
+    if isinstance(calculator, type) or not hasattr(calculator, "get_forces"):
+        name = calculator.__name__ if isinstance(calculator, type) else shown(calculator)
+        raise KickdriftError(field, name, "give a calculator of ASE's, as EMT(), or a pair of them")
     own = Atoms(numbers=atoms.numbers, positions=atoms.positions, cell=atoms.cell, pbc=atoms.pbc)
     own.set_masses(atoms.get_masses())
     own.set_initial_charges(atoms.get_initial_charges())

@@ -22,7 +22,7 @@ from kickdrift._cost import LONGEST
 from kickdrift._errors import KickdriftError
 from kickdrift._groups import Groups
 from kickdrift._monodromy import Monodromy
-from kickdrift._numbers import Exact, duration, simplest
+from kickdrift._numbers import Exact, duration, positive, simplest
 from kickdrift._progress import Progress
 from kickdrift._rigid import Doubles
 from kickdrift._system import System
@@ -215,7 +215,7 @@ def _groups(lmp: Any, respa: str, timestep: Exact | None, difference: float | No
         has_mesh=said("Kspace style =")[0] != "none",
         session=levels.session,
     )
-    return groups, notes, width if difference is None else difference
+    return groups, notes, width if difference is None else positive("difference", difference)
 
 
 #: Beginnings of fixes that move atoms and couple them to a bath.

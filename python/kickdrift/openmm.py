@@ -26,7 +26,7 @@ from kickdrift._held import Held
 from kickdrift._hessians import hessian, seen, usable
 from kickdrift._minimum import free
 from kickdrift._monodromy import FOLLOWED, Followed, Monodromy, unbalanced
-from kickdrift._numbers import Exact
+from kickdrift._numbers import Exact, positive
 from kickdrift._openmm import app, mm
 from kickdrift._openmm.atoms import Constraint, atoms_of, changed, constraints_of, names_of, places_of, positions_of
 from kickdrift._openmm.clocks import EWALD, clocks_of, clocks_of_integrator, is_bath, levels_of, mask_of, moves_nothing
@@ -144,8 +144,8 @@ def system(
     engine = resumed(engine_of(system, platform), where, resume)
     constraints = constraints_of(system)
     places = None if atoms is None else places_of(system, atoms)
-    if difference is None:
-        difference = WIDE if engine.rounding else DIFFERENCE
+    usual = WIDE if engine.rounding else DIFFERENCE
+    difference = usual if difference is None else positive("difference", difference)
     if sparse and engine.rounding:
         raise KickdriftError("platform", platform, "computes in single precision: sparse=True needs Reference")
     if sparse:
@@ -495,6 +495,7 @@ def _oscillations(
     resume: str | PathLike[str] | None = None,
 ) -> Monodromy:
     """:func:`oscillations`; without a ``unit`` an orbit not found at once is not followed from shorter steps."""
+    difference = positive("difference", difference)
     clocks = clocks_of(system, integrator, steps)
     where, levels = positions_of(positions, system), levels_of(clocks)
     engine = resumed(engine_of(system), where, resume)
@@ -583,7 +584,8 @@ def bands(
     before, system = system, changed(system, topology, given, constraints, hmr)
     is_small = given.size <= FOLLOWED
     engine = engine_of(system, "CPU" if "CPU" in platforms() and not is_small else "Reference")
-    difference = difference or (DIFFERENCE if is_small else WIDE)
+    usual = DIFFERENCE if is_small else WIDE
+    difference = usual if difference is None else positive("difference", difference)
     where, held = given, Held(engine.masses, constraints_of(system))
     notes = _notes(system, integrator, clocks)
     if minimize:

@@ -192,3 +192,41 @@ def test_a_cell_has_three_rigid_motions_and_a_field_none() -> None:
 def test_a_number_of_fs_that_no_molecule_bears_asks_for_a_unit() -> None:
     with pytest.raises(kd.KickdriftError, match="name the unit"):
         ka.system(ase.Atoms("Cu2", [[0, 0, 0], [2.2, 0, 0]]), {"all": (EMT(), 500)})
+
+
+class Broken(Springs):
+    """Springs whose forces come out of it changed."""
+
+    def __init__(self, change) -> None:
+        super().__init__(30.0)
+        self.change = change
+
+    def calculate(self, atoms=None, properties=("energy",), system_changes=all_changes) -> None:
+        super().calculate(atoms, properties, system_changes)
+        self.results["forces"] = self.change(self.results["forces"])
+
+
+@pytest.mark.parametrize(
+    ("given", "field", "remedy"),
+    [
+        ({"groups": Broken(lambda forces: forces * np.nan)}, "forces", "no finite force at these positions"),
+        ({"groups": Broken(lambda forces: forces[:1])}, "forces", r"give shape \(2, 3\)"),
+        ({"groups": None}, "groups[all]", "give a calculator"),
+        ({"groups": EMT}, "groups[all]", "give a calculator"),
+        ({"groups": (EMT(), EMT(), EMT())}, "groups[all]", "give a calculator"),
+        ({"atoms": ase.Atoms()}, "atoms", "at least one"),
+        ({"atoms": ase.Atoms("H2", [[0, 0, 0], [1, 0, 0]], masses=[1, 0])}, "atoms", "must be positive"),
+        ({"difference": 0}, "difference", "positive finite"),
+        ({"difference": np.nan}, "difference", "positive finite"),
+        ({"difference": "1e-3"}, "difference", "positive finite"),
+        ({"longest": np.nan}, "system", "longest"),
+    ],
+)
+def test_what_no_hessian_can_be_made_of_is_refused_by_name(given: dict, field: str, remedy: str) -> None:
+    """Before: eigenvalues that did not converge, arrays of no shape, a NaN that let everything pass."""
+    given = {"atoms": ase.Atoms("H2", [[0, 0, 0], [1, 0, 0]]), "groups": Springs(30.0)} | given
+    given["groups"] = {"all": (given["groups"], 1)}
+    for ask in (ka.system, ka.oscillations):
+        with pytest.raises(kd.KickdriftError, match=remedy) as caught:
+            ask(**given)
+        assert caught.value.field == field

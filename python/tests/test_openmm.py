@@ -540,6 +540,14 @@ def test_what_is_left_out_is_told() -> None:
         ({"steps": {0: 0, 1: 1}}, "steps[0]"),
         ({"steps": None, "integrator": mm.CustomIntegrator(0.001)}, "integrator"),
         ({"positions": np.zeros((2, 3))}, "positions"),
+        ({"steps": None, "integrator": mm.VariableVerletIntegrator(0.1)}, "integrator"),
+        ({"difference": 0.0}, "difference"),
+        ({"difference": -1e-4}, "difference"),
+        ({"difference": np.nan}, "difference"),
+        ({"atoms": []}, "atoms"),
+        ({"atoms": [0.5]}, "atoms"),
+        ({"atoms": "ab"}, "atoms"),
+        ({"longest": np.nan}, "system"),
     ],
 )
 def test_bad_input_is_refused_by_name(change: dict[str, Any], field: str) -> None:
@@ -548,6 +556,22 @@ def test_bad_input_is_refused_by_name(change: dict[str, Any], field: str) -> Non
     with pytest.raises(kd.KickdriftError) as caught:
         ko.system(system, **given)
     assert caught.value.field == field
+
+
+def test_forces_that_are_no_numbers_are_refused() -> None:
+    """Before: eigenvalues that did not converge. A system without a force named an empty list of groups."""
+    system, positions = bonds(1)
+    field = mm.CustomExternalForce("sqrt(-1 - x^2)")
+    field.addParticle(0, [])
+    system.addForce(field)
+    for ask in (ko.system, ko.oscillations):
+        with pytest.raises(kd.KickdriftError, match="no finite force") as caught:
+            ask(system, positions, steps={0: "1/2000", 1: "1/2000"})
+        assert caught.value.field == "forces"
+    bare = mm.System()
+    bare.addParticle(1.0)
+    with pytest.raises(kd.KickdriftError, match="no forces: give it forces"):
+        ko.system(bare, [[0, 0, 0]], steps={0: "1/2000"})
 
 
 def test_what_openmm_refuses_or_would_never_end_is_refused() -> None:

@@ -411,3 +411,26 @@ fn work_beyond_the_budget_is_refused_with_its_cost_before_it_begins() {
         assert!(ended.stderr.contains("allow it with --budget"), "{line}: {}", ended.stderr);
     }
 }
+
+/// A resolution of 0 overflowed the stack on sparse stiffnesses and was ignored elsewhere; "not told" and the name of a type stood for values.
+#[test]
+fn resolutions_and_levels_that_make_no_sense() {
+    let desk = Desk::new();
+    let here = env!("CARGO_MANIFEST_DIR");
+    let scene = |name: &str| format!("{here}/data/scenes/{name}");
+    for name in ["membrane.json", "local-steps.json", "subcycled.json", "bar-avi.json", "two-bars.json"] {
+        for width in ["0", "-1", "1e-30", "2"] {
+            let file = scene(name);
+            let args = ["system", &file, "--intervals", "outer=1/2..1", "--resolution", width];
+            refused(&desk, &args, &["resolution = ", "choose 1e-9 to 0.1"]);
+        }
+    }
+    let text = std::fs::read_to_string(scene("local-steps.json")).unwrap();
+    desk.write("both.json", &text.replace(r#""elements": [2, 3],"#, r#""elements": [2, 3], "fine": [1],"#));
+    refused(&desk, &["system", "both.json"], &["levels[0] = both: ", "one of them"]);
+    let text = std::fs::read_to_string(scene("membrane.json")).unwrap();
+    let text = text.replace("../hessians", &format!("{here}/data/hessians"));
+    let fine = text.split(r#"{"fine": "#).nth(1).unwrap().split('}').next().unwrap().to_string() + "}";
+    desk.write("fine.json", &text.replace(&fine, "[-1]"));
+    refused(&desk, &["system", "fine.json"], &["levels[0].fine = ", "counted from 0"]);
+}

@@ -122,3 +122,12 @@ fn equations_break_where_a_column_ends() {
     let long = Equation { name: "A".into(), key: "A".into(), terms: vec![format!(" {}", "7".repeat(99))] };
     assert!(equations(&[long], &input()).is_err());
 }
+
+/// It left ". ." behind the caption.
+#[test]
+fn captions_have_no_empty_title() {
+    let mut input = input();
+    input.insert("title".into(), "".into());
+    let table = document(&many(2, 2), &input, Some(10), None).unwrap();
+    assert!(!table.contains(". .") && !table.contains(", ."), "{table}");
+}

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from kickdrift._bands import Atoms
-from kickdrift._errors import KickdriftError
+from kickdrift._errors import KickdriftError, shown
 from kickdrift._numbers import Exact, doubles, rational
 from kickdrift._openmm import app, mm, unit
 from kickdrift._openmm.forces import masses_of, moving_of
@@ -126,7 +126,11 @@ def places_of(system: Any, atoms: Sequence[int]) -> list[int]:
         Where one is none of these.
     """
     place = {int(n): k for k, n in enumerate(moving_of(system))}
+    if not len(atoms):
+        raise KickdriftError("atoms", "none", "give those that move, or leave it out")
     for atom in atoms:
+        if not isinstance(atom, int | np.integer):
+            raise KickdriftError("atoms", shown(atom), "give the numbers of particles, from 0")
         if atom not in place:
             is_site = 0 <= atom < system.getNumParticles()
             remedy = "is a virtual site: give the atoms that it follows" if is_site else "is no particle of the system"

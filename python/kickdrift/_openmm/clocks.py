@@ -36,6 +36,8 @@ def clocks_of(system: Any, integrator: Any, steps: Mapping[int, Any] | None) -> 
         remedy = "of OpenMM give either steps={group: step} or an integrator"
         raise KickdriftError("steps", "both" if steps is not None else None, remedy)
     acting = _acting(system)
+    if not acting:
+        raise KickdriftError("system", "no forces", "give it forces to integrate")
     for group in steps or ():
         if not isinstance(group, int | np.integer):
             raise KickdriftError("steps", str(group), "is no number of a force group: write steps={0: ..., 1: ...}")
@@ -88,7 +90,11 @@ _KICK = re.compile(r"v\+(?P<half>0?\.5\*)?\(?dt(?:/(?P<parts>\d+))?\)?\*f(?P<gro
 
 
 def clocks_of_integrator(integrator: Any, groups: set[int]) -> dict[int, Fraction]:
-    step = simplest(integrator.getStepSize()._value, ulps=2)
+    size = integrator.getStepSize()._value
+    if not size > 0:
+        remedy = "has no step of its own: give it a fixed one, or steps={group: step} instead"
+        raise KickdriftError("integrator", type(integrator).__name__, remedy)
+    step = simplest(size, ulps=2)
     plain = (mm.VerletIntegrator, mm.LangevinIntegrator, mm.LangevinMiddleIntegrator)
     if isinstance(integrator, plain):
         mask = integrator.getIntegrationForceGroups()

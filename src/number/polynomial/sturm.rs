@@ -108,20 +108,28 @@ impl<C: SignAt> Sturm<C> {
 
     /// Bisects until the interval of the root is at most as wide as the given width > 0.
     pub fn refine(&self, (lo, hi): &RootInterval, width: &Rational) -> RootInterval {
-        let (mut lo, mut hi) = (lo.clone(), hi.clone());
         if lo == hi {
-            return (lo, hi);
+            return (lo.clone(), hi.clone());
         }
-        let below = self.sign_at(&lo);
-        while &hi - &lo > *width {
-            let middle = (&lo + &hi) / Rational::from_integer(2.into());
-            match self.sign_at(&middle) {
-                Sign::Zero => return (middle.clone(), middle),
+        let below = self.sign_at(lo);
+        // Over one denominator: greatest common divisors of thousands of bits at each bisection would take most of the time.
+        let mut denominator = lo.denom().lcm(hi.denom());
+        let over = |x: &Rational| x.numer() * (&denominator / x.denom());
+        let (mut lo, mut hi) = (over(lo), over(hi));
+        while (&hi - &lo) * width.denom() > width.numer() * &denominator {
+            if (&lo + &hi).is_odd() {
+                for own in [&mut lo, &mut hi, &mut denominator] {
+                    *own <<= 1;
+                }
+            }
+            let middle: BigInt = (&lo + &hi) >> 1;
+            match self.sign_at(&Rational::new_raw(middle.clone(), denominator.clone())) {
+                Sign::Zero => (lo, hi) = (middle.clone(), middle),
                 sign if sign == below => lo = middle,
                 _ => hi = middle,
             }
         }
-        (lo, hi)
+        (Rational::new(lo, denominator.clone()), Rational::new(hi, denominator))
     }
 
     /// The sign of the squarefree part at x.

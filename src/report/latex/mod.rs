@@ -136,7 +136,7 @@ fn parameters(input: &Map<String, Value>, columns: &[Column]) -> String {
         })
     });
     let mut all: Vec<String> = typeset.collect();
-    all.extend(input.get("title").and_then(Value::as_str).map(escaped));
+    all.extend(input.get("title").and_then(Value::as_str).filter(|title| !title.is_empty()).map(escaped));
     if all.is_empty() { String::new() } else { format!(". {}.", all.join(", ")) }
 }
 

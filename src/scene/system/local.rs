@@ -77,9 +77,10 @@ impl Document {
                 let elements = indices(&field("elements"), elements, mesh.elements.len())?;
                 mesh.degrees_of_freedom(&elements, moving)?
             }
-            _ => {
-                let remedy = "give fine, the degrees of freedom, or elements, those of a mesh";
-                return Err(Error::input(&format!("levels[{l}]"), "not told", remedy));
+            (fine, elements, _) => {
+                let given = if fine.is_some() && elements.is_some() { "both" } else { "none" };
+                let remedy = "give fine, the degrees of freedom, or elements, those of a mesh, one of them";
+                return Err(Error::input(&format!("levels[{l}]"), given, remedy));
             }
         };
         Ok(Level { fine, substeps: own.count(l)? })

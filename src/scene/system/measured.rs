@@ -106,7 +106,10 @@ pub(super) struct LevelDocument {
 
 /// Degrees of freedom, counted from 0: as they are, or an array of them.
 #[derive(Debug, Deserialize)]
-#[serde(untagged)]
+#[serde(
+    untagged,
+    expecting = "this is no list of degrees of freedom, counted from 0, and no array of them, as [3, 4] or {\"npz\": \"h.npz\", \"array\": \"fine\"}"
+)]
 pub(super) enum FineDocument {
     List(Vec<usize>),
     Array(Reference),

@@ -128,7 +128,7 @@ impl MeshDocument {
             (None, None, None, Some(courant)) => self.courant(mesh, &courant.read("mesh.courant")?),
             _ => Err(Error::input(
                 "mesh.step",
-                "not told",
+                "missing, or one of several",
                 "give step, steps, steps with classes, or courant, one of them",
             )),
         }

@@ -188,6 +188,15 @@ fn rows(stiffness: &Reference, field: &str, arrays: &Arrays) -> Result<Rows> {
     let [data, indices, ends]: [Vec<f64>; 3] = [array("data")?, array("indices")?, array("indptr")?];
     let refused = |what: String, remedy: &str| Err(Error::input(field, what, remedy));
     let n = ends.len().saturating_sub(1);
+    // SciPy writes it, kickdrift's own files have none.
+    if let Ok(shape) = array("shape")
+        && shape != [n as f64; 2]
+    {
+        return refused(
+            format!("of shape {shape:?}"),
+            "give a square matrix, a row for each degree of freedom",
+        );
+    }
     let is_index = |x: &f64| *x >= 0.0 && x.fract() == 0.0 && *x <= data.len().max(n) as f64;
     let is_sound = ends.first() == Some(&0.0)
         && ends.last() == Some(&(data.len() as f64))

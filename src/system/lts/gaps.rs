@@ -19,7 +19,7 @@ use super::sparse::{Block, SparseSteps};
 use crate::error::{Error, Result};
 use crate::number::{U, bisected};
 use crate::parallel::try_map;
-use crate::system::vary::stretches::{Stretch, merged};
+use crate::system::vary::stretches::{Stretch, check_width, merged};
 use crate::system::verdict::measured::Holds;
 
 /// The relative width within which the first unstable step is sought.
@@ -138,15 +138,21 @@ impl SparseSteps {
     /// one beside a stable one all up to the resonance. No interval wider than `width` times its end is missed.
     ///
     /// # Errors
-    /// An empty range; several levels.
+    /// An empty range, a width outside \[10^-9, 1/10\]; several levels; where doubles do not bound the resonances.
     pub fn stretches(&self, (lo, hi): (f64, f64), width: f64) -> Result<Vec<Stretch>> {
+        check_width(width)?;
         if !(lo > 0.0 && lo < hi && hi.is_finite()) {
             let remedy = "write the smaller step first, both positive";
             return Err(Error::input("range", format!("{lo}..{hi}"), remedy));
         }
         let Some((from, to)) = self.limit() else {
-            let remedy = "so large a scheme has intervals with one level of fine degrees of freedom alone";
-            return Err(Error::input("levels", self.levels.len(), remedy));
+            let found = match &self.levels[..] {
+                [own] if own.fine.is_empty() => "none fine",
+                [_] => "a fine part whose forces vanish",
+                _ => "several",
+            };
+            let remedy = "so large a scheme has intervals with one level alone, whose fine part has a positive frequency";
+            return Err(Error::input("levels", found, remedy));
         };
         let end = from.min(hi);
         let mut found = Vec::new();

@@ -10,7 +10,7 @@ use crate::system::levels::Method;
 use crate::system::spectrum::rate::middle;
 use crate::system::vary::edges::{Family, Linear};
 use crate::system::vary::nearest::Nearest;
-use crate::system::vary::stretches::Stretch;
+use crate::system::vary::stretches::{Stretch, check_width};
 use crate::system::verdict::analysis::Analysis;
 use crate::system::verdict::decide::decide_by;
 use crate::system::verdict::limits::{Limits, Route};
@@ -34,7 +34,7 @@ impl Model {
     /// hold for all stiffnesses within their accuracy.
     ///
     /// # Errors
-    /// As [`Family::stretches`].
+    /// As [`Family::stretches`]; a width outside \[10^-9, 1/10\].
     pub fn stretches(
         &self,
         number: &Number,
@@ -42,6 +42,7 @@ impl Model {
         width: f64,
         limits: &Limits,
     ) -> Result<Vec<Stretch>> {
+        check_width(width)?;
         match (number, self) {
             (Number::Scale(level, factor), Model::Measured(own)) => {
                 own.stretches_of_scale(*level, range, *factor, (width, own.accuracy))
@@ -93,7 +94,7 @@ impl Model {
     /// The products of doubles that these cost, roughly, where cells are narrow throughout.
     ///
     /// # Errors
-    /// As [`Family::cost`].
+    /// As [`Family::cost`]; a width outside \[10^-9, 1/10\].
     pub fn cost_of_stretches(
         &self,
         number: &Number,
@@ -101,6 +102,7 @@ impl Model {
         width: f64,
         limits: &Limits,
     ) -> Result<f64> {
+        check_width(width)?;
         match (number, self) {
             (Number::Linear(at), _) => {
                 let at = |x: &Rational| Ok(at(x)?.moving()?.into_owned());

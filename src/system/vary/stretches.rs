@@ -34,9 +34,7 @@ pub fn cover(
     if !(lo < hi && hi.is_finite() && lo.is_finite()) {
         return Err(Error::input("range", format!("{lo}..{hi}"), "write the smaller number first"));
     }
-    if !(1e-9..=0.1).contains(&width) {
-        return Err(Error::input("resolution", width, "choose 1e-9 to 0.1"));
-    }
+    check_width(width)?;
     let floor = width * lo.abs().max(hi.abs());
     let place = |k: u32| if k == PARTS { hi } else { lo + (hi - lo) * f64::from(k) / f64::from(PARTS) };
     let parts: Vec<_> = (0..PARTS).map(|k| (place(k), place(k + 1))).collect();
@@ -48,6 +46,17 @@ pub fn cover(
         _ => Ok(vec![*own]),
     };
     Ok(merged(try_map(&coarse, shrink)?.into_iter().flatten()))
+}
+
+/// A width that cells can have, in doubles and in memory.
+///
+/// # Errors
+/// A width outside \[10^-9, 1/10\], or NaN.
+pub fn check_width(width: f64) -> Result<()> {
+    if !(1e-9..=0.1).contains(&width) {
+        return Err(Error::input("resolution", width, "choose 1e-9 to 0.1"));
+    }
+    Ok(())
 }
 
 /// The most cells that [`cover`] asks about, roughly: each as narrow as they get, and a wider one tried before it. Those that sharpen the
