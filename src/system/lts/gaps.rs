@@ -138,11 +138,12 @@ impl SparseSteps {
     /// one beside a stable one all up to the resonance. No interval wider than `width` times its end is missed.
     ///
     /// # Errors
-    /// An empty range, a width outside \[10^-9, 1/10\]; several levels; where doubles do not bound the resonances.
+    /// An empty range or one that begins below 10^-150, a width outside \[10^-9, 1/10\]; several levels; where doubles do not bound the resonances.
     pub fn stretches(&self, (lo, hi): (f64, f64), width: f64) -> Result<Vec<Stretch>> {
         check_width(width)?;
-        if !(lo > 0.0 && lo < hi && hi.is_finite()) {
-            let remedy = "write the smaller step first, both positive";
+        // The squares of smaller steps are no normal numbers.
+        if !(lo >= 1e-150 && lo < hi && hi.is_finite()) {
+            let remedy = "write the smaller step first, both 1e-150 or more";
             return Err(Error::input("range", format!("{lo}..{hi}"), remedy));
         }
         let Some((from, to)) = self.limit() else {

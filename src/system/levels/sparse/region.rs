@@ -610,3 +610,53 @@ fn largest_below(most: f64, width: f64, holds: impl Fn(f64) -> bool) -> f64 {
 
 /// A margin below it is rounding.
 const LEAST_MARGIN: f64 = 1e-15;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_whole_factorization_proves_what_one_with_parts_left_out_does() {
+        // Molecules of three rows on a cubic lattice, held weakly in their places, soft between those up to two apart.
+        let side = 20i64;
+        let place = |k: i64| [k % side, k / side % side, k / side / side];
+        let number = |k: usize| (k as f64 * 0.754_877_666_246_692_7).fract() - 0.5;
+        let (mut fast, mut slow) = (Vec::new(), Vec::new());
+        for k in 0..side.pow(3) {
+            for at in 0..125 {
+                let [x, y, z] = [at % 5 - 2, at / 5 % 5 - 2, at / 25 - 2];
+                let apart = x * x + y * y + z * z;
+                let other = [place(k)[0] + x, place(k)[1] + y, place(k)[2] + z];
+                let l = other[0] + side * (other[1] + side * other[2]);
+                if apart > 4 || other.iter().any(|own| !(0..side).contains(own)) || l > k {
+                    continue;
+                }
+                for (a, b) in (0..3).flat_map(|a| (0..3).map(move |b| (a, b))) {
+                    let (i, j) = (3 * k as usize + a, 3 * l as usize + b);
+                    let own = number(1 + i * 1009 + j * 31);
+                    if l < k {
+                        slow.push((i, j, own / apart as f64));
+                    } else if j <= i {
+                        fast.push((i, j, if a == b { 100.0 + 10.0 * own } else { 40.0 * own }));
+                        slow.push((i, j, if a == b { 4.0 } else { 0.0 }));
+                    }
+                }
+            }
+        }
+        let n = 3 * side.pow(3) as usize;
+        let levels = SparseLevels::new(&vec![1.0; n], [&fast, &slow], Mat::zeros(n, 0)).unwrap();
+        let (lo, _) = levels.first_unstable(8).expect("held, and far from the edge");
+        let molecules = levels.molecules.get().and_then(Option::as_ref).expect("looked at");
+        assert!(molecules.cost(FARTHER) < levels.products() && levels.products() > WORTH_LEAVING_OUT);
+        let outer = Outer::new(lo, 8).unwrap();
+        let [low, high] = levels.ends(0.0).unwrap();
+        let line = chord(&outer, low, high).unwrap();
+        let ([a, b], slack) = levels.form(&outer, line, 0.0);
+        assert!(levels.both.is_definite(line[0], &[(a, &levels.fast), (b, &levels.slow)], slack));
+        let Held { above, least, .. } = *levels.held();
+        let slack = levels.total_slack(above);
+        assert!(above > 0.0 && levels.both.is_definite(0.0, &levels.total(), slack));
+        let lowered = levels.both.lowered(0.0, &levels.total(), slack).unwrap();
+        assert!(molecules.is_definite(&levels.both, &lowered, least.unwrap() - above));
+    }
+}
