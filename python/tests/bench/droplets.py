@@ -68,10 +68,10 @@ def draw(path: str, sizes: list[int], seconds: dict[float, list[float]]) -> None
     figure, axes = plt.subplots(figsize=(4.6, 3.4), layout="constrained")
     for (cutoff, own), mark in zip(sorted(seconds.items()), "osD^v", strict=False):
         axes.loglog(sizes, own, f"{mark}-", color="black", mfc="white", label=f"cutoff {cutoff} nm")
-        for power, style in ((1.5, "--"), (2, ":")):
-            line = [own[0] * (n / sizes[0]) ** power for n in sizes]
-            name = f"$n^{{{power}}}$" if cutoff == min(seconds) else None
-            axes.loglog(sizes, line, style, color="grey", zorder=0, label=name)
+    for (power, style), own in itertools.product(((1.5, "--"), (2, ":")), seconds.values()):
+        line = [own[0] * (n / sizes[0]) ** power for n in sizes]
+        name = f"$n^{{{power}}}$" if own is next(iter(seconds.values())) else None
+        axes.loglog(sizes, line, style, color="grey", zorder=0, label=name)
     axes.set(xlabel="degrees of freedom n", ylabel="time of processors (s)")
     axes.set_title("Droplets of flexible water:\nverdict, margin, first unstable step", fontsize="medium")
     axes.legend(frameon=False)
