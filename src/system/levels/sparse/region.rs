@@ -111,10 +111,11 @@ const SIDE_BY_SIDE: f64 = 1e8;
 const BELOW_LIMIT: [f64; 3] = [1.0 - WIDTH / 2.0, 0.999, 0.99];
 const FROM: [f64; 8] = [0.9, 0.5, 0.2, 0.1, 0.03, 0.01, 1e-3, 1e-4];
 
-/// Products of a factorization from which on parts of it may be left out. How many times as many rows are kept then, about, as a molecule is joined to: near the
-/// step where the fastest bonds resonate, which is a matter of single molecules, and for F + S near its least eigenvalue.
+/// Products of a factorization from which on parts of it may be left out. How many rows are kept for each one that a molecule is joined to: near the step where
+/// the fastest bonds resonate, a matter of single molecules, some 9 were, counted half as much again, since less gain is not worth its memory; for F + S near
+/// its least eigenvalue 16.
 const WORTH_LEAVING_OUT: f64 = 1e10;
-const FAR: f64 = 11.0;
+const FAR: f64 = 14.0;
 const FARTHER: f64 = 16.0;
 
 /// Shifts, relative to the norms, by which F + S is positive definite in doubles.
