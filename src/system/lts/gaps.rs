@@ -152,7 +152,7 @@ impl SparseSteps {
                 [_] => "a fine part whose forces vanish",
                 _ => "several",
             };
-            let remedy = "so large a scheme has intervals with one level alone, whose fine part has a positive frequency";
+            let remedy = "give one level with forces on its fine part: intervals of so large a scheme are known for that alone";
             return Err(Error::input("levels", found, remedy));
         };
         let end = from.min(hi);

@@ -48,7 +48,7 @@ pub fn cover(
     Ok(merged(try_map(&coarse, shrink)?.into_iter().flatten()))
 }
 
-/// A width that cells can have, in doubles and in memory.
+/// Refuses a width that no cell should have: doubles do not separate narrower ones, and they fill the memory.
 ///
 /// # Errors
 /// A width outside \[10^-9, 1/10\], or NaN.

@@ -212,30 +212,20 @@ impl<'a> Fronts<'a> {
         let (mut top, below) = panel.split_at_row_mut(width);
         let mut below = below.transpose_mut();
         let threads = faer::get_global_parallelism();
-        let mut room = MemBuffer::try_new(match self.kind {
-            Elimination::Cholesky => {
-                llt::factor::cholesky_in_place_scratch::<f64>(width, threads, Default::default())
-            }
-            Elimination::Signed => {
-                ldlt::factor::cholesky_in_place_scratch::<f64>(width, threads, Default::default())
-            }
-        })
-        .ok()?;
-        let (stack, own) = (MemStack::new(&mut room), top.as_mut());
         match self.kind {
             Elimination::Cholesky => {
-                let none = Default::default();
-                llt::factor::cholesky_in_place(own, none, threads, stack, Default::default()).ok()?;
-                if (0..width).any(|k| !(top[(k, k)] > 0.0 && top[(k, k)].is_finite())) {
-                    return None;
-                }
+                cholesky(top.as_mut(), threads)?;
                 solve_lower_triangular_in_place(top.as_ref(), below.as_mut(), threads);
                 take(update, below.rb(), below.rb());
                 Some(Pivots::default())
             }
             Elimination::Signed => {
-                let none = Default::default();
-                ldlt::factor::cholesky_in_place(own, none, threads, stack, Default::default()).ok()?;
+                let scratch =
+                    ldlt::factor::cholesky_in_place_scratch::<f64>(width, threads, Default::default());
+                let mut room = MemBuffer::try_new(scratch).ok()?;
+                let (stack, none) = (MemStack::new(&mut room), Default::default());
+                ldlt::factor::cholesky_in_place(top.as_mut(), none, threads, stack, Default::default())
+                    .ok()?;
                 solve_unit_lower_triangular_in_place(top.as_ref(), below.as_mut(), threads);
                 let mut found = Pivots::default();
                 let mut scaled = zeros(width * below.ncols(), 0.0)?;
@@ -262,6 +252,16 @@ impl Pivots {
     pub fn and(self, other: Pivots) -> Pivots {
         Pivots { negative: self.negative + other.negative, size: self.size + other.size }
     }
+}
+
+/// Cholesky's factor in place; `None` where a pivot is not positive, or memory runs out.
+pub(super) fn cholesky(mut own: MatMut<'_, f64>, threads: faer::Par) -> Option<()> {
+    let n = own.nrows();
+    let scratch = llt::factor::cholesky_in_place_scratch::<f64>(n, threads, Default::default());
+    let mut room = MemBuffer::try_new(scratch).ok()?;
+    let (stack, none) = (MemStack::new(&mut room), Default::default());
+    llt::factor::cholesky_in_place(own.as_mut(), none, threads, stack, Default::default()).ok()?;
+    (0..n).all(|k| own[(k, k)] > 0.0 && own[(k, k)].is_finite()).then_some(())
 }
 
 /// The lower triangle of Aᵀ B taken from that of a matrix.

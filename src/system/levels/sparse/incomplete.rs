@@ -11,14 +11,13 @@
 use std::cmp::Ordering;
 use std::ops::Range;
 
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::cholesky::llt;
 use faer::linalg::matmul::matmul;
 use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
 use faer::prelude::*;
 use faer::{Accum, MatMut};
 
 use super::dissect::clusters;
+use super::fronts::cholesky;
 use super::matrix::Pattern;
 use crate::number::U;
 use crate::parallel::map;
@@ -125,7 +124,7 @@ impl Molecules {
     /// out, and no proof rests on it.
     pub fn is_definite(&self, pattern: &Pattern, values: &[f64], least: f64) -> bool {
         self.scaled(pattern, values).is_some_and(|scaled| {
-            let mut own = Elimination::new(self, least / scaled.softest);
+            let mut own = Incomplete::new(self, least / scaled.softest);
             own.is_done(scaled)
         })
     }
@@ -197,8 +196,8 @@ struct Panel {
     next: usize,
 }
 
-/// An elimination under way.
-struct Elimination<'a> {
+/// An incomplete factorization under way.
+struct Incomplete<'a> {
     molecules: &'a Molecules,
     panels: Vec<Panel>,
     /// Of each panel, the earlier ones whose next group is in it.
@@ -209,26 +208,24 @@ struct Elimination<'a> {
     taken: Vec<f64>,
     /// Of each group, the products and what else its sums have.
     terms: Vec<usize>,
-    /// Where the rows of each group are in the panel under way.
+    /// Where the rows of each group that has any begin in the panel under way.
     places: Vec<usize>,
     left_out: [f64; 2],
 }
 
-const NOWHERE: usize = usize::MAX;
-
-impl<'a> Elimination<'a> {
-    fn new(molecules: &'a Molecules, above: f64) -> Elimination<'a> {
+impl<'a> Incomplete<'a> {
+    fn new(molecules: &'a Molecules, above: f64) -> Incomplete<'a> {
         let count = molecules.near.len();
         let mut of = vec![0; count];
         molecules.panels.windows(2).enumerate().for_each(|(k, ends)| of[ends[0]..ends[1]].fill(k));
-        Elimination {
+        Incomplete {
             molecules,
             panels: Vec::new(),
             waiting: vec![Vec::new(); molecules.panels.len() - 1],
             of,
             taken: vec![0.0; molecules.places.len()],
             terms: vec![0; count],
-            places: vec![NOWHERE; count],
+            places: vec![0; count],
             left_out: LEFT_OUT.map(|part| part * above),
         }
     }
@@ -264,25 +261,19 @@ impl<'a> Elimination<'a> {
                 .zip(&beside)
                 .for_each(|(&m, x)| add(values.as_mut(), [self.places[m], column], x));
         }
-        own.clone().chain(groups.iter().copied()).for_each(|l| self.places[l] = NOWHERE);
         self.hand_on(earlier, own.clone(), width);
-        let rows = |at: usize| begins[at]..begins[at + 1];
-        let mut kept = Vec::new();
-        for (at, &group) in groups.iter().enumerate() {
-            if !self.is_left_out(group, &own, values.as_ref().subrows(begins[at], rows(at).len())) {
-                kept.push(at);
-            }
-        }
+        let block = |at: usize| values.as_ref().subrows(begins[at], begins[at + 1] - begins[at]);
+        let kept: Vec<usize> =
+            (0..groups.len()).filter(|&at| !self.is_left_out(groups[at], &own, block(at))).collect();
         let mut ends = vec![0];
-        kept.iter().for_each(|&at| ends.push(ends[ends.len() - 1] + rows(at).len()));
+        kept.iter().for_each(|&at| ends.push(ends[ends.len() - 1] + block(at).nrows()));
         let mut below = Mat::zeros(ends[kept.len()], width);
         for (&at, &to) in kept.iter().zip(&ends) {
-            let size = rows(at).len();
-            below.as_mut().subrows_mut(to, size).copy_from(values.as_ref().subrows(begins[at], size));
+            below.as_mut().subrows_mut(to, block(at).nrows()).copy_from(block(at));
         }
         let mut top = values.as_mut().subrows_mut(0, width);
         (0..width).for_each(|i| top[(i, i)] -= self.taken[first + i]);
-        factor(top.as_mut())?;
+        cholesky(top.as_mut(), faer::Par::Seq)?;
         solve_lower_triangular_in_place(top.as_ref(), below.as_mut().transpose_mut(), faer::Par::Seq);
         let groups: Vec<usize> = kept.iter().map(|&at| groups[at]).collect();
         if let Some(&l) = groups.first() {
@@ -390,16 +381,6 @@ impl Panel {
     }
 }
 
-/// Cholesky's factor in place; `None` where a pivot is not positive.
-fn factor(mut own: MatMut<'_, f64>) -> Option<()> {
-    let (n, none, seq) = (own.nrows(), Default::default(), faer::Par::Seq);
-    let scratch = llt::factor::cholesky_in_place_scratch::<f64>(n, seq, Default::default());
-    let mut room = MemBuffer::try_new(scratch).ok()?;
-    let stack = MemStack::new(&mut room);
-    llt::factor::cholesky_in_place(own.as_mut(), none, seq, stack, Default::default()).ok()?;
-    (0..n).all(|i| own[(i, i)] > 0.0 && own[(i, i)].is_finite()).then_some(())
-}
-
 /// Adds a block to part of a matrix.
 fn add(mut to: MatMut<'_, f64>, [i, j]: [usize; 2], block: &Mat<f64>) {
     let mut part = to.rb_mut().submatrix_mut(i, j, block.nrows(), block.ncols());
@@ -407,41 +388,47 @@ fn add(mut to: MatMut<'_, f64>, [i, j]: [usize; 2], block: &Mat<f64>) {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
 
-    /// Molecules of three rows on a cubic lattice: stiff within, soft between those up to two apart, numbers without a pattern. F alone, and all.
-    fn lattice(side: i64) -> [Vec<(usize, usize, f64)>; 2] {
-        let place = |k: i64| [k % side, k / side % side, k / side / side];
+    /// F and S of molecules of three rows on a cubic lattice: stiff within, each row held in its place by so much, soft between molecules up to two apart;
+    /// numbers without a pattern.
+    pub fn lattice(side: i64, [held, soft]: [f64; 2]) -> [Vec<(usize, usize, f64)>; 2] {
         let number = |k: usize| (k as f64 * 0.754_877_666_246_692_7).fract() - 0.5;
-        let (mut fast, mut all) = (Vec::new(), Vec::new());
+        let (mut fast, mut slow) = (Vec::new(), Vec::new());
         for k in 0..side.pow(3) {
-            for l in 0..=k {
-                let apart: i64 = place(k).iter().zip(place(l)).map(|(a, b)| (a - b).pow(2)).sum();
+            for at in 0..125 {
+                let [x, y, z] = [at % 5 - 2, at / 5 % 5 - 2, at / 25 - 2];
+                let apart = x * x + y * y + z * z;
+                let other = [k % side + x, k / side % side + y, k / side / side + z];
+                let l = other[0] + side * (other[1] + side * other[2]);
+                if apart > 4 || other.iter().any(|own| !(0..side).contains(own)) || l > k {
+                    continue;
+                }
                 for (a, b) in (0..3).flat_map(|a| (0..3).map(move |b| (a, b))) {
                     let (i, j) = (3 * k as usize + a, 3 * l as usize + b);
                     let own = number(1 + i * 1009 + j * 31);
-                    if k == l && j <= i {
-                        let x = if a == b { 100.0 } else { 40.0 * own };
-                        fast.push((i, j, x));
-                        all.push((i, j, x - if a == b { 60.0 } else { 0.0 }));
-                    } else if k != l && apart <= 4 {
-                        all.push((i, j, 4.0 * own / apart as f64));
+                    if l < k {
+                        slow.push((i, j, soft * own / apart as f64));
+                    } else if j <= i {
+                        fast.push((i, j, if a == b { 100.0 + 10.0 * own } else { 40.0 * own }));
+                        slow.push((i, j, if a == b { held } else { 0.0 }));
                     }
                 }
             }
         }
-        [fast, all]
+        [fast, slow]
     }
 
     #[test]
     fn what_is_proven_is_so_and_close_to_all_that_is() {
-        let [fast, all] = lattice(7);
+        let [fast, slow] = lattice(7, [-60.0, 4.0]);
         let n = 3 * 343;
+        let all = [fast.clone(), slow].concat();
         let (alone, _) = Pattern::of(n, [&fast]).unwrap();
         let (both, [values]) = Pattern::of(n, [&all]).unwrap();
         let mut dense = Mat::<f64>::zeros(n, n);
-        all.iter().for_each(|&(i, j, x)| (dense[(i, j)], dense[(j, i)]) = (x, x));
+        both.triplets(&values).for_each(|(i, j, x)| (dense[(i, j)], dense[(j, i)]) = (x, x));
         let least = dense.self_adjoint_eigenvalues(faer::Side::Lower).unwrap()[0];
         let molecules = Molecules::new(&alone, &both).unwrap();
         assert!(molecules.panels.len() > 20);
@@ -449,7 +436,7 @@ mod tests {
         let done = |part: f64, guess: f64| {
             let lowered = both.lowered(-least * (1.0 - part), &[(1.0, &values)], 0.0).unwrap();
             let scaled = molecules.scaled(&both, &lowered)?;
-            let mut own = Elimination::new(&molecules, guess * part.abs() * least / scaled.softest);
+            let mut own = Incomplete::new(&molecules, guess * part.abs() * least / scaled.softest);
             let is_done = own.is_done(scaled);
             is_done.then(|| own.taken.iter().filter(|&&x| x > 0.0).count())
         };

@@ -111,10 +111,11 @@ const SIDE_BY_SIDE: f64 = 1e8;
 const BELOW_LIMIT: [f64; 3] = [1.0 - WIDTH / 2.0, 0.999, 0.99];
 const FROM: [f64; 8] = [0.9, 0.5, 0.2, 0.1, 0.03, 0.01, 1e-3, 1e-4];
 
-/// Products of a factorization from which on parts of it may be left out. How many rows are kept for each one that a molecule is joined to: near the step where
-/// the fastest bonds resonate, a matter of single molecules, some 9 were, counted half as much again, since less gain is not worth its memory; for F + S near
-/// its least eigenvalue 16.
+/// Products of a factorization from which on an incomplete one may be faster.
 const WORTH_LEAVING_OUT: f64 = 1e10;
+
+/// Rows that an incomplete factorization keeps of a column, over those that its molecule is joined to: measured, some 9 where the fastest bonds resonate, a
+/// matter of single molecules, and 16 for F + S near its least eigenvalue. The first is counted as 14: what little is gained below is not worth its memory.
 const FAR: f64 = 14.0;
 const FARTHER: f64 = 16.0;
 
@@ -374,7 +375,8 @@ impl SparseLevels {
         self.is_total_definite(off) && self.is_above(outer, epsilon, known)
     }
 
-    /// Whether (1) and (2) of proofs/REGION.md are proven. Of the vector that is stretched least the quotients, where known, say by how much about.
+    /// Whether (1) and (2) of proofs/REGION.md are proven. `quotients` are those of the vector that the form stretches least, where one is known: they show
+    /// about how far the form is above 0.
     fn is_above(&self, outer: &Outer, epsilon: f64, quotients: Option<[f64; 2]>) -> bool {
         let line = self.ends(epsilon).and_then(|[low, high]| chord(outer, low, high));
         line.is_some_and(|line| {
@@ -385,8 +387,8 @@ impl SparseLevels {
         })
     }
 
-    /// Whether every matrix within `slack` of a sum is positive definite. Where it is large, by an incomplete factorization first, if that is expected to be
-    /// faster: its `least` eigenvalue is about so large, and its factors `reach` so many times as far as it.
+    /// Whether every matrix within `slack` of a sum is proven positive definite. An incomplete factorization is tried first where it is expected to be faster:
+    /// `least` is about the sum's least eigenvalue beyond the slack, `reach` is [`FAR`] or [`FARTHER`].
     fn is_definite(&self, c: f64, terms: &[(f64, &[f64])], slack: f64, [least, reach]: [f64; 2]) -> bool {
         let by_parts = || {
             let molecules =
@@ -614,36 +616,13 @@ const LEAST_MARGIN: f64 = 1e-15;
 
 #[cfg(test)]
 mod tests {
+    use super::super::incomplete::tests::lattice;
     use super::*;
 
     #[test]
     fn a_whole_factorization_proves_what_one_with_parts_left_out_does() {
-        // Molecules of three rows on a cubic lattice, held weakly in their places, soft between those up to two apart.
-        let side = 20i64;
-        let place = |k: i64| [k % side, k / side % side, k / side / side];
-        let number = |k: usize| (k as f64 * 0.754_877_666_246_692_7).fract() - 0.5;
-        let (mut fast, mut slow) = (Vec::new(), Vec::new());
-        for k in 0..side.pow(3) {
-            for at in 0..125 {
-                let [x, y, z] = [at % 5 - 2, at / 5 % 5 - 2, at / 25 - 2];
-                let apart = x * x + y * y + z * z;
-                let other = [place(k)[0] + x, place(k)[1] + y, place(k)[2] + z];
-                let l = other[0] + side * (other[1] + side * other[2]);
-                if apart > 4 || other.iter().any(|own| !(0..side).contains(own)) || l > k {
-                    continue;
-                }
-                for (a, b) in (0..3).flat_map(|a| (0..3).map(move |b| (a, b))) {
-                    let (i, j) = (3 * k as usize + a, 3 * l as usize + b);
-                    let own = number(1 + i * 1009 + j * 31);
-                    if l < k {
-                        slow.push((i, j, own / apart as f64));
-                    } else if j <= i {
-                        fast.push((i, j, if a == b { 100.0 + 10.0 * own } else { 40.0 * own }));
-                        slow.push((i, j, if a == b { 4.0 } else { 0.0 }));
-                    }
-                }
-            }
-        }
+        let side = 20;
+        let [fast, slow] = lattice(side, [4.0, 1.0]);
         let n = 3 * side.pow(3) as usize;
         let levels = SparseLevels::new(&vec![1.0; n], [&fast, &slow], Mat::zeros(n, 0)).unwrap();
         let (lo, _) = levels.first_unstable(8).expect("held, and far from the edge");
