@@ -2,7 +2,7 @@
 
     python3 docs/atlas.py target/release/kickdrift atlas.html
 
-The program (with the feature explore) serves its page once; the page itself, its letters, tiles of Figure 1's window and every tongue with
+The program serves its page once; the page itself, its letters, tiles of Figure 1's window and every tongue with
 p + q <= 60 in it are written into the file, and `atlas.js` answers in the server's place. Only Python's own library is needed.
 """
 

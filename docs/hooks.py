@@ -110,7 +110,7 @@ class Session:
     def console(self, body, cut, code, kind):
         program = Path(os.environ.get("KICKDRIFT", ROOT / "target/release/kickdrift")).absolute()
         if not program.exists():
-            raise PluginError(f"there is no {program}: build it (cargo build --release --features explore), or name it in KICKDRIFT")
+            raise PluginError(f"there is no {program}: build it (cargo build --release), or name it in KICKDRIFT")
         path = f"{program.parent}{os.pathsep}{os.environ['PATH']}"
         shown = []
         commands = re.findall(r"^\$ ((?:.*\\\n)*.*)$", body, re.MULTILINE)

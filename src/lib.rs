@@ -104,9 +104,7 @@
 //! | `parallel` | maps, surveys and scans on all cores (rayon); without it the same results on one |
 //! | `serde` | `scene`, `report` and `recheck`: input documents, output tables, documents rechecked |
 //! | `figure` | the drawings of results, by the crate `plot` |
-//! | `cli` | the program (default) |
-//! | `page` | `explore` without a network: what the page asks |
-//! | `explore` | the page served on this machine (axum, tokio) |
+//! | `cli` | the program (default), and `explore`: its page, what that asks, and the page served on this machine (axum, tokio) |
 
 #[cfg(feature = "advise")]
 pub mod advise;
@@ -115,7 +113,7 @@ pub mod band;
 #[cfg(feature = "cli")]
 pub mod cli;
 pub mod error;
-#[cfg(feature = "page")]
+#[cfg(feature = "cli")]
 pub mod explore;
 pub mod format;
 pub mod map;

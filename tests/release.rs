@@ -107,13 +107,45 @@ fn programs_are_static_for_old_machines_and_wheels_are_there_without_the_lock() 
     assert!(!unquoted.is_match(&wheels) && wheels.contains("linux: \"2_28\""));
 }
 
+/// The default is the whole program, so whoever installs, tests or downloads it has the same one.
+#[test]
+fn every_feature_is_part_of_the_default() {
+    let manifest = std::fs::read_to_string(root().join("Cargo.toml")).unwrap();
+    let section = manifest.split_once("\n[features]\n").unwrap().1.split("\n[").next().unwrap();
+    let features: Vec<(&str, &str)> = section.lines().filter_map(|line| line.split_once(" = ")).collect();
+    let (mut reached, mut next) = (Vec::new(), vec!["default"]);
+    while let Some(name) = next.pop().filter(|name| !reached.contains(name)) {
+        reached.push(name);
+        let parts = features.iter().find(|(own, _)| *own == name).unwrap().1;
+        next.extend(features.iter().map(|(own, _)| *own).filter(|own| parts.contains(&format!("\"{own}\""))));
+        next.retain(|name| !reached.contains(name));
+    }
+    assert!(features.iter().all(|(name, _)| reached.contains(name)), "{reached:?} of {features:?}");
+}
+
+/// What a reader is told to run is what is run on a fresh machine.
+#[test]
+fn the_tests_are_run_by_the_command_that_readme_names() {
+    let read = |name| std::fs::read_to_string(root().join(name)).unwrap();
+    let (readme, tests, run) = (read("README.md"), read("tests/README.md"), read(".ci/run"));
+    let commands = readme.lines().filter(|line| line.starts_with("cargo test"));
+    let [command] = commands.collect::<Vec<_>>().try_into().unwrap();
+    let command = command.split(" #").next().unwrap().trim_end();
+    let first = tests.split("|---|---|\n| `").nth(1).unwrap();
+    assert!(first.starts_with(&format!("{command}` |")), "{first}");
+    assert!(run.contains("stage \"tests\" readme_tests\n") && !run.contains("cargo test -"));
+    let extracted = r"sed -n 's/^\(cargo test[^#]*\)#.*/\1/p' README.md";
+    assert!(run.contains(extracted), "{extracted}");
+    let printed = Command::new("sh").args(["-c", extracted]).current_dir(root()).output().unwrap();
+    assert_eq!(String::from_utf8(printed.stdout).unwrap().trim_end(), command);
+}
+
 /// The page is in what people download.
 #[test]
 fn released_programs_have_the_page_and_the_notices_of_what_is_linked() {
     let text = std::fs::read_to_string(root().join(".github/workflows/release.yml")).unwrap();
-    assert!(text.contains("cargo build --release --locked --features explore"));
-    let notices =
-        Command::new("python3").args([".ci/notices", "--features", "explore"]).current_dir(root()).output();
+    assert!(text.contains("cargo build --release --locked\n"));
+    let notices = Command::new("python3").arg(".ci/notices").current_dir(root()).output();
     let notices = notices.expect("python3 runs");
     assert!(notices.status.success(), "{}", String::from_utf8_lossy(&notices.stderr));
     let notices = String::from_utf8(notices.stdout).unwrap();
@@ -147,7 +179,7 @@ fn the_oldest_rust_of_all_manifests_is_the_same_and_checked() {
         assert!(std::fs::read_to_string(root().join(name)).unwrap().contains(oldest), "{name}");
     }
     let checks = std::fs::read_to_string(root().join(".github/workflows/check.yml")).unwrap();
-    assert!(checks.contains(r#"cargo "+$oldest" check --locked --all-features"#));
+    assert!(checks.contains(r#"cargo "+$oldest" check --locked"#));
 }
 
 /// One version in all that names it.

@@ -1,11 +1,15 @@
 //! `kickdrift explore`: a page on this machine to move in the plane of steps.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
 
 use super::args::Common;
-use crate::error::Result;
-use crate::number::Laurent;
-use crate::question::flag;
+use crate::error::{Error, Result};
+use crate::explore::Session;
+use crate::explore::serve::Server;
+use crate::number::{ExactSign, Laurent, Rational, Sign};
+use crate::question::{Scene, flag};
+use crate::scene::{SystemScene, file};
 
 /// Flags of `explore`.
 #[derive(Debug, clap::Args)]
@@ -35,9 +39,8 @@ pub struct Args {
 
 impl Args {
     /// Serves the page until the process is interrupted.
-    #[cfg(feature = "explore")]
     pub fn run(&self, common: &Common) -> Result<()> {
-        let server = crate::explore::serve::Server::bind(self.session()?, self.port, common.threads())?;
+        let server = Server::bind(self.session()?, self.port, common.threads())?;
         let address = server.address();
         crate::report::file::write_output(None, format!("{address}\n").as_bytes())?;
         if !self.no_open && !open(&address) && !common.quiet {
@@ -46,84 +49,57 @@ impl Args {
         match server.run()? {}
     }
 
-    /// Says how to get a program that can.
-    #[cfg(not(feature = "explore"))]
-    pub fn run(&self, _common: &Common) -> Result<()> {
-        let remedy = "this program was built without the page; released programs have it, and so has what \
-                      cargo install --locked --path . --features explore builds";
-        Err(crate::error::Error::missing("feature explore", remedy))
-    }
-}
-
-#[cfg(feature = "explore")]
-mod ways {
-    use std::process::{Command, Stdio};
-
-    use super::Args;
-    use crate::error::{Error, Result};
-    use crate::explore::Session;
-    use crate::number::{ExactSign, Laurent, Rational, Sign};
-    use crate::question::Scene;
-    use crate::scene::{SystemScene, file};
-
-    impl Args {
-        /// The session that the page starts on.
-        pub(super) fn session(&self) -> Result<Session> {
-            let session = match (&self.scene, &self.lambda1, &self.lambda2, self.period.as_slice()) {
-                (Some(path), ..) => of_file(path)?,
-                (None, Some(lambda1), Some(lambda2), _) => Session::new(lambda1.clone(), lambda2.clone())?,
-                (None, _, _, [fast, slow]) => Session::new(stiffness(fast)?, stiffness(slow)?)?,
-                (None, _, _, []) => Session::figure1(),
-                (None, _, _, other) => {
-                    let given = format!("given {} times", other.len());
-                    return Err(Error::input("period", given, "give it twice, the fast force's first"));
-                }
-            };
-            Ok(match &self.units {
-                Some(unit) => session.in_unit(unit),
-                None => session,
-            })
-        }
-    }
-
-    /// (2π/T)².
-    fn stiffness(period: &Laurent) -> Result<Laurent> {
-        let four_pi_squared = Laurent::monomial(Rational::from_integer(4.into()), 2);
-        let squared = (period.sign() == Sign::Positive)
-            .then(|| four_pi_squared.checked_div(&(period * period)))
-            .flatten();
-        squared.ok_or_else(|| {
-            Error::input("period", period, "must be positive, a number or one times a power of pi")
+    /// The session that the page starts on.
+    fn session(&self) -> Result<Session> {
+        let session = match (&self.scene, &self.lambda1, &self.lambda2, self.period.as_slice()) {
+            (Some(path), ..) => of_file(path)?,
+            (None, Some(lambda1), Some(lambda2), _) => Session::new(lambda1.clone(), lambda2.clone())?,
+            (None, _, _, [fast, slow]) => Session::new(stiffness(fast)?, stiffness(slow)?)?,
+            (None, _, _, []) => Session::figure1(),
+            (None, _, _, other) => {
+                let given = format!("given {} times", other.len());
+                return Err(Error::input("period", given, "give it twice, the fast force's first"));
+            }
+        };
+        Ok(match &self.units {
+            Some(unit) => session.in_unit(unit),
+            None => session,
         })
     }
-
-    /// A scene, or a system, whose schema says that it is one.
-    fn of_file(path: &std::path::Path) -> Result<Session> {
-        let text = file::text(path, file::LONGEST).map_err(|cause| {
-            let text =
-                format!("cannot read it ({cause}): name a scene or a system, as data/scenes/figure1.json");
-            Error::io(path.display(), text).caused_by(cause)
-        })?;
-        let value: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
-        if value["schema"].as_str().is_some_and(|schema| schema.starts_with("kickdrift/system/")) {
-            let folder = path.parent().unwrap_or(std::path::Path::new(""));
-            return Ok(Session::of_system(SystemScene::read_in(folder, &text)?));
-        }
-        Session::of_scene(&Scene::from_json(&text)?)
-    }
-
-    /// Whether a browser was started on the address.
-    pub(super) fn open(address: &str) -> bool {
-        let (program, first): (&str, &[&str]) = match std::env::consts::OS {
-            "macos" => ("open", &[]),
-            "windows" => ("rundll32", &["url.dll,FileProtocolHandler"]),
-            _ => ("xdg-open", &[]),
-        };
-        let mut command = Command::new(program);
-        command.args(first).arg(address).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
-        command.spawn().is_ok()
-    }
 }
 
-#[cfg(feature = "explore")]
-use ways::open;
+/// (2π/T)².
+fn stiffness(period: &Laurent) -> Result<Laurent> {
+    let four_pi_squared = Laurent::monomial(Rational::from_integer(4.into()), 2);
+    let squared =
+        (period.sign() == Sign::Positive).then(|| four_pi_squared.checked_div(&(period * period))).flatten();
+    squared.ok_or_else(|| {
+        Error::input("period", period, "must be positive, a number or one times a power of pi")
+    })
+}
+
+/// A scene, or a system, whose schema says that it is one.
+fn of_file(path: &Path) -> Result<Session> {
+    let text = file::text(path, file::LONGEST).map_err(|cause| {
+        let text = format!("cannot read it ({cause}): name a scene or a system, as data/scenes/figure1.json");
+        Error::io(path.display(), text).caused_by(cause)
+    })?;
+    let value: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
+    if value["schema"].as_str().is_some_and(|schema| schema.starts_with("kickdrift/system/")) {
+        let folder = path.parent().unwrap_or(Path::new(""));
+        return Ok(Session::of_system(SystemScene::read_in(folder, &text)?));
+    }
+    Session::of_scene(&Scene::from_json(&text)?)
+}
+
+/// Whether a browser was started on the address.
+fn open(address: &str) -> bool {
+    let (program, first): (&str, &[&str]) = match std::env::consts::OS {
+        "macos" => ("open", &[]),
+        "windows" => ("rundll32", &["url.dll,FileProtocolHandler"]),
+        _ => ("xdg-open", &[]),
+    };
+    let mut command = Command::new(program);
+    command.args(first).arg(address).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+    command.spawn().is_ok()
+}

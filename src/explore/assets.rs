@@ -50,7 +50,6 @@ pub fn asset(path: &str) -> Option<Reply> {
 }
 
 /// The page with what it starts on inside, so that it need not ask for it.
-#[cfg(feature = "explore")]
 pub(super) fn index(begun: &[u8]) -> Reply {
     const PLACE: &str = "id=\"begun\">";
     let index = include_str!("page/index.html");
@@ -133,7 +132,7 @@ mod tests {
         assert!(PAGE.contains("const $boot") && !PAGE.contains("const $widget"));
         assert_eq!(exported("async function fetched(path) {"), "fetched");
     }
-    #[cfg(feature = "explore")]
+
     #[test]
     fn what_the_page_starts_on_cannot_leave_its_place() {
         let page = index(br#"{"title": "</script><b>\u00e9"}"#);

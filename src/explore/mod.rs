@@ -13,7 +13,7 @@
 //! | `frame` | a window: places in it as fractions, at any depth |
 //! | `rays`, `ray` | the ratios that a window shows; the tongues of one about a point |
 //! | `start`, `tile`, `tongues`, `curves`, `point`, `cut`, `strip`, `outer`, `shown` | one file a question, or a few that are alike |
-//! | `serve` | the same over HTTP, for this machine alone (feature `explore`) |
+//! | `serve` | the same over HTTP, for this machine alone |
 //!
 //! ```
 //! use std::sync::Arc;
@@ -29,7 +29,6 @@ mod assets;
 mod curves;
 mod cut;
 mod frame;
-#[cfg(feature = "explore")]
 mod listen;
 mod outer;
 mod point;
@@ -37,7 +36,6 @@ mod query;
 mod ray;
 mod rays;
 mod reply;
-#[cfg(feature = "explore")]
 pub mod serve;
 mod session;
 mod shown;
@@ -61,8 +59,6 @@ pub use session::Session;
 /// that take long), the kicks that it may cost, and who answers.
 struct Question {
     name: &'static str,
-    /// Used by the server alone.
-    #[cfg_attr(not(feature = "explore"), allow(dead_code))]
     at_once: bool,
     limit: u64,
     answer: Answer,

@@ -16,8 +16,8 @@ if ! command -v valgrind > /dev/null; then
     echo "valgrind is missing: install it (Debian: apt-get install valgrind) and try again" >&2
     exit 2
 fi
-cargo bench --workspace --all-features --bench kernels --no-run
-program=$(cargo bench --workspace --all-features --bench kernels --no-run 2>&1 | sed -n 's/.*Executable .*(\(.*\))/\1/p')
+cargo bench --bench kernels --no-run
+program=$(cargo bench --bench kernels --no-run 2>&1 | sed -n 's/.*Executable .*(\(.*\))/\1/p')
 
 count() {
     valgrind --tool=callgrind --callgrind-out-file=/dev/null "$program" "$@" 2>&1 | sed -n 's/.*Collected : *//p'

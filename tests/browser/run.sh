@@ -19,7 +19,7 @@ if [ ${#missing[@]} -gt 0 ]; then
 fi
 
 if [ -z "${KICKDRIFT:-}" ]; then
-    cargo build --quiet --release --features explore --manifest-path ../../Cargo.toml
+    cargo build --quiet --release --manifest-path ../../Cargo.toml
     target=$(cargo metadata --format-version 1 --no-deps --manifest-path ../../Cargo.toml |
         sed 's/.*"target_directory":"\([^"]*\)".*/\1/')
     export KICKDRIFT=$target/release/kickdrift

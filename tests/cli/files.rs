@@ -67,10 +67,27 @@ fn two_results_do_not_share_a_file() {
 const LONG: &str = "map --lambda1 pi^2 --lambda2 pi^2/25 --step 1/6000 --h1-range 1/6000..2/pi \
                     --h2-range 1/6000..7/2 --output map.npz";
 
+/// The command with signals as a terminal leaves them. A script's background job ignores SIGINT, `nohup` ignores SIGHUP, and whatever runs
+/// these tests hands that on: the program would go on, as it should.
+#[cfg(unix)]
+fn hearing(mut command: std::process::Command) -> std::process::Command {
+    use std::os::unix::process::CommandExt;
+    let reset = || {
+        for signal in [libc::SIGHUP, libc::SIGINT, libc::SIGTERM, libc::SIGXCPU] {
+            // SAFETY: `signal` may be called between fork and exec, and the default action runs no code of ours.
+            unsafe { libc::signal(signal, libc::SIG_DFL) };
+        }
+        Ok(())
+    };
+    // SAFETY: the closure calls `signal` alone and takes no memory.
+    unsafe { command.pre_exec(reset) };
+    command
+}
+
 /// Starts LONG, sends it a signal as soon as its first file is there, and waits for its end.
 #[cfg(unix)]
 fn stopped(desk: &Desk, signal: &str) -> std::process::ExitStatus {
-    let mut child = desk.command(&words(LONG, &[])).spawn().unwrap();
+    let mut child = hearing(desk.command(&words(LONG, &[]))).spawn().unwrap();
     while desk.files().is_empty() {
         assert!(child.try_wait().unwrap().is_none(), "it has ended before it could be stopped");
         std::thread::sleep(std::time::Duration::from_millis(5));

@@ -189,12 +189,3 @@ fn the_axes_of_a_scan_are_named_in_words_with_their_units() {
     let stretches = drawn(&["--intervals", "outer=1/10..2/10", "--time-unit", "ps"]);
     assert!(stretches.contains("outer step (ps)"), "{stretches}");
 }
-
-/// The page is a feature of the build: without it one line says where to get it.
-#[cfg(not(feature = "explore"))]
-#[test]
-fn a_program_without_the_page_says_how_to_get_one() {
-    let ended = run(&["explore"]);
-    assert_eq!((ended.code, ended.stderr.lines().count()), (Some(2), 1));
-    assert!(ended.stderr.contains("cargo install --locked --path . --features explore"), "{}", ended.stderr);
-}

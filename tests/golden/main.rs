@@ -2,7 +2,7 @@
 //! leaves behind. A change of bytes is a change of `hashes.txt`, in a commit that says which and why:
 //!
 //! ```text
-//! GOLDEN=write cargo test --release --all-features --test golden
+//! GOLDEN=write cargo test --release --test golden
 //! ```
 
 use std::fs;
