@@ -23,10 +23,16 @@
 //! # Ok::<(), kickdrift::error::Error>(())
 //! ```
 
+mod evidence;
+mod gromacs;
+mod lammps;
 mod lines;
+mod namd;
 mod openmm;
+mod others;
 mod read;
 mod reading;
+mod tinker;
 mod xml;
 
 pub use read::read;

@@ -1,9 +1,13 @@
 //! Which engine a text is of, and its reading.
 
+use super::evidence::evidence;
 use super::reading::{Engine, LONGEST, Reading, not_nested};
-use super::{lines, openmm, xml};
+use super::{gromacs, lammps, namd, openmm, others, tinker, xml};
 use crate::error::{Error, Result};
 use crate::number::Rational;
+
+const NONE: &str =
+    "is the input of no engine that is known here (OpenMM, LAMMPS, GROMACS, NAMD, Tinker, i-PI)";
 
 /// Reads an engine's texts, the engine recognized by their content; `outer` is the outermost step where the text does not have it.
 ///
@@ -11,43 +15,72 @@ use crate::number::Rational;
 /// A text of no known engine; an integrator that is not symplectic; forces that would never be integrated; a number that is missing or none.
 pub fn read(texts: &[&str], outer: Option<&Rational>) -> Result<Reading> {
     if texts.iter().any(|text| text.len() > LONGEST) {
-        return Err(Error::input(
-            "engine",
-            "a text of more than 10 MB",
-            "give the engine's input, not its output",
-        ));
+        let remedy = "give the engine's input, not its output";
+        return Err(Error::input("engine", "a text of more than 10 MB", remedy));
     }
-    let Some((engine, text)) = texts.iter().find_map(|text| recognized(text).map(|engine| (engine, *text)))
-    else {
-        let remedy =
-            "is the input of no engine that is known here (OpenMM, LAMMPS, GROMACS, NAMD, Tinker, i-PI)";
-        return Err(Error::input(
-            "engine",
-            texts.first().map_or("nothing", |text| first_words(text)),
-            remedy,
-        ));
-    };
-    let mut reading = match engine {
-        Engine::OpenMm => openmm::read(texts)?,
-        Engine::Lammps => lines::lammps(text)?,
-        Engine::Gromacs => lines::gromacs(text)?,
-        Engine::Namd => lines::namd(text)?,
-        Engine::Tinker => lines::tinker(text, outer)?,
-        Engine::Ipi => xml::ipi(text)?,
-    };
+    let texts: Vec<&str> = texts.iter().map(|text| text.strip_prefix('\u{feff}').unwrap_or(text)).collect();
+    let mut reading = of_texts(&texts, outer)?;
     if let Some(remark) = not_nested(&reading.scheme) {
-        reading.remarks.push(format!("{} itself refuses this: {remark}", engine.name()));
+        reading.remarks.push(format!("{} itself refuses this: {remark}", reading.engine.name()));
     }
     Ok(reading)
 }
 
-fn first_words(text: &str) -> &str {
-    text.trim().lines().next().unwrap_or("nothing")
+fn of_texts(texts: &[&str], outer: Option<&Rational>) -> Result<Reading> {
+    for text in texts {
+        if text.trim_start().starts_with('<') {
+            match xml::recognized(text)? {
+                Some(Engine::Ipi) => return xml::ipi(text),
+                Some(_) => return openmm::read(texts),
+                None => continue,
+            }
+        }
+        if openmm::is_python(text) {
+            return openmm::read(texts);
+        }
+        if let Some(reading) = of_log(text) {
+            return reading;
+        }
+        if let Some(refusal) = others::refusal(text) {
+            return Err(refusal);
+        }
+        if let Some(reading) = of_lines(text, outer)? {
+            return Ok(reading);
+        }
+    }
+    Err(Error::input("engine", texts.first().map_or("nothing", |text| first_words(text)), NONE))
 }
 
-fn recognized(text: &str) -> Option<Engine> {
-    if text.trim_start().starts_with('<') {
-        return xml::recognized(text);
+/// What an engine wrote about its run.
+fn of_log(text: &str) -> Option<Result<Reading>> {
+    [lammps::of_log, namd::of_log, gromacs::of_log].iter().find_map(|of_log| of_log(text))
+}
+
+/// A text of lines of keys and values.
+fn of_lines(text: &str, outer: Option<&Rational>) -> Result<Option<Reading>> {
+    let Some(evidence) = evidence(text) else { return Ok(None) };
+    let mut reading = match evidence.engine {
+        Engine::Lammps => lammps::read(text)?,
+        Engine::Gromacs => gromacs::read(text)?,
+        Engine::Namd => namd::read(text)?,
+        _ => tinker::read(text, outer)?,
+    };
+    if let [first, ..] = &evidence.unknown[..] {
+        let (name, all) = (evidence.engine.name(), evidence.unknown.len());
+        let more = if all > 1 { format!(" and {} more", all - 1) } else { String::new() };
+        if let Some(default) = &reading.default {
+            let remedy = format!(
+                "stands nowhere, and {name} knows no {first}{more}, so that its default of {default} is not taken: write it"
+            );
+            return Err(Error::input("step", "of the text", remedy));
+        }
+        let shown = evidence.unknown.iter().take(5).map(String::as_str).collect::<Vec<_>>().join(", ");
+        let more = if all > 5 { format!(" and {} more", all - 5) } else { String::new() };
+        reading.remarks.push(format!("not understood, since {name} has no such words: {shown}{more}"));
     }
-    if openmm::is_python(text) { Some(Engine::OpenMm) } else { lines::recognized(text) }
+    Ok(Some(reading))
+}
+
+fn first_words(text: &str) -> &str {
+    text.trim().lines().next().unwrap_or("nothing")
 }

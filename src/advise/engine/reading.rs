@@ -51,6 +51,10 @@ pub(super) enum Place {
     Append(&'static str),
     /// The innermost step in fs, of an engine that takes the next shorter one which divides the outermost: behind a key to add, if any.
     Inner(&'static str),
+    /// Whether there are two clocks at all, as yes or no.
+    Switch,
+    /// No number: a text whose one clock has a place already.
+    Nothing,
     /// The work in one step of the level below the outermost, written out as often as that step is made.
     Loop(Loop),
 }
@@ -92,13 +96,16 @@ pub(super) struct Interval {
     pub steps: u64,
     /// Another interval of which it stays a multiple.
     pub of: u64,
+    /// Whether a part of the outermost step does, too.
+    pub or_part: bool,
 }
 
 impl Interval {
     /// The next one that is a multiple of so many innermost steps; `None` where a default is one.
     fn written(&self, outer: u64) -> Option<u64> {
         let unit = self.of.div_ceil(outer) * outer;
-        let steps = self.steps.div_ceil(unit) * unit;
+        let is_part = self.or_part && outer % self.steps == 0;
+        let steps = if is_part { self.steps } else { self.steps.div_ceil(unit) * unit };
         (self.key.is_none() || steps != self.steps).then_some(steps)
     }
 }
@@ -129,6 +136,12 @@ pub struct Reading {
     pub remarks: Vec<String>,
     /// The bonds that it constrains, where its text says so.
     pub constraints: Option<Constraints>,
+    /// The mass in amu that it gives to hydrogens, taken from their heavy atoms, where its text says so.
+    pub hydrogen: Option<Rational>,
+    /// Where the innermost step, or the one that is no other's multiple, is the engine's default: that default.
+    pub(super) default: Option<String>,
+    /// Why no line of it is to be written anew.
+    pub(super) stays: Option<String>,
     text: String,
     pub(super) places: Vec<(Range<usize>, Place)>,
 }
@@ -167,6 +180,9 @@ impl Reading {
             used: vec![],
             remarks: vec![],
             constraints: None,
+            hydrogen: None,
+            default: None,
+            stays: None,
             text: text.into(),
             places: vec![],
         }
@@ -180,6 +196,9 @@ impl Reading {
     pub fn rewritten(&self, outer: &Rational) -> Result<String> {
         let steps = self.scheme.steps();
         let shown = format!("{} fs", decimal(outer));
+        if let Some(why) = &self.stays {
+            return Err(Error::input("outer step", shown, why));
+        }
         if self.places.is_empty() {
             return Err(Error::input("outer step", shown, "the text has no place for it"));
         }
@@ -201,10 +220,11 @@ impl Reading {
         };
         let mut text = self.text.clone();
         let mut places = self.places.clone();
+        let is_off = outer == before && places.iter().any(|(_, place)| *place == Place::Switch);
         places.sort_by_key(|(range, _)| std::cmp::Reverse(range.start));
         for (range, place) in places {
             let number = match place {
-                Place::Outer(unit) => decimal(&(outer / unit.size())),
+                Place::Outer(unit) => written(&(outer / unit.size())),
                 Place::PerOuter(k) => whole(step(k))?,
                 Place::Loop(own) => {
                     let turns = whole(before)?.parse::<u64>().ok().filter(|n| *n <= MOST_TURNS);
@@ -218,6 +238,11 @@ impl Reading {
                     let gap = if self.text.ends_with('\n') || self.text.is_empty() { "" } else { "\n" };
                     if key.is_empty() { own } else { format!("{gap}{key} {own}\n") }
                 }
+                // One clock has no ratio: the number stays.
+                Place::LastRatio if is_off => continue,
+                Place::Interval(_) if is_off => continue,
+                Place::Nothing => continue,
+                Place::Switch => if is_off { "no" } else { "yes" }.into(),
                 Place::LastRatio => whole(before)?,
                 Place::OuterOverInner => whole(self.scheme.inner())?,
                 Place::Interval(own) => {
@@ -245,6 +270,28 @@ impl Reading {
         let old: Vec<&str> = self.text.lines().collect();
         let differs = |(i, line): &(usize, &str)| old.get(*i) != Some(line);
         Ok(new.lines().enumerate().filter(differs).map(|(_, line)| line.trim().to_string()).collect())
+    }
+}
+
+/// A number as every engine reads it, never larger: a decimal of twelve places if it is one, else six digits.
+pub(super) fn written(x: &Rational) -> String {
+    let exact = decimal(x);
+    if !exact.contains('/') {
+        return exact;
+    }
+    let ten = |k: i32| Rational::from_integer(10.into()).pow(k);
+    let mut places = 0;
+    while x * ten(places) >= ten(6) && places > -300 {
+        places -= 1;
+    }
+    while x * ten(places) < ten(5) && places < 300 {
+        places += 1;
+    }
+    let value = (x * ten(places)).floor() * ten(-places);
+    if value >= ten(-6) {
+        decimal(&value)
+    } else {
+        format!("{}e-{}", decimal(&(value * ten(places - 5))), places - 5)
     }
 }
 

@@ -31,14 +31,16 @@ fn parse(text: &str) -> Result<Document<'_>> {
     Document::parse(text).map_err(|cause| Error::input("engine", "XML", format!("cannot be read: {cause}")))
 }
 
-/// The engine by the root element.
-pub(super) fn recognized(text: &str) -> Option<Engine> {
-    let document = parse(text).ok()?;
-    match document.root_element().tag_name().name() {
+/// The engine by the root element; none for other XML.
+///
+/// # Errors
+/// XML that is none.
+pub(super) fn recognized(text: &str) -> Result<Option<Engine>> {
+    Ok(match parse(text)?.root_element().tag_name().name() {
         "simulation" => Some(Engine::Ipi),
         "Integrator" | "System" => Some(Engine::OpenMm),
         _ => None,
-    }
+    })
 }
 
 fn named<'a>(root: Node<'a, 'a>, name: &str) -> Option<Node<'a, 'a>> {
