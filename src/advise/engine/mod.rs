@@ -2,11 +2,12 @@
 //!
 //! | engine | notation | dt is | scheme |
 //! |---|---|---|---|
-//! | OpenMM | `MTSIntegrator(4*femtoseconds, [(0,1),(1,8)])`, and `MTSLangevinIntegrator`; serialized XML | the outermost step | recursive half kicks |
+//! | OpenMM | `MTSIntegrator(4*femtoseconds, [(0,1),(1,8)])`, its kind, and integrators of one step; serialized XML | the outermost step | recursive half kicks |
 //! | LAMMPS | `timestep`, `run_style respa N factors` (the first factor is the innermost one), `units` | the outermost step | half kicks |
 //! | GROMACS | `mts`, `mts-level2-factor`, `dt` in ps | the innermost step | leap-frog, slow forces times the factor: conjugate |
 //! | NAMD | `timestep`, `nonbondedFreq`, `fullElectFrequency` | the innermost step | impulses; `MTSAlgorithm naive` is not symplectic |
 //! | Tinker | `INTEGRATOR RESPA`, `RESPA-INNER`; the outer step is no part of the key file | – | half kicks |
+//! | Tinker-HP | `INTEGRATOR RESPA` and `RESPA1`, `DSHORT` and `DINTER` in ps; the outer step likewise | – | half kicks |
 //! | i-PI | `<timestep>`, `<nmts>`, level 0 the outermost | the outermost step | half kicks |
 //!
 //! Keys that do not affect the steps are skipped; the reading lists those that were used. A text is
@@ -25,13 +26,17 @@
 
 mod evidence;
 mod gromacs;
+mod ipi;
 mod lammps;
 mod lines;
 mod namd;
 mod openmm;
 mod others;
+mod quantity;
 mod read;
 mod reading;
+mod script;
+mod serialized;
 mod tinker;
 mod xml;
 

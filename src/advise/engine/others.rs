@@ -63,8 +63,7 @@ pub(super) fn refusal(text: &str) -> Option<Error> {
         }
     }
     is_python(text).then(|| {
-        let remedy = "has no MTSIntegrator or MTSLangevinIntegrator of OpenMM's: give the steps themselves, as --steps 1fs,4fs, or the integrator, \
-                      serialized by XmlSerializer";
+        let remedy = "imports no OpenMM: give the steps themselves, as --steps 1fs,4fs";
         Error::input("engine", "a text in Python", remedy)
     })
 }

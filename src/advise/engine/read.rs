@@ -2,12 +2,12 @@
 
 use super::evidence::evidence;
 use super::reading::{Engine, LONGEST, Reading, not_nested};
-use super::{gromacs, lammps, namd, openmm, others, tinker, xml};
+use super::{gromacs, ipi, lammps, namd, openmm, others, tinker, xml};
 use crate::error::{Error, Result};
 use crate::number::Rational;
 
 const NONE: &str =
-    "is the input of no engine that is known here (OpenMM, LAMMPS, GROMACS, NAMD, Tinker, i-PI)";
+    "is the input of no engine that is known here (OpenMM, LAMMPS, GROMACS, NAMD, Tinker, Tinker-HP, i-PI)";
 
 /// Reads an engine's texts, the engine recognized by their content; `outer` is the outermost step where the text does not have it.
 ///
@@ -28,12 +28,11 @@ pub fn read(texts: &[&str], outer: Option<&Rational>) -> Result<Reading> {
 
 fn of_texts(texts: &[&str], outer: Option<&Rational>) -> Result<Reading> {
     for text in texts {
-        if text.trim_start().starts_with('<') {
-            match xml::recognized(text)? {
-                Some(Engine::Ipi) => return xml::ipi(text),
-                Some(_) => return openmm::read(texts),
-                None => continue,
-            }
+        if xml::is_xml(text) {
+            return match xml::recognized(text)? {
+                Engine::Ipi => ipi::ipi(text),
+                _ => openmm::read(texts),
+            };
         }
         if openmm::is_python(text) {
             return openmm::read(texts);

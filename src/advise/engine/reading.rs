@@ -19,6 +19,7 @@ named! {
         Gromacs = "GROMACS",
         Namd = "NAMD",
         Tinker = "Tinker",
+        TinkerHp = "Tinker-HP",
         Ipi = "i-PI",
     }
 }
@@ -29,7 +30,7 @@ impl Engine {
         match self {
             Engine::OpenMm | Engine::Lammps | Engine::Ipi => "dt is the outermost step",
             Engine::Gromacs | Engine::Namd => "dt is the innermost step",
-            Engine::Tinker => "dt, given when a run starts, is the outermost step",
+            Engine::Tinker | Engine::TinkerHp => "dt, given when a run starts, is the outermost step",
         }
     }
 }
@@ -49,8 +50,8 @@ pub(super) enum Place {
     Interval(Interval),
     /// A whole line to add at the end, with the last ratio behind it.
     Append(&'static str),
-    /// The innermost step in fs, of an engine that takes the next shorter one which divides the outermost: behind a key to add, if any.
-    Inner(&'static str),
+    /// The innermost step in fs with a point, of an engine that takes the next shorter one which divides the outermost.
+    Inner,
     /// Whether there are two clocks at all, as yes or no.
     Switch,
     /// No number: a text whose one clock has a place already.
@@ -232,11 +233,10 @@ impl Reading {
                     own.written(turns.ok_or_else(|| Error::input("outer step", &shown, remedy))?)
                 }
                 // Rounded up to 10^-6 fs, the step still gives as many inner ones.
-                Place::Inner(key) => {
+                Place::Inner => {
                     let millionths = (self.scheme.inner() * Rational::from_integer(1_000_000.into())).ceil();
                     let own = decimal(&(millionths / Rational::from_integer(1_000_000.into())));
-                    let gap = if self.text.ends_with('\n') || self.text.is_empty() { "" } else { "\n" };
-                    if key.is_empty() { own } else { format!("{gap}{key} {own}\n") }
+                    if own.contains('.') { own } else { own + ".0" }
                 }
                 // One clock has no ratio: the number stays.
                 Place::LastRatio if is_off => continue,
