@@ -4,7 +4,7 @@ modes that grow.
 Weak springs hold each atom where it is, as in an equilibration: so the place is a minimum, and the verdict has a
 margin.
 
-Run, from python/, with a release build installed:  python tests/bench/droplets.py 500 2000 [0.5nm 0.9nm] [droplets.svg]
+Run, from python/, with a release build installed:  python tests/bench/droplets.py 500 2000 [0.5nm] [droplets.svg]
 
 A length is the cutoff of the slow forces. The name of a picture, last, has the seconds of processors drawn over the
 degrees of freedom.
@@ -12,7 +12,6 @@ degrees of freedom.
 
 from __future__ import annotations
 
-import itertools
 import resource
 import sys
 import time
@@ -63,17 +62,14 @@ def droplet(count: int, cutoff: float = CUTOFF) -> tuple[mm.System, np.ndarray]:
     return system, np.array(context.getState(getPositions=True).getPositions(asNumpy=True)._value)
 
 
-def draw(path: str, sizes: list[int], seconds: dict[float, list[float]]) -> None:
-    """The cost of a verdict over n for each cutoff, both by their logarithms, beside powers of n."""
+def draw(path: str, sizes: list[int], seconds: list[float]) -> None:
+    """The cost of a verdict over n, both by their logarithms, beside powers of n."""
     figure, axes = plt.subplots(figsize=(4.6, 3.4), layout="constrained")
-    for (cutoff, own), mark in zip(sorted(seconds.items()), "osD^v", strict=False):
-        axes.loglog(sizes, own, f"{mark}-", color="black", mfc="white", label=f"cutoff {cutoff} nm")
-    for (power, style), own in itertools.product(((1.5, "--"), (2, ":")), seconds.values()):
-        line = [own[0] * (n / sizes[0]) ** power for n in sizes]
-        name = f"$n^{{{power}}}$" if own is next(iter(seconds.values())) else None
-        axes.loglog(sizes, line, style, color="grey", zorder=0, label=name)
-    axes.set(xlabel="degrees of freedom n", ylabel="time of processors (s)")
-    axes.set_title("Droplets of flexible water:\nverdict, margin, first unstable step", fontsize="medium")
+    axes.loglog(sizes, seconds, "o-", color="black", label="verdict, margin, first unstable step")
+    for power, style in ((1.5, "--"), (2, ":")):
+        line = [seconds[0] * (n / sizes[0]) ** power for n in sizes]
+        axes.loglog(sizes, line, style, color="grey", label=f"$n^{{{power}}}$")
+    axes.set(xlabel="degrees of freedom n", ylabel="time of processors (s)", title="Droplets of flexible water")
     axes.legend(frameon=False)
     figure.savefig(path, metadata={"Date": None} if path.endswith(".svg") else None)
 
@@ -81,9 +77,9 @@ def draw(path: str, sizes: list[int], seconds: dict[float, list[float]]) -> None
 def main() -> None:
     """Print a line for each number of waters."""
     counts = [int(own) for own in sys.argv[1:] if own.isdigit()]
-    cutoffs = [float(own[:-2]) for own in sys.argv[1:] if own.endswith("nm")] or [CUTOFF]
-    seconds: dict[float, list[float]] = {cutoff: [] for cutoff in cutoffs}
-    for cutoff, count in itertools.product(cutoffs, counts):
+    cutoff = next((float(own[:-2]) for own in sys.argv[1:] if own.endswith("nm")), CUTOFF)
+    seconds = []
+    for count in counts:
         system, positions = droplet(count, cutoff)
         held = mm.CustomExternalForce(f"{SPRING / 2}*((x-x0)^2+(y-y0)^2+(z-z0)^2)")
         for name in ("x0", "y0", "z0"):
@@ -102,8 +98,8 @@ def main() -> None:
             (made, _), (decided, processor) = np.diff(times, axis=0)
             peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6
             if outer == STEPS[0]:
-                seconds[cutoff].append(processor)
-            print(f"{count} waters, {cutoff} nm, {outer} ps: Hessians {made:.1f} s, answer {decided:.1f} s", end=" ")
+                seconds.append(processor)
+            print(f"{count} waters, {outer} ps: Hessians {made:.1f} s, answer {decided:.1f} s", end=" ")
             print(f"({processor:.1f} s of processors), at most {peak:.1f} GB")
             print("\n".join(f"  {line}" for line in str(found).splitlines()), flush=True)
     if sys.argv[-1].endswith((".svg", ".pdf", ".png")):

@@ -76,30 +76,6 @@ pub(super) fn dissected(columns: &[usize], rows: &[usize]) -> Vec<usize> {
     order.into_iter().rev().flat_map(|v| std::mem::take(&mut rows[v])).collect()
 }
 
-/// Nodes of these weights, each with those next to it, in clusters: halves of halves, as long as a part weighs more than `most` and has two nodes.
-pub(super) fn clusters(weights: Vec<usize>, near: Vec<Vec<usize>>, most: usize) -> Vec<Vec<usize>> {
-    let mut parts = Parts::new(weights, near);
-    let (mut clusters, mut left) = (Vec::new(), parts.all());
-    while let Some(own) = left.pop() {
-        let weight = parts.weight(&own);
-        if weight <= most || own.len() < 2 {
-            clusters.push(own);
-            continue;
-        }
-        parts.begin(&own);
-        let mut sorted = parts.sorted(&own);
-        // As many full clusters on the lower side as on the upper one, or one less.
-        let (full, mut below) = (weight.div_ceil(most), 0);
-        let half = sorted.iter().position(|&v| {
-            below += parts.weights[v];
-            below * full > weight * (full / 2)
-        });
-        let upper = sorted.split_off(half.unwrap_or(1).clamp(1, own.len() - 1));
-        left.extend([upper, sorted]);
-    }
-    clusters
-}
-
 /// What is known of the nodes: which part each is in, and where.
 struct Parts {
     weights: Vec<usize>,

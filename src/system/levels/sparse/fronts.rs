@@ -214,7 +214,7 @@ impl<'a> Fronts<'a> {
         let threads = faer::get_global_parallelism();
         match self.kind {
             Elimination::Cholesky => {
-                cholesky(top.as_mut(), threads)?;
+                cholesky(top.as_mut())?;
                 solve_lower_triangular_in_place(top.as_ref(), below.as_mut(), threads);
                 take(update, below.rb(), below.rb());
                 Some(Pivots::default())
@@ -255,8 +255,8 @@ impl Pivots {
 }
 
 /// Cholesky's factor in place; `None` where a pivot is not positive, or memory runs out.
-pub(super) fn cholesky(mut own: MatMut<'_, f64>, threads: faer::Par) -> Option<()> {
-    let n = own.nrows();
+fn cholesky(mut own: MatMut<'_, f64>) -> Option<()> {
+    let (n, threads) = (own.nrows(), faer::get_global_parallelism());
     let scratch = llt::factor::cholesky_in_place_scratch::<f64>(n, threads, Default::default());
     let mut room = MemBuffer::try_new(scratch).ok()?;
     let (stack, none) = (MemStack::new(&mut room), Default::default());

@@ -77,11 +77,6 @@ impl Pattern {
         Ok((Pattern { columns, rows, symbolic: Arc::new(symbolic), terms }, values))
     }
 
-    /// The rows in the order in which they are eliminated.
-    pub fn order(&self) -> Vec<usize> {
-        self.symbolic.perm().map_or_else(|| (0..self.size()).collect(), |perm| perm.arrays().0.to_vec())
-    }
-
     /// n.
     pub fn size(&self) -> usize {
         self.columns.len() - 1
@@ -100,11 +95,6 @@ impl Pattern {
     /// Every entry of the lower triangle, zeros that are kept included.
     pub fn triplets<'a>(&'a self, values: &'a [f64]) -> impl Iterator<Item = (usize, usize, f64)> + 'a {
         (0..self.size()).flat_map(move |j| self.column(j).map(move |(at, i)| (i, j, values[at])))
-    }
-
-    /// Row and column of every entry of the lower triangle, column by column.
-    pub fn places(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
-        (0..self.size()).flat_map(move |j| self.column(j).map(move |(_, i)| (i, j)))
     }
 
     /// Adds x to the entry in a row and a column of the pattern.
@@ -267,7 +257,7 @@ impl Pattern {
 
     /// c + Σ a_k A_k minus as much of the identity as Cholesky's factors may be off by: where they exist, whatever the order of their sums, every
     /// matrix within `slack` of the sum is positive definite. `None` where a diagonal entry shows that they do not.
-    pub(super) fn lowered(&self, c: f64, terms: &[(f64, &[f64])], slack: f64) -> Option<Vec<f64>> {
+    fn lowered(&self, c: f64, terms: &[(f64, &[f64])], slack: f64) -> Option<Vec<f64>> {
         let n = self.size();
         let (mut values, trace) = self.sum(c, terms);
         // γ of the longest sum, with room for the reciprocals of pivots, the rounding of the shifted diagonal and of the sums here.

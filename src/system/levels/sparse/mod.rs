@@ -10,14 +10,13 @@
 //!
 //! The first is two sparse Cholesky factorizations that run to their end, the second one vector, from a Krylov space of the form. In between
 //! nothing is said: that gap is as wide as the line lies below E where x has its share. Factors are kept only where something is solved with
-//! them; the rest asks for signs, and goes front by front, or leaves out what is small between molecules far apart.
+//! them; the rest asks for signs, and goes front by front.
 //!
 //! | file | what |
 //! |---|---|
 //! | `matrix` | sparse symmetric matrices, sums proven positive definite |
 //! | `dissect` | in which order their rows are eliminated |
 //! | `fronts` | the pivots of an elimination that keeps no factors |
-//! | `incomplete` | positive pivots with parts left out: what proves very large sums |
 //! | `krylov` | one eigenvector of an operator |
 //! | `region` | the verdict, the margin, the first unstable step |
 //! | `period` | the period of positions, with a bound on its roundings |
@@ -30,7 +29,6 @@ mod counted;
 mod dissect;
 mod fronts;
 mod growing;
-mod incomplete;
 mod krylov;
 mod matrix;
 mod period;

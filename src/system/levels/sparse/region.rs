@@ -6,7 +6,6 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use faer::Mat;
 
 use super::blocks::Blocks;
-use super::incomplete::Molecules;
 use super::krylov::top;
 use super::matrix::{Factors, Pattern, Triplets};
 use crate::error::{Error, Result};
@@ -61,7 +60,6 @@ pub struct SparseLevels {
     held: OnceLock<Held>,
     /// Where F falls into small ones.
     pub(super) blocks: OnceLock<Option<Arc<Blocks>>>,
-    molecules: OnceLock<Option<Arc<Molecules>>>,
     /// By the number of inner steps.
     first: Arc<Mutex<BTreeMap<u64, Option<First>>>>,
 }
@@ -111,14 +109,6 @@ const SIDE_BY_SIDE: f64 = 1e8;
 const BELOW_LIMIT: [f64; 3] = [1.0 - WIDTH / 2.0, 0.999, 0.99];
 const FROM: [f64; 8] = [0.9, 0.5, 0.2, 0.1, 0.03, 0.01, 1e-3, 1e-4];
 
-/// Products of a factorization from which on an incomplete one may be faster.
-const WORTH_LEAVING_OUT: f64 = 1e10;
-
-/// Rows that an incomplete factorization keeps of a column, over those that its molecule is joined to: measured, some 9 where the fastest bonds resonate, a
-/// matter of single molecules, and 16 for F + S near its least eigenvalue. The first is counted as 14: what little is gained below is not worth its memory.
-const FAR: f64 = 14.0;
-const FARTHER: f64 = 16.0;
-
 /// Shifts, relative to the norms, by which F + S is positive definite in doubles.
 const SHIFTED: [f64; 3] = [1e-9, 1e-7, 1e-5];
 
@@ -166,7 +156,7 @@ impl SparseLevels {
         let ((size, terms), image) = (both.size_of(&total), both.times(&total, &rigid));
         let rounding = 2.0 * (terms as f64 + 2.0) * U * size * norm::frobenius(&rigid);
         let leak = 3.1 * (norm::frobenius(&image) + rounding);
-        let (ends, held, first, blocks, molecules) = Default::default();
+        let (ends, held, first, blocks) = Default::default();
         let (sizes, roots) = (sizes.map(|(size, _)| size), masses.iter().map(|m| m.sqrt()).collect());
         Ok(SparseLevels {
             both,
@@ -182,7 +172,6 @@ impl SparseLevels {
             ends,
             held,
             blocks,
-            molecules,
             first,
         })
     }
@@ -240,13 +229,13 @@ impl SparseLevels {
         let known = bisected((0.0, most), 1e-3, |epsilon| Some(self.is_below_first(outer, epsilon))).0;
         let line = if known >= total.min(most / (1.0 + NEAR)) {
             known
-        } else if total < most && self.is_above(outer, total, Some(quotients)) {
+        } else if total < most && self.is_above(outer, total) {
             total
         } else {
-            largest_below(most.min(total), 0.01, |epsilon| self.is_above(outer, epsilon, Some(quotients)))
+            largest_below(most.min(total), 0.01, |epsilon| self.is_above(outer, epsilon))
         };
         let margin = line.min(total);
-        (margin > 0.0 || self.is_above(outer, 0.0, Some(quotients))).then_some(margin)
+        (margin > 0.0 || self.is_above(outer, 0.0)).then_some(margin)
     }
 
     /// The largest ε up to `most`, rounded down, for which F + S is definite by as much.
@@ -301,12 +290,6 @@ impl SparseLevels {
         [&self.fast, &self.slow].map(|own| free(self.both.times(own, &y)).col_as_slice(0).to_vec())
     }
 
-    /// The first region's end, where it was sought before.
-    fn known_first(&self, inner_steps: u64) -> Option<First> {
-        let known = self.first.lock().unwrap_or_else(PoisonError::into_inner);
-        known.get(&inner_steps).cloned().flatten()
-    }
-
     fn first(&self, inner_steps: u64) -> Option<First> {
         let mut known = self.first.lock().unwrap_or_else(PoisonError::into_inner);
         known.entry(inner_steps).or_insert_with(|| self.find_first(inner_steps)).clone()
@@ -315,8 +298,7 @@ impl SparseLevels {
     fn find_first(&self, inner_steps: u64) -> Option<First> {
         let [_, high] = self.ends(0.0)?;
         let at = |step: f64| Outer::new(step, inner_steps).ok();
-        let is_proven =
-            |step: f64, own: [f64; 2]| at(step).is_some_and(|outer| self.is_above(&outer, 0.0, Some(own)));
+        let is_proven = |step: f64| at(step).is_some_and(|outer| self.is_above(&outer, 0.0));
         // At the latest where the fastest mode alone has p θ = π.
         let angle = std::f64::consts::PI / (2.0 * inner_steps as f64);
         let top = inner_steps as f64 * 2.0 * angle.sin() / high.sqrt();
@@ -337,8 +319,7 @@ impl SparseLevels {
             }
         }
         let begin = BELOW_LIMIT.iter().map(|part| part * hi).chain(FROM.iter().map(|part| part * top));
-        let mut quotients = self.quotients(&along);
-        let mut lo = begin.into_iter().find(|&step| step < hi && is_proven(step, quotients))?;
+        let mut lo = begin.into_iter().find(|&step| step < hi && is_proven(step))?;
         while hi > lo * (1.0 + WIDTH) {
             let Some(next) =
                 self.above(&at(lo)?).and_then(|own| own.least(along.clone(), &self.rigid, STEPS_BELOW))
@@ -346,11 +327,11 @@ impl SparseLevels {
                 break;
             };
             along = next;
-            quotients = self.quotients(&along);
             hi = hi.min(limit(&along, (lo, hi)));
-            let Some(found) = nearer(lo, &mut hi, |step| is_proven(step, quotients)) else { break };
+            let Some(found) = nearer(lo, &mut hi, is_proven) else { break };
             lo = found;
         }
+        let quotients = self.quotients(&along);
         let unstable = |step: f64| at(step).is_some_and(|outer| self.resonates_along(quotients, &outer, 0.0));
         let first =
             (0..40).map(|k| lo * (1.0 + WIDTH / 16.0 * 1.5f64.powi(k))).take_while(|&step| step < top);
@@ -371,33 +352,16 @@ impl SparseLevels {
     pub(super) fn is_proven(&self, outer: &Outer, epsilon: f64) -> bool {
         // (3) of proofs/REGION.md follows where F + S > 0.
         let off: f64 = (0..2).map(|k| self.errors[k] + epsilon * self.sizes[k]).sum();
-        let known = self.known_first(outer.inner_steps).map(|first| first.quotients);
-        self.is_total_definite(off) && self.is_above(outer, epsilon, known)
+        self.is_total_definite(off) && self.is_above(outer, epsilon)
     }
 
-    /// Whether (1) and (2) of proofs/REGION.md are proven. `quotients` are those of the vector that the form stretches least, where one is known: they show
-    /// about how far the form is above 0.
-    fn is_above(&self, outer: &Outer, epsilon: f64, quotients: Option<[f64; 2]>) -> bool {
+    /// Whether (1) and (2) of proofs/REGION.md are proven.
+    fn is_above(&self, outer: &Outer, epsilon: f64) -> bool {
         let line = self.ends(epsilon).and_then(|[low, high]| chord(outer, low, high));
         line.is_some_and(|line| {
             let ([fast, slow], slack) = self.form(outer, line, epsilon);
-            let least = quotients.map_or(0.0, |own| self.form_along(own, outer, epsilon));
-            let terms = [(fast, &self.fast[..]), (slow, &self.slow)];
-            self.is_definite(line[0], &terms, slack, [least, FAR])
+            self.both.is_definite(line[0], &[(fast, &self.fast), (slow, &self.slow)], slack)
         })
-    }
-
-    /// Whether every matrix within `slack` of a sum is proven positive definite. An incomplete factorization is tried first where it is expected to be faster:
-    /// `least` is about the sum's least eigenvalue beyond the slack, `reach` is [`FAR`] or [`FARTHER`].
-    fn is_definite(&self, c: f64, terms: &[(f64, &[f64])], slack: f64, [least, reach]: [f64; 2]) -> bool {
-        let by_parts = || {
-            let molecules =
-                self.molecules.get_or_init(|| Molecules::new(&self.alone, &self.both).map(Arc::new));
-            let own = molecules.as_ref().filter(|own| own.cost(reach) < self.products())?;
-            Some(own.is_definite(&self.both, &self.both.lowered(c, terms, slack)?, least))
-        };
-        least > 0.0 && self.products() > WORTH_LEAVING_OUT && by_parts() == Some(true)
-            || self.both.is_definite(c, terms, slack)
     }
 
     /// The factors that prove it.
@@ -488,7 +452,7 @@ impl SparseLevels {
         let off = self.errors[0] + self.errors[1];
         let above = off + (least - off) / (1.0 + 0.9 * NEAR);
         let slack = self.total_slack(above);
-        let is_held = least > off && self.is_definite(0.0, &self.total(), slack, [least - above, FARTHER]);
+        let is_held = least > off && self.both.is_definite(0.0, &self.total(), slack);
         is_held.then_some(Held { not_proven: Some(0), least: Some(least), above })
     }
 
@@ -613,30 +577,3 @@ fn largest_below(most: f64, width: f64, holds: impl Fn(f64) -> bool) -> f64 {
 
 /// A margin below it is rounding.
 const LEAST_MARGIN: f64 = 1e-15;
-
-#[cfg(test)]
-mod tests {
-    use super::super::incomplete::tests::lattice;
-    use super::*;
-
-    #[test]
-    fn a_whole_factorization_proves_what_one_with_parts_left_out_does() {
-        let side = 20;
-        let [fast, slow] = lattice(side, [4.0, 1.0]);
-        let n = 3 * side.pow(3) as usize;
-        let levels = SparseLevels::new(&vec![1.0; n], [&fast, &slow], Mat::zeros(n, 0)).unwrap();
-        let (lo, _) = levels.first_unstable(8).expect("held, and far from the edge");
-        let molecules = levels.molecules.get().and_then(Option::as_ref).expect("looked at");
-        assert!(molecules.cost(FARTHER) < levels.products() && levels.products() > WORTH_LEAVING_OUT);
-        let outer = Outer::new(lo, 8).unwrap();
-        let [low, high] = levels.ends(0.0).unwrap();
-        let line = chord(&outer, low, high).unwrap();
-        let ([a, b], slack) = levels.form(&outer, line, 0.0);
-        assert!(levels.both.is_definite(line[0], &[(a, &levels.fast), (b, &levels.slow)], slack));
-        let Held { above, least, .. } = *levels.held();
-        let slack = levels.total_slack(above);
-        assert!(above > 0.0 && levels.both.is_definite(0.0, &levels.total(), slack));
-        let lowered = levels.both.lowered(0.0, &levels.total(), slack).unwrap();
-        assert!(molecules.is_definite(&levels.both, &lowered, least.unwrap() - above));
-    }
-}
