@@ -1,7 +1,7 @@
 //! Sparse levels of many degrees of freedom against the dense kernel of the same numbers.
 
 use kickdrift::scene::{Array, Scan, SystemScene};
-use kickdrift::system::levels::sparse::{Growing, SparseLevels};
+use kickdrift::system::levels::sparse::SparseLevels;
 use kickdrift::system::levels::{Hessians, Kernel, Outer, rigid_motions};
 use kickdrift::system::{Holds, Limits, Route};
 use nalgebra::DMatrix;
@@ -270,67 +270,10 @@ fn resonances_are_proven_where_the_forces_hold_no_minimum() {
     assert!(grown(1.01 * end).iter().any(|own| own.re < -1.0));
 }
 
-/// The modes of the dense period: every one that is told is one of them, none that grows faster is left out, and what bounds them does; beyond half a turn
-/// of the fast modes, too, where counts alone prove it, and where steps are stable again.
-#[test]
-fn the_modes_that_grow_are_those_of_the_dense_kernel() {
-    let (mut numbers, mut told, mut sharp, mut beyond) = (Numbers(11), 0, 0, [0; 2]);
-    for (side, inner_steps) in [(2, 1), (2, 4), (3, 5), (3, 9)] {
-        let droplet = Droplet::new(side, &mut numbers);
-        let (sparse, dense) = (droplet.sparse(), droplet.dense());
-        let (_, first) = sparse.first_unstable(inner_steps).unwrap();
-        assert!(sparse.beyond(&Outer::new(0.99 * first, inner_steps).unwrap(), true).1.is_none());
-        for above in [1.0001, 1.003, 1.01, 1.03, 1.1, 1.2, 1.25, 1.3, 1.4, 1.5, 1.6, 1.7, 1.8] {
-            let outer = Outer::new(above * first, inner_steps).unwrap();
-            let (holds, growing) = sparse.beyond(&outer, true);
-            let truth = dense.verdict_within(&outer, 0.0);
-            assert!(holds == truth || holds == Holds::NotTold, "{side} {above} {holds:?} {truth:?}");
-            assert_eq!(sparse.verdict(&outer, 0.0), holds, "{side} {above}");
-            same_without_counts(&sparse, &outer, (holds, growing.as_ref()));
-            let Some(growing) = growing else {
-                assert_ne!(holds, Holds::Unstable, "{side} {above}");
-                beyond[0] += usize::from(holds == Holds::Stable);
-                continue;
-            };
-            let found =
-                dense.decide(&outer, &num_rational::BigRational::from_float(outer.step()).unwrap(), 1e-9);
-            let all = found.parts[0].multipliers.iter().map(|own| own.mu);
-            // The dense eigenvalues are sharp to 10^-9 here.
-            let truth: Vec<f64> = all.filter(|mu| mu.re < -1.0 && mu.im == 0.0).map(|mu| mu.re).collect();
-            let is_bounded = growing.modes.iter().all(|mode| mode.radius.is_some());
-            for (k, mode) in growing.modes.iter().enumerate() {
-                let off = |mu: &f64| (mode.mu - mu).norm();
-                assert_eq!(mode.shape.len(), droplet.masses.len());
-                if let Some(radius) = mode.radius {
-                    assert!(
-                        radius < 1e-6 && off(&truth[k]) < radius + 1e-9,
-                        "{side} {above}: {mode:?} {truth:?}"
-                    );
-                } else if mode.mu.im == 0.0 {
-                    assert!(truth.iter().any(|mu| off(mu) < 1e-6), "{side} {above}: {:?} {truth:?}", mode.mu);
-                }
-            }
-            assert!(!is_bounded || growing.modes.len() == truth.len().min(12), "{side} {above}: {truth:?}");
-            assert!(growing.at_least <= truth.len(), "{side} {above} {} {truth:?}", growing.at_least);
-            assert!(
-                growing.at_most.is_none_or(|most| most >= truth.len()),
-                "{:?} {truth:?}",
-                growing.at_most
-            );
-            let (lo, hi) = growing.fastest.unwrap();
-            let rate = outer.step() * dense.growth(&outer);
-            assert!(lo < rate + 1e-7 && rate < hi + 1e-7, "{lo} {rate} {hi}");
-            (told, sharp) = (told + truth.len(), sharp + usize::from(hi < 1.001 * lo));
-            beyond[1] += usize::from(!is_bounded);
-        }
-    }
-    assert!(told > 20 && sharp > 3 && beyond[0] > 2 && beyond[1] > 0, "{told} {sharp} {beyond:?}");
-}
-
 /// What is said of all stiffnesses within an accuracy is true of those at its ends, and is never the opposite of what the dense kernel says of all.
 #[test]
 fn verdicts_for_all_stiffnesses_within_an_accuracy_are_those_at_its_ends() {
-    let (mut numbers, mut seen, mut left) = (Numbers(11), [[0; 3]; 2], 0);
+    let (mut numbers, mut seen) = (Numbers(11), [[0; 3]; 2]);
     for (side, inner_steps) in [(2, 1), (2, 4), (3, 9)] {
         let droplet = Droplet::new(side, &mut numbers);
         let roots = DMatrix::from_diagonal(
@@ -342,12 +285,11 @@ fn verdicts_for_all_stiffnesses_within_an_accuracy_are_those_at_its_ends() {
         let mass = &roots * &roots;
         let (sparse, dense) = (droplet.sparse(), droplet.dense());
         let (_, first) = sparse.first_unstable(inner_steps).unwrap();
-        for above in [1.003, 1.03, 1.2, 1.4, 1.6, 1.8] {
+        for above in [0.9, 0.99, 1.0001, 1.003, 1.03, 1.2, 1.8] {
             let outer = Outer::new(above * first, inner_steps).unwrap();
             for (k, epsilon) in [3e-10, 1e-6, 1e-4].into_iter().enumerate() {
                 let told = sparse.verdict(&outer, epsilon);
                 seen[k.min(1)][told as usize] += 1;
-                left += usize::from(k == 2 && told == Holds::NotTold && sparse.verdict(&outer, 0.0) != told);
                 if told == Holds::NotTold {
                     continue;
                 }
@@ -369,99 +311,14 @@ fn verdicts_for_all_stiffnesses_within_an_accuracy_are_those_at_its_ends() {
             }
         }
     }
-    let [fine, coarse] = seen;
-    assert!(fine[Holds::Unstable as usize] > 4 && fine[Holds::Stable as usize] > 1, "{seen:?}");
-    // Larger ones are not proven everywhere.
-    assert!(coarse[Holds::Unstable as usize] > 8 && left > 0, "{seen:?} {left}");
+    // Below the first region's end and a little above it; larger accuracies are not proven everywhere.
+    let of = |k: usize, holds: Holds| seen[k][holds as usize];
+    assert!((0..2).all(|k| of(k, Holds::Unstable) > 2 && of(k, Holds::Stable) > 2), "{seen:?}");
 }
 
-/// Levels of unit masses from the lower triangles of their stiffnesses, and the dense kernel of the same.
-fn sparse_and_dense(
-    n: usize,
-    fast: &[(usize, usize, f64)],
-    slow: &[(usize, usize, f64)],
-) -> (SparseLevels, Kernel) {
-    let sparse = SparseLevels::new(&vec![1.0; n], [fast, slow], faer::Mat::zeros(n, 0)).unwrap();
-    let whole = |own: &[(usize, usize, f64)]| {
-        let mut matrix = DMatrix::zeros(n, n);
-        own.iter().for_each(|&(i, j, x)| (matrix[(i, j)], matrix[(j, i)]) = (x, x));
-        matrix
-    };
-    let hessians = Hessians::weighted(&vec![1.0; n], &whole(fast), &whole(slow), 1e-9).unwrap();
-    (sparse, Kernel::new(&hessians).unwrap())
-}
-
-/// What a scan asks for has the same verdict and the same growth.
-fn same_without_counts(sparse: &SparseLevels, outer: &Outer, (holds, growing): (Holds, Option<&Growing>)) {
-    let (told, alone) = sparse.growth(outer);
-    assert_eq!(told, holds, "{}", outer.step());
-    let fastest = |own: Option<&Growing>| own.and_then(|own| own.fastest);
-    assert_eq!(fastest(alone.as_ref()), fastest(growing), "{}", outer.step());
-}
-
-/// The verdict, which is the dense one or none, and what growth there is, which holds the dense one's.
-fn enclosed(sparse: &SparseLevels, dense: &Kernel, outer: &Outer) -> (Holds, (f64, f64)) {
-    let ((holds, growing), truth) = (sparse.beyond(outer, true), dense.verdict_within(outer, 0.0));
-    assert!(holds == truth || holds == Holds::NotTold, "{} {holds:?} {truth:?}", outer.step());
-    same_without_counts(sparse, outer, (holds, growing.as_ref()));
-    let rate = outer.step() * dense.growth(outer);
-    let (lo, hi) = growing.as_ref().and_then(|own| own.fastest).unwrap_or((0.0, f64::INFINITY));
-    assert!(lo < rate + 1e-7 && rate < hi + 1e-7, "{} {lo} {rate} {hi}", outer.step());
-    (holds, (lo, hi))
-}
-
-/// Slow forces that soften the bonds move their resonance to steps in which every bond takes more than half a turn: what grows there is enclosed from both
-/// sides, and later steps are stable again.
+/// Documents of a droplet on both sides of its first unstable step, and above all that is decided.
 #[test]
-fn what_grows_beyond_half_a_turn_is_enclosed_and_ends() {
-    let (n, mut numbers, mut seen) = (60, Numbers(3), [0; 2]);
-    let bonds = |i: usize| i % 3 < 2;
-    let fast: Vec<_> = (0..n).filter(|&i| bonds(i)).map(|i| (i, i, 1.0 + 0.01 * numbers.next())).collect();
-    let slow: Vec<_> = (0..n)
-        .map(|i| (i, i, if bonds(i) { -0.05 } else { 0.02 }))
-        .chain((1..n).map(|i| (i, i - 1, 0.004 * (i as f64).sin())))
-        .collect();
-    let (sparse, dense) = sparse_and_dense(n, &fast, &slow);
-    for k in 0..24 {
-        let outer = Outer::new(3.0 + 0.02 * f64::from(k), 8).unwrap();
-        let (holds, (lo, hi)) = enclosed(&sparse, &dense, &outer);
-        let is_past = outer.step() > 3.2;
-        seen[0] += usize::from(is_past && hi < 1.001 * lo);
-        seen[1] += usize::from(is_past && holds == Holds::Stable);
-    }
-    assert!(seen.iter().all(|&count| count > 1), "{seen:?}");
-}
-
-/// Modes before and past half a turn that grow in equal numbers leave the count at 0 as it is where nothing grows: no stability follows.
-#[test]
-fn as_many_growing_modes_before_half_a_turn_as_past_it_are_not_taken_for_none() {
-    let (n, mut numbers, mut seen, mut grown) = (4, Numbers(8), [0; 3], 0);
-    for case in 0..400 {
-        // p θ within 0.05 of π, two on either side.
-        let is_past = |i: usize| i.is_multiple_of(2);
-        let beside = |i: usize, x: f64| if is_past(i) { 0.1 * x.abs() } else { -0.1 * x.abs() };
-        let square = |turn: f64| 32.0 * (1.0 - (turn / 4.0).cos());
-        let fast: Vec<_> =
-            (0..n).map(|i| (i, i, square(std::f64::consts::PI + beside(i, numbers.next())))).collect();
-        // Past half a turn a negative slow stiffness makes a mode grow, before it a positive one; every fourth case the other way round.
-        let sign = |i: usize| if is_past(i) == (case % 4 != 0) { -1.0 } else { 1.0 };
-        let alone = (0..n).map(|i| (i, i, sign(i) * 2.0 * numbers.next().abs())).collect::<Vec<_>>();
-        let slow: Vec<_> =
-            alone.into_iter().chain((1..n).map(|i| (i, i - 1, 0.05 * (i as f64).sin()))).collect();
-        let (sparse, dense) = sparse_and_dense(n, &fast, &slow);
-        let outer = Outer::new(1.0, 4).unwrap();
-        let (holds, (lo, _)) = enclosed(&sparse, &dense, &outer);
-        seen[holds as usize] += 1;
-        grown += usize::from(lo > 0.0);
-    }
-    // Counts that cancel tell nothing: so it is in most cases.
-    let [stable, unstable] = [Holds::Stable, Holds::Unstable].map(|holds| seen[holds as usize]);
-    assert!(stable > 10 && unstable > 40 && grown > 40, "{seen:?} {grown}");
-}
-
-/// A document of an unstable droplet, verified: each of its modes is run kick by kick.
-#[test]
-fn the_modes_of_a_document_are_what_a_period_makes_of_them() {
+fn documents_are_held_against_a_run_kick_by_kick_and_say_what_it_does_not_see() {
     use kickdrift::question::{Question, System, Work};
     use kickdrift::recheck::{Claim, Options};
     use kickdrift::report::npz::{self, Element};
@@ -493,38 +350,33 @@ fn the_modes_of_a_document_are_what_a_period_makes_of_them() {
     arrays.push(array("positions", droplet.positions.concat()));
     npz::write(&archive, arrays).unwrap();
     let (_, first) = droplet.sparse().first_unstable(4).unwrap();
-    let inner = (1.0002 * first / 4.0 * 1e9).round() as u64;
     let potential = |name: &str, step: u64| json!({"step": format!("{step}/1000000000"), "stiffness": {"npz": "a.npz", "csr": name}});
     let by_reference = |name: &str| json!({"npz": "a.npz", "array": name});
-    let file = json!({
-        "schema": "kickdrift/system/1", "time_unit": "ps", "masses": by_reference("masses"), "positions": by_reference("positions"),
-        "potentials": [potential("fast", inner), potential("slow", 4 * inner)],
-    });
-    let input = json!({"file": "a.json", "system": file});
-    let asked: System = serde_json::from_value(input).unwrap();
     let arrays = kickdrift::scene::Arrays::from(folder.path());
     let work = Work { arrays: Some(&arrays), ..Work::default() };
-    let answer = asked.answer(&work).unwrap();
-    let text = asked.document(&answer).render(kickdrift::format::Format::Json).unwrap();
-    assert!(text.contains("\"real pair\""), "{text}");
-    let options = Options { folder: folder.path().into(), ..Options::default() };
-    let outcome = Claim::read(&text).unwrap().recheck(&options, None).unwrap();
-    assert!(outcome.failures.is_empty() && outcome.route.contains("kick by kick"), "{outcome:?}");
-    // The modes in space: a frame each, the numbers of the shapes.
-    let found: serde_json::Value = serde_json::from_str(&text).unwrap();
-    let modes = found["parts"][0]["instabilities"].as_array().unwrap();
-    let frames = asked.in_space(&answer, kickdrift::format::Format::Xyz).unwrap();
-    let lines: Vec<&str> = frames.lines().collect();
-    assert_eq!(lines.len(), modes.len() * (n / 3 + 2));
-    for (mode, frame) in modes.iter().zip(lines.chunks(n / 3 + 2)) {
-        assert_eq!(frame[0], (n / 3).to_string());
-        assert!(frame[1].starts_with("Properties=species:S:1:pos:R:3:mode:R:3 number="), "{}", frame[1]);
-        for (i, line) in frame[2..].iter().enumerate() {
-            let numbers: Vec<f64> = line.split(' ').skip(1).map(|x| x.parse().unwrap()).collect();
-            let shape: Vec<f64> = (0..3).map(|a| mode["shape"][3 * i + a].as_f64().unwrap()).collect();
-            assert_eq!((&numbers[..3], &numbers[3..]), (&droplet.positions[i][..], &shape[..]));
-        }
+    for (part, told, what) in [
+        (0.9, Some(true), "that nothing grows"),
+        (1.0002, Some(false), "that it grows: too slowly"),
+        (3.0, None, "where the first region ends"),
+    ] {
+        let inner = (part * first / 4.0 * 1e9).round() as u64;
+        let file = json!({
+            "schema": "kickdrift/system/1", "time_unit": "ps", "masses": by_reference("masses"),
+            "positions": by_reference("positions"), "accuracy": 1e-9,
+            "potentials": [potential("fast", inner), potential("slow", 4 * inner)],
+        });
+        let asked: System = serde_json::from_value(json!({"file": "a.json", "system": file})).unwrap();
+        let answer = asked.answer(&work).unwrap();
+        let text = asked.document(&answer).render(kickdrift::format::Format::Json).unwrap();
+        let found: serde_json::Value = serde_json::from_str(&text).unwrap();
+        assert_eq!(found["stable"].as_bool(), told, "{text}");
+        assert!(
+            told.is_some() || found["warnings"][0].as_str().unwrap().contains("nothing above it"),
+            "{text}"
+        );
+        let options = Options { folder: folder.path().into(), ..Options::default() };
+        let outcome = Claim::read(&text).unwrap().recheck(&options, None).unwrap();
+        assert!(outcome.failures.is_empty() && outcome.route.contains("kick by kick"), "{outcome:?}");
+        assert!(outcome.not_rechecked.iter().any(|own| own.starts_with(what)), "{outcome:?}");
     }
-    let grid = asked.in_space(&answer, kickdrift::format::Format::Vtu).unwrap();
-    assert_eq!(grid.matches("Name=\"mode ").count(), modes.len());
 }

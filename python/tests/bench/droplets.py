@@ -1,5 +1,4 @@
-"""What droplets of flexible water cost: their sparse Hessians, the verdict with margin and first unstable step, the
-modes that grow.
+"""What droplets of flexible water cost: their sparse Hessians, the verdict with margin and first unstable step.
 
 Weak springs hold each atom where it is, as in an equilibration: so the place is a minimum, and the verdict has a
 margin.
@@ -26,7 +25,7 @@ import kickdrift.openmm as ko
 
 #: Molecules a nm³, the cutoff in nm unless another is given, kJ/mol/nm.
 DENSITY, CUTOFF, REST = 33.0, 0.9, 1.0
-#: kJ/mol/nm², and the outer steps in ps: stable, and beyond the first resonance.
+#: kJ/mol/nm², and the outer steps in ps: stable, and above the first resonance.
 SPRING, STEPS = 2000.0, ("1/250", "0.004424")
 
 

@@ -71,8 +71,8 @@ fn verdict(
 ) -> Result<Outcome> {
     if let Model::Sparse(own) = scene.model() {
         if let Some((own, outer)) = own.levels() {
-            let checked = levels::modes(own, outer, analysis);
-            return Ok(levels::unseen(analysis, outcome(context, levels::ROUTE, checked)?));
+            let (checked, unseen) = levels::run(own, outer, analysis);
+            return Ok(Outcome { not_rechecked: unseen, ..outcome(context, levels::ROUTE, checked)? });
         }
         if let Some(own) = own.subcycles() {
             let dt = to_f64(&scene.model().steps()[0]);

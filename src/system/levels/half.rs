@@ -68,19 +68,6 @@ impl Half {
     }
 }
 
-/// 1/V = sin θ/sin p θ and its slope in s, V = 2 b d the odd solution after p whole steps: convex where p θ < π, a product of p − 1 factors
-/// 1/(1 − s/s_j), every s_j above.
-pub(super) fn inverse_twist(s: f64, p: u64) -> [Interval; 2] {
-    let (s, one) = (Interval::point(s), Interval::point(1.0));
-    let ([mut x, mut v], [mut dx, mut dv]) = ([Interval::point(0.0), one], [Interval::point(0.0); 2]);
-    for _ in 0..p {
-        // Whole kicks: the first half of one does nothing to x = 0, the last none to where x is.
-        (v, dv) = (v - s * x, dv - x - s * dx);
-        (x, dx) = (x + v, dx + dv);
-    }
-    [one / x, -dx / (x * x)]
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -134,7 +134,7 @@ impl Model {
         }
     }
 
-    /// The verdict and the growth, which is what a scan shows of each point: of sparse stiffnesses at about half of what [`Model::decide`] costs.
+    /// The verdict and the growth, which is what a scan shows of each point: of sparse levels without the margin.
     ///
     /// # Errors
     /// As [`Model::decide`].

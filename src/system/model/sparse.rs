@@ -8,7 +8,7 @@ use num_traits::One;
 use crate::error::{Error, Result};
 use crate::number::rational::to_f64;
 use crate::number::{Laurent, Rational};
-use crate::system::levels::sparse::{Growing, GrowingMode, SparseLevels};
+use crate::system::levels::sparse::SparseLevels;
 use crate::system::levels::{Method, Outer};
 use crate::system::linear::sparse::Symmetric;
 use crate::system::linear::system::{Potential, System};
@@ -40,13 +40,13 @@ enum Of {
     Subcycles(Box<SparseSubcycles>),
 }
 
-/// The note on a verdict in the first region, or on none: which results are left out of the answer.
-const FIRST: &str = "of sparse stiffnesses the first stable region is decided, and what grows above it while no fast mode alone takes half a turn in an \
-                     outer step; farther on where the fast one falls into small molecules";
+/// The note on two levels: what is decided of them, and what does more.
+const FIRST: &str = "of sparse stiffnesses the first stable region is decided, and nothing above it: take smaller outer steps, or give dense stiffnesses, \
+                     which are decided at every step";
 
-/// The note on an unstable one, where no mode was found.
-const NO_MODE: &str =
-    "no growing mode is enclosed, and none looked at beside the one that proves the verdict";
+/// The note on two levels that are unstable.
+const NO_MODE: &str = "the mode that ends the first stable region grows at this step (proven): how fast, and what else grows, is not computed of sparse \
+                       stiffnesses; dense ones have it";
 
 /// The note on local time steps.
 const FASTEST: &str = "of sparse stiffnesses only the motion that grows fastest is computed";
@@ -258,19 +258,15 @@ impl SparseSystem {
         };
         levels.look(outer.inner_steps());
         let margin = if levels.is_unstable(outer, 0.0) { None } else { levels.margin(outer) };
-        let (verdict, growing) = margin.map_or_else(|| levels.beyond(outer, true), |_| (Holds::Stable, None));
+        let verdict = margin.map_or_else(|| levels.verdict(outer, 0.0), |_| Holds::Stable);
         // Of the first region nothing is proven of all stiffnesses within more than the margin.
         let holds = match margin {
             Some(margin) if accuracy <= margin => Holds::Stable,
-            None if verdict != Holds::NotTold => levels.verdict_past(outer, accuracy),
+            None if levels.is_unstable(outer, accuracy) => Holds::Unstable,
             _ => Holds::NotTold,
         };
         let first_unstable = levels.first_unstable(outer.inner_steps());
-        let note = growing
-            .as_ref()
-            .map(listed)
-            .unwrap_or(if verdict == Holds::Unstable { NO_MODE } else { FIRST }.into());
-        let part = self.growing(verdict, growing);
+        let part = self.of_levels_part(verdict);
         let measured = Some(Measured {
             method: Method::default().name(),
             accuracy,
@@ -280,38 +276,23 @@ impl SparseSystem {
             is_above_unstable: first_unstable.is_some_and(|(_, hi)| outer.step() > hi),
             removed: removed.clone(),
         });
-        let mut notes = vec![note];
-        if let Some(count) = levels.unheld().filter(|&count| count > 0) {
-            let s = if count == 1 { "" } else { "s" };
-            notes.push(format!(
-                "along {count} direction{s}, rigid motions aside, both stiffnesses together are not proven positive, as where positions are no \
-                 minimum: the system may fall along them at any step"
-            ));
-            notes.extend(levels.first_resonance(outer.inner_steps()).map(|(lo, hi)| {
-                format!(
-                    "apart from such falls nothing grows at any outer step up to {lo:.6} with as many inner steps; at {hi:.6} a resonance grows \
-                     (both proven)"
-                )
-            }));
-        }
+        let mut notes = vec![if verdict == Holds::Unstable { NO_MODE } else { FIRST }.to_string()];
+        notes.extend(falls(levels, outer));
         Ok(Analysis { measured, ..Analysis::of_part(part, 2, notes) })
     }
 
-    /// The verdict and the growth, no more: what a scan shows of each point.
+    /// The verdict and no more: what a scan shows of each point.
     pub(super) fn at_point(&self, limits: &Limits) -> Result<Analysis> {
         let Of::Levels { levels, outer, .. } = &self.of else { return self.decide(limits) };
         self.allow(limits)?;
         levels.look(outer.inner_steps());
-        let (verdict, growing) = levels.growth(outer);
-        Ok(Analysis::of_part(self.growing(verdict, growing), 2, Vec::new()))
+        Ok(Analysis::of_part(self.of_levels_part(levels.verdict(outer, 0.0)), 2, Vec::new()))
     }
 
-    /// A verdict on two levels with what grows.
-    fn growing(&self, verdict: Holds, growing: Option<Growing>) -> Part {
+    /// A verdict on two levels, without modes.
+    fn of_levels_part(&self, verdict: Holds) -> Part {
         let period = Laurent::from_rational(self.step.clone());
-        let largest = growing.as_ref().and_then(|own| own.fastest);
-        let modes = growing.into_iter().flat_map(|own| own.modes).map(|own| explained(own, &period)).unzip();
-        Part { largest, ..Part::new(self.clocks.size(), period, decided(verdict), modes) }
+        Part::new(self.clocks.size(), period, decided(verdict), Default::default())
     }
 
     /// The proven verdict and nothing else.
@@ -382,36 +363,24 @@ impl SparseSystem {
     }
 }
 
-/// The number of growing modes in the answer, in words.
-fn listed(own: &Growing) -> String {
-    let shown = own.modes.len();
-    let least = own.at_least;
-    let found = if least == 1 { "1 mode is".into() } else { format!("{least} modes are") };
-    if own.modes.iter().any(|mode| mode.radius.is_none()) || shown == 0 {
-        let most = own.at_most.map_or(String::new(), |most| format!(" and at most {most} do"));
-        return format!(
-            "{found} proven to grow by multipliers below −1{most}: bonds take half a turn or more in an outer step; the {shown} shown are rounded"
-        );
-    }
-    match own.at_most {
-        Some(most) if most == shown => format!("{found} proven to grow, and no other does (both proven)"),
-        Some(most) => format!("{found} proven to grow and at most {most} do: the others are not looked at"),
-        None => format!("{found} proven to grow: others are not looked at"),
-    }
-}
-
-/// A growing mode with its multiplier.
-fn explained(own: GrowingMode, period: &Laurent) -> (Multiplier, Instability) {
-    let multiplier = Multiplier::new(own.mu, own.radius, own.growth);
-    let mode = Instability {
-        multiplier,
-        origin: if own.mu.im == 0.0 { Origin::RealPair } else { Origin::Collision },
-        growth_rate: own.growth.map(|growth| per_time(growth, period)),
-        quadrature: own.quadrature,
-        shape: own.shape,
-        resonance: None,
+/// Notes where both stiffnesses together are not proven positive.
+fn falls(levels: &SparseLevels, outer: &Outer) -> Vec<String> {
+    let directions = match levels.unheld() {
+        Some(0) => return Vec::new(),
+        Some(1) => "1 direction".into(),
+        Some(count) => format!("{count} directions"),
+        None => "directions that no factorization counts".into(),
     };
-    (multiplier, mode)
+    let along = format!(
+        "along {directions}, rigid motions aside, both stiffnesses together are not proven positive, as where positions are no minimum: the system \
+         may fall along them at any step, however small"
+    );
+    let resonance = levels.first_resonance(outer.inner_steps()).map(|(lo, hi)| {
+        format!(
+            "apart from such falls nothing grows at any outer step up to {lo} with as many inner steps; at {hi} a resonance grows, too (both proven)"
+        )
+    });
+    std::iter::once(along).chain(resonance).collect()
 }
 
 /// The kind, and what it rests on.

@@ -1,4 +1,4 @@
-//! Krylov spaces: one eigenvector, and Arnoldi's recursion.
+//! Krylov spaces: one eigenvector of a symmetric operator.
 
 use faer::{Mat, Side};
 
@@ -47,38 +47,4 @@ pub(super) fn top(
         images.col_mut(size).copy_from(x.col(0));
         size += 1;
     }
-}
-
-/// Arnoldi's recursion of so many steps at most: an orthonormal basis, and the operator in it. `None` where something has no image.
-pub(super) fn arnoldi(
-    n: usize,
-    steps: usize,
-    image: impl Fn(&Mat<f64>) -> Option<Mat<f64>>,
-) -> Option<(Mat<f64>, Mat<f64>)> {
-    let most = steps.min(n);
-    let (mut basis, mut form) = (Mat::<f64>::zeros(n, most), Mat::<f64>::zeros(most, most));
-    let begin = start(n);
-    let mut next = Mat::from_fn(n, 1, |i, _| begin[i]);
-    let mut size = 0;
-    loop {
-        let before = next.norm_l2();
-        for _ in 0..2 {
-            let along = basis.subcols(0, size).transpose() * &next;
-            next -= basis.subcols(0, size) * &along;
-            (0..size).for_each(|i| form[(i, size.saturating_sub(1))] += along[(i, 0)]);
-        }
-        let length = next.norm_l2();
-        // What is left is rounding.
-        if size == most || !(length.is_finite() && length > 1e-13 * before) {
-            break;
-        }
-        if size > 0 {
-            form[(size, size - 1)] = length;
-        }
-        next /= faer::Scale(length);
-        basis.col_mut(size).copy_from(next.col(0));
-        next = image(&next)?;
-        size += 1;
-    }
-    Some((basis.subcols(0, size).to_owned(), form.submatrix(0, 0, size, size).to_owned()))
 }

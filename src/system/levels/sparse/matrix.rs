@@ -8,7 +8,7 @@ use faer::perm::PermRef;
 use faer::sparse::linalg::cholesky::simplicial::SymbolicSimplicialCholesky;
 use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
 use faer::sparse::linalg::cholesky::{
-    LdltRef, LltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering, factorize_symbolic_cholesky,
+    LltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering, factorize_symbolic_cholesky,
 };
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, Mat, Side};
@@ -90,40 +90,6 @@ impl Pattern {
     /// The products of one factorization: half the squares of its columns' lengths.
     pub fn products(&self) -> f64 {
         products(&self.symbolic)
-    }
-
-    /// Every entry of the lower triangle, zeros that are kept included.
-    pub fn triplets<'a>(&'a self, values: &'a [f64]) -> impl Iterator<Item = (usize, usize, f64)> + 'a {
-        (0..self.size()).flat_map(move |j| self.column(j).map(move |(at, i)| (i, j, values[at])))
-    }
-
-    /// Adds x to the entry in a row and a column of the pattern.
-    pub fn add(&self, values: &mut [f64], at: [usize; 2], x: f64) {
-        let (i, j) = (at[0].max(at[1]), at[0].min(at[1]));
-        let own = self.columns[j]..self.columns[j + 1];
-        let place = self.rows[own.clone()].binary_search(&i).expect("an entry of the pattern");
-        values[own.start + place] += x;
-    }
-
-    /// The rows that entries join, each with all that any path of them leads to; in order.
-    pub fn components(&self) -> Vec<Vec<usize>> {
-        let mut above: Vec<usize> = (0..self.size()).collect();
-        let mut top = |mut i: usize, join: Option<usize>| {
-            while above[i] != i {
-                above[i] = above[above[i]];
-                i = above[i];
-            }
-            join.inspect(|&to| above[i] = to).unwrap_or(i)
-        };
-        for j in 0..self.size() {
-            for (_, i) in self.column(j) {
-                let (a, b) = (top(i, None), top(j, None));
-                top(a.max(b), Some(a.min(b)));
-            }
-        }
-        let mut all = std::collections::BTreeMap::<usize, Vec<usize>>::new();
-        (0..self.size()).for_each(|i| all.entry(top(i, None)).or_default().push(i));
-        all.into_values().collect()
     }
 
     fn column(&self, j: usize) -> impl Iterator<Item = (usize, usize)> + '_ {
@@ -247,12 +213,8 @@ impl Pattern {
     /// The factors of c + Σ a_k A_k minus what makes them prove that every matrix within `slack` of it (2-norm) is positive definite, by
     /// Rump's criterion (BIT 46, 2006); `None` where that proves nothing, or memory runs out.
     pub fn factored(&self, c: f64, terms: &[(f64, &[f64])], slack: f64) -> Option<Factors> {
-        self.factors(&self.lowered(c, terms, slack)?, false)
-    }
-
-    /// The factors L D Lᵀ of Σ a_k A_k without exchanges, rounded; `None` where a pivot vanishes or memory runs out.
-    pub fn factored_signed(&self, terms: &[(f64, &[f64])]) -> Option<Factors> {
-        self.factors(&self.sum(0.0, terms).0, true)
+        let values = self.factors(&self.lowered(c, terms, slack)?, false)?;
+        Some(Factors { symbolic: Arc::clone(&self.symbolic), values })
     }
 
     /// c + Σ a_k A_k minus as much of the identity as Cholesky's factors may be off by: where they exist, whatever the order of their sums, every
@@ -302,35 +264,19 @@ impl Pattern {
         off.is_finite().then_some((negative, off))
     }
 
-    /// How far the pivots of a sum may be off where |L||D||Lᵀ| is no larger than a few times the diagonal, as most often.
-    pub fn usually_off(&self, terms: &[(f64, &[f64])]) -> f64 {
-        self.off(USUAL * self.sum(0.0, terms).1, 0.0)
-    }
-
     /// How far pivots may be off, by Σ |d_k| |l_k|² and the sum of |entries| on the diagonal.
     fn off(&self, sizes: f64, c: f64) -> f64 {
         2.0 * (self.terms as f64 + 24.0) * U * (sizes + c.abs())
     }
 
-    /// No fewer than the eigenvalues that are not above 0 of any matrix within `slack` of c + Σ a_k A_k.
+    /// No fewer than the eigenvalues that are not above 0 of any matrix within `slack` of c + Σ a_k A_k: those below a τ that is proven to lie beyond the slack
+    /// and what the factorization may be off by.
     pub fn at_most_negative(&self, c: f64, terms: &[(f64, &[f64])], slack: f64) -> Option<usize> {
-        Some(self.negative_beside(1.0, c, terms, [slack, 0.0])?.0)
-    }
-
-    /// The eigenvalues below τ or −τ, by the sign, that is proven to lie beyond the slack and what the factorization may be off by: no fewer than those below 0
-    /// of any matrix within the slack, or no more. Beside them what it may be off by, which is `expected` to be as much: a good guess saves one.
-    pub fn negative_beside(
-        &self,
-        sign: f64,
-        c: f64,
-        terms: &[(f64, &[f64])],
-        [slack, expected]: [f64; 2],
-    ) -> Option<(usize, f64)> {
-        let mut tau = 1.1 * (slack + expected);
+        let mut tau = 1.1 * slack;
         for _ in 0..SHIFTS {
-            let (negative, own) = self.negative(sign * tau - c, terms)?;
+            let (negative, own) = self.negative(tau - c, terms)?;
             if tau > 1.01 * (own + slack) {
-                return Some((negative, own));
+                return Some(negative);
             }
             tau = 1.1 * (own + slack);
         }
@@ -339,7 +285,7 @@ impl Pattern {
 
     /// The pivots of L D Lᵀ column by column.
     fn simplicial(&self, own: &SymbolicSimplicialCholesky<usize>, values: &[f64]) -> Option<Pivots> {
-        let factor = self.factors(values, true)?.values;
+        let factor = self.factors(values, true)?;
         // Of each column: its pivot, and the square of its length, 1 on the diagonal.
         Some(own.col_ptr().windows(2).fold(Pivots::default(), |sum, ends| {
             let (pivot, below) = (factor[ends[0]], &factor[ends[0] + 1..ends[1]]);
@@ -348,8 +294,8 @@ impl Pattern {
         }))
     }
 
-    /// The factors L Lᵀ of a matrix of this pattern, or L D Lᵀ; `None` where a pivot is none, memory runs out, or they are too many to keep.
-    fn factors(&self, entries: &[f64], is_signed: bool) -> Option<Factors> {
+    /// The values of the factors L Lᵀ of a matrix of this pattern, or L D Lᵀ; `None` where a pivot is none, memory runs out, or they are too many to keep.
+    fn factors(&self, entries: &[f64], is_signed: bool) -> Option<Vec<f64>> {
         let (own, threads) = (&self.symbolic, faer::get_global_parallelism());
         let scratch = match is_signed {
             false => own.factorize_numeric_llt_scratch::<f64>(threads, Default::default()),
@@ -365,15 +311,12 @@ impl Pattern {
             let none = Default::default();
             own.factorize_numeric_llt(to, matrix, side, none, threads, stack, Default::default()).is_ok()
         };
-        is_done.then(|| Factors { symbolic: Arc::clone(&self.symbolic), values, is_signed })
+        is_done.then_some(values)
     }
 }
 
 /// Shifts τ that are tried: from the second one on a tenth above what the factorization with the last one may be off by.
 const SHIFTS: u32 = 8;
-
-/// Σ |d_k| |l_k|² and the diagonal together, over the diagonal alone, as factorizations most often have them.
-const USUAL: f64 = 4.0;
 
 /// So many values of factors are not kept: 8 GB.
 const MOST_KEPT: usize = 1_000_000_000;
@@ -385,11 +328,10 @@ const PARTS: usize = 4;
 /// The residual, relative to the inverse's eigenvalue, at which a vector is taken: the eigenvalue's error is its square, over the distance of the next one.
 const ENOUGH: f64 = 1e-3;
 
-/// Cholesky's factors, or L D Lᵀ.
+/// Cholesky's factors.
 pub(in crate::system) struct Factors {
     symbolic: Arc<SymbolicCholesky<usize>>,
     values: Vec<f64>,
-    is_signed: bool,
 }
 
 impl Factors {
@@ -399,13 +341,8 @@ impl Factors {
         let scratch = self.symbolic.solve_in_place_scratch::<f64>(x.ncols(), threads);
         let mut room = MemBuffer::try_new(scratch).ok()?;
         let stack = MemStack::new(&mut room);
-        if self.is_signed {
-            let own = LdltRef::<usize, f64>::new(&self.symbolic, &self.values);
-            own.solve_in_place_with_conj(Conj::No, x.as_mut(), threads, stack);
-        } else {
-            let own = LltRef::<usize, f64>::new(&self.symbolic, &self.values);
-            own.solve_in_place_with_conj(Conj::No, x.as_mut(), threads, stack);
-        }
+        let own = LltRef::<usize, f64>::new(&self.symbolic, &self.values);
+        own.solve_in_place_with_conj(Conj::No, x.as_mut(), threads, stack);
         Some(x)
     }
 

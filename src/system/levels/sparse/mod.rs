@@ -9,7 +9,8 @@
 //! ```
 //!
 //! The first is two sparse Cholesky factorizations that run to their end, the second one vector, from a Krylov space of the form. In between
-//! nothing is said: that gap is as wide as the line lies below E where x has its share. Factors are kept only where something is solved with
+//! nothing is said: that gap is as wide as the line lies below E where x has its share. Above the first region no step is called stable, and
+//! none unstable but where that vector still proves it. Factors are kept only where something is solved with
 //! them; the rest asks for signs, and goes front by front.
 //!
 //! | file | what |
@@ -19,22 +20,13 @@
 //! | `fronts` | the pivots of an elimination that keeps no factors |
 //! | `krylov` | one eigenvector of an operator |
 //! | `region` | the verdict, the margin, the first unstable step |
-//! | `period` | the period of positions, with a bound on its roundings |
-//! | `growing` | the modes that grow beyond that step, enclosed |
-//! | `blocks` | F and S in the blocks of F |
-//! | `counted` | how many grow at any step, where F falls into small blocks |
 
-mod blocks;
-mod counted;
 mod dissect;
 mod fronts;
-mod growing;
 mod krylov;
 mod matrix;
-mod period;
 mod region;
 
-pub use growing::{Growing, GrowingMode};
 pub(in crate::system) use matrix::Pattern;
 pub use matrix::Triplets;
 pub use region::SparseLevels;

@@ -5,7 +5,6 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use faer::Mat;
 
-use super::blocks::Blocks;
 use super::krylov::top;
 use super::matrix::{Factors, Pattern, Triplets};
 use crate::error::{Error, Result};
@@ -39,27 +38,23 @@ use crate::system::verdict::measured::Holds;
 #[derive(Clone, Debug)]
 pub struct SparseLevels {
     /// Both in the pattern of their sum.
-    pub(super) both: Pattern,
-    pub(super) fast: Vec<f64>,
-    pub(super) slow: Vec<f64>,
+    both: Pattern,
+    fast: Vec<f64>,
+    slow: Vec<f64>,
     /// The fast one in its own.
-    pub(super) alone: Pattern,
-    pub(super) fast_alone: Vec<f64>,
+    alone: Pattern,
+    fast_alone: Vec<f64>,
     /// How far these are from the matrices that are meant (2-norm), by what weighing with masses rounds; and how far F + S is from itself
     /// without what it does along rigid motions.
-    pub(super) errors: [f64; 2],
+    errors: [f64; 2],
     leak: f64,
     /// No less than their norms.
-    pub(super) sizes: [f64; 2],
+    sizes: [f64; 2],
     /// Orthonormal, mass-weighted.
-    pub(super) rigid: Mat<f64>,
-    /// The root of each mass.
-    roots: Vec<f64>,
+    rigid: Mat<f64>,
     /// No less than the largest eigenvalue of F, and no more than −λ if some λ < 0 is one.
     ends: OnceLock<Option<[f64; 2]>>,
     held: OnceLock<Held>,
-    /// Where F falls into small ones.
-    pub(super) blocks: OnceLock<Option<Arc<Blocks>>>,
     /// By the number of inner steps.
     first: Arc<Mutex<BTreeMap<u64, Option<First>>>>,
 }
@@ -156,8 +151,8 @@ impl SparseLevels {
         let ((size, terms), image) = (both.size_of(&total), both.times(&total, &rigid));
         let rounding = 2.0 * (terms as f64 + 2.0) * U * size * norm::frobenius(&rigid);
         let leak = 3.1 * (norm::frobenius(&image) + rounding);
-        let (ends, held, first, blocks) = Default::default();
-        let (sizes, roots) = (sizes.map(|(size, _)| size), masses.iter().map(|m| m.sqrt()).collect());
+        let (ends, held, first) = Default::default();
+        let sizes = sizes.map(|(size, _)| size);
         Ok(SparseLevels {
             both,
             fast,
@@ -168,10 +163,8 @@ impl SparseLevels {
             leak,
             sizes,
             rigid,
-            roots,
             ends,
             held,
-            blocks,
             first,
         })
     }
@@ -196,15 +189,11 @@ impl SparseLevels {
 
     /// The verdict at an outer step, for all stiffnesses within `epsilon` times their norms.
     pub fn verdict(&self, outer: &Outer, epsilon: f64) -> Holds {
-        if self.is_proven(outer, epsilon) {
-            return Holds::Stable;
+        match self.is_proven(outer, epsilon) {
+            true => Holds::Stable,
+            false if self.is_unstable(outer, epsilon) => Holds::Unstable,
+            false => Holds::NotTold,
         }
-        self.verdict_past(outer, epsilon)
-    }
-
-    /// As [`SparseLevels::verdict`] where the first region's line is known to prove nothing.
-    pub fn verdict_past(&self, outer: &Outer, epsilon: f64) -> Holds {
-        self.told_by(outer, epsilon, self.counted(outer, epsilon).as_ref())
     }
 
     /// Whether the mode that is unstable first is proven to grow at an outer step, for all stiffnesses within `epsilon` times their norms.
@@ -273,16 +262,6 @@ impl SparseLevels {
         self.first(inner_steps).map(|first| first.step)
     }
 
-    /// M^½ x of positions x.
-    pub fn weighted(&self, x: &[f64]) -> Vec<f64> {
-        x.iter().zip(&self.roots).map(|(x, root)| x * root).collect()
-    }
-
-    /// Positions of mass-weighted ones.
-    pub(super) fn positions(&self, y: &[f64]) -> Vec<f64> {
-        y.iter().zip(&self.roots).map(|(y, root)| y / root).collect()
-    }
-
     /// F y and S y without what they do along rigid motions, mass-weighted and rounded.
     pub fn pulls(&self, y: &[f64]) -> [Vec<f64>; 2] {
         let free = |y: Mat<f64>| &y - &self.rigid * (self.rigid.transpose() * &y);
@@ -349,10 +328,13 @@ impl SparseLevels {
     }
 
     /// Whether the first region is proven, rigid motions apart.
-    pub(super) fn is_proven(&self, outer: &Outer, epsilon: f64) -> bool {
+    fn is_proven(&self, outer: &Outer, epsilon: f64) -> bool {
         // (3) of proofs/REGION.md follows where F + S > 0.
         let off: f64 = (0..2).map(|k| self.errors[k] + epsilon * self.sizes[k]).sum();
-        self.is_total_definite(off) && self.is_above(outer, epsilon)
+        // What proves a step proves those below it, and nothing proves where the region ends.
+        let is_near = || self.first_resonance(outer.inner_steps).is_none_or(|(_, hi)| outer.step() < hi);
+        self.is_total_definite(off)
+            && (self.is_below_first(outer, epsilon) || is_near() && self.is_above(outer, epsilon))
     }
 
     /// Whether (1) and (2) of proofs/REGION.md are proven.
@@ -376,7 +358,7 @@ impl SparseLevels {
     ///
     /// There α₁ + a₁F + b₁S > 0 with b₁ < 0, so S < (α₁ + a₁F)/−b₁, and with r = b/b₁ > 0
     /// α + aF + bS > (α − r α₁) + (a − r a₁)F: a line over the spectrum of F, no lower than at its ends.
-    pub(super) fn is_below_first(&self, outer: &Outer, epsilon: f64) -> bool {
+    fn is_below_first(&self, outer: &Outer, epsilon: f64) -> bool {
         let found = || {
             let first = Outer::new(self.first(outer.inner_steps)?.step.0, outer.inner_steps).ok()?;
             let ends = self.ends(0.0)?;
@@ -395,7 +377,7 @@ impl SparseLevels {
     }
 
     /// α − β h² F − M of a line α − β s: its factors of F and S, and how far the sum may be from it for stiffnesses within ε times their norms.
-    pub(super) fn form(&self, outer: &Outer, [offset, slope]: [f64; 2], epsilon: f64) -> ([f64; 2], f64) {
+    fn form(&self, outer: &Outer, [offset, slope]: [f64; 2], epsilon: f64) -> ([f64; 2], f64) {
         let off = [0, 1].map(|k| self.errors[k] + epsilon * self.sizes[k]);
         let [fast, slow] = [-slope * outer.inner_square, -outer.half_kick()];
         let rounding = 4.0 * U * offset.abs()
@@ -404,7 +386,7 @@ impl SparseLevels {
     }
 
     /// Bounds on the spectrum of all F within ε times their norm.
-    pub(super) fn ends(&self, epsilon: f64) -> Option<[f64; 2]> {
+    fn ends(&self, epsilon: f64) -> Option<[f64; 2]> {
         let found = self.ends.get_or_init(|| {
             let [_, top] = ends(self.size(), STEPS, |x| self.alone.times(&self.fast_alone, x));
             let slack = self.errors[0] + 4.0 * U * self.sizes[0];
