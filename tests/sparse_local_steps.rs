@@ -1,7 +1,6 @@
 //! Local time steps of sparse stiffnesses in doubles, against exact arithmetic and dense eigenvalues.
 
 use kickdrift::number::rational::{from_f64_exact, ratio, to_f64};
-use kickdrift::system::stretches::Stretch;
 use kickdrift::system::{Holds, Level, Limits, LocalSteps, Potential, SparseSteps, Symmetric, System};
 use nalgebra::DMatrix;
 
@@ -100,9 +99,8 @@ fn verdicts_and_growth_are_those_of_dense_eigenvalues() {
 }
 
 #[test]
-fn all_unstable_intervals_of_one_level_are_those_of_exact_determinants() {
-    let mut numbers = Numbers(5);
-    let mut unstable = 0;
+fn the_first_unstable_step_of_one_level_is_that_of_exact_determinants() {
+    let (mut numbers, mut seen) = (Numbers(5), 0);
     for case in 0..100 {
         let n = 3 + numbers.below(5) as usize;
         let springs: Vec<_> = (0..=n).map(|_| (1 + numbers.below(12)) as f64 / 2.0).collect();
@@ -110,44 +108,19 @@ fn all_unstable_intervals_of_one_level_are_those_of_exact_determinants() {
         let count = 1 + numbers.below(n as u64 - 1) as usize;
         let levels = [Level { fine: (0..count).collect(), substeps: 2 + numbers.below(3) as u32 }];
         let (sparse, exact) = both(&masses, &chain(&springs, false), &levels);
-        let range = (0.2, 3.0);
-        let truth = exact.stretches(range, &Limits::default()).unwrap();
-        let found = sparse.stretches(range, 1e-5).unwrap();
-        assert_eq!((found[0].lo, found.last().unwrap().hi), range);
-        assert!(found.windows(2).all(|pair| pair[0].hi == pair[1].lo), "{found:?}");
-        for own in &found {
-            // Inwards by what edges of the truth lie between neighbours.
-            let (lo, hi) = (own.lo * (1.0 + 1e-14), own.hi * (1.0 - 1e-14));
-            let inside = |kind: Holds| {
-                let other = truth.iter().filter(|own| own.verdict != kind && own.verdict != Holds::NotTold);
-                other.into_iter().all(|other| other.hi <= lo || hi <= other.lo)
-            };
-            assert!(own.verdict == Holds::NotTold || inside(own.verdict), "{case} {own:?} {truth:?}");
-        }
-        // About one resonance alone, between stable steps that sixteenths of a gap cannot miss, all is told but the ends.
-        for near in truth.windows(3) {
-            let [before, own, after] = near else { panic!("three") };
-            let is_wide = |own: &Stretch| own.verdict == Holds::Stable && own.hi - own.lo > 0.2;
-            let is_one = own.verdict == Holds::Unstable && sparse.count((own.lo, own.hi)) == Some(1);
-            if is_one && is_wide(before) && is_wide(after) && own.hi - own.lo > 4e-4 {
-                unstable += 1;
-                let is_told = found.iter().any(|found| {
-                    found.verdict == Holds::Unstable && found.lo <= own.lo + 2e-4 && own.hi - 2e-4 <= found.hi
-                });
-                assert!(is_told, "{case} {own:?} {found:?}");
-            }
-        }
-        if let Some((lo, hi)) = sparse.first_unstable() {
-            assert!(eigenvalues(&exact, lo).last().unwrap() < &4.0 && hi < 1.001 * lo, "{case} {lo} {hi}");
-            assert!(eigenvalues(&exact, hi).last().unwrap() > &(4.0 - CLEAR), "{case} {lo} {hi}");
-            let first = truth.iter().find(|own| own.verdict == Holds::Unstable).map(|own| own.lo);
-            assert!(
-                first.is_none_or(|first| lo <= first && first <= hi * (1.0 + 1e-12)),
-                "{case} {lo} {first:?} {hi}"
-            );
-        }
+        let Some((lo, hi)) = sparse.first_unstable() else { continue };
+        let truth = exact.stretches((0.2, 3.0), &Limits::default()).unwrap();
+        assert!(eigenvalues(&exact, lo).last().unwrap() < &4.0 && hi < 1.001 * lo, "{case} {lo} {hi}");
+        assert!(eigenvalues(&exact, hi).last().unwrap() > &(4.0 - CLEAR), "{case} {lo} {hi}");
+        let first = truth.iter().find(|own| own.verdict == Holds::Unstable).map(|own| own.lo);
+        // Edges of the truth lie between neighbouring doubles.
+        assert!(
+            first.is_none_or(|first| lo <= first && first <= hi * (1.0 + 1e-12)),
+            "{case} {first:?} {hi}"
+        );
+        seen += usize::from(first.is_some());
     }
-    assert!(unstable > 5, "{unstable}");
+    assert!(seen > 50, "{seen}");
 }
 
 #[test]
@@ -173,14 +146,4 @@ fn the_first_unstable_step_is_as_sharp_where_a_resonance_is_hardly_coupled() {
     // (dt/4)² y = 4 sin²(π/8) of the largest y, a little below 160.
     let expected = |y: f64| 8.0 * (std::f64::consts::PI / 8.0).sin() / f64::sqrt(y);
     assert!(expected(160.0) < lo && hi < expected(120.0), "{lo} {hi}");
-}
-
-/// A width of 0 halved cells until the stack ended.
-#[test]
-fn widths_that_no_double_has_are_refused() {
-    let levels = vec![Level { fine: [1].into(), substeps: 2 }];
-    let sparse = SparseSteps::new(&[1.0; 3], &chain(&[1.0; 4], false), levels).unwrap();
-    for width in [0.0, -1.0, 1e-30, 0.2, f64::NAN] {
-        assert!(sparse.stretches((0.1, 3.0), width).is_err(), "{width}");
-    }
 }

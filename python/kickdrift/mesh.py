@@ -36,7 +36,7 @@ class Waves:
     Attributes
     ----------
     system : System
-        ``decide`` and ``intervals`` answer on it; ``decide().local_steps["first_unstable"]`` is the certified limit.
+        ``decide`` answers on it; ``decide().local_steps["first_unstable"]`` is the certified limit.
     limits : array of doubles, shape (elements,)
         The Courant limit of each element by itself, ``2/w`` of its fastest motion: plain leapfrog is stable below the
         least one.
@@ -139,9 +139,9 @@ def waves(
         the highest dimension. Or points, shape (nodes, 1 to 3), and cells, shape (elements, 2 to 4), counted from 0.
     speed, density : float or array, shape (elements,)
         Of the wave, and of what it moves through; the unit of time follows from these.
-    scheme : "lts", "newmark" or "avi"
-        Leapfrog with local time steps, where small elements make all their nodes fine; subcycling of these with held
-        velocities; or asynchronous variational integrators, where they kick with a step of their own.
+    scheme : "lts" or "avi"
+        Leapfrog with local time steps, where small elements make all their nodes fine; or asynchronous variational
+        integrators, where they kick with a step of their own.
     substeps : int or sequence of int
         In a step of the level above, the coarsest level first: 2 or 3, or (2, 2); of AVI one number above 1.
     step : Exact, optional
@@ -179,8 +179,8 @@ def waves(
     factors = [int(own) for own in (substeps if isinstance(substeps, Sequence) else [substeps])]
     if not factors or min(factors) < 1:
         raise KickdriftError("substeps", shown(substeps), "give 1 or more, or one number for each level")
-    if scheme not in ("lts", "newmark", "avi"):
-        raise KickdriftError("scheme", shown(scheme), "give lts, newmark or avi")
+    if scheme not in ("lts", "avi"):
+        raise KickdriftError("scheme", shown(scheme), "give lts or avi")
     if scheme == "avi" and (len(factors) > 1 or factors[0] < 2):
         raise KickdriftError("substeps", shown(substeps), "of avi give one number above 1: two classes of elements")
     celerity, rho = (_each(name, own, len(cells)) for name, own in (("speed", speed), ("density", density)))

@@ -171,53 +171,6 @@ def test_avi_on_a_mesh_is_stable_where_its_elements_run_are() -> None:
     assert told[:2] == [True, True]
 
 
-def held_from_rest(waves: kickdrift.mesh.Waves, dt: float) -> npt.NDArray[np.complex128]:
-    """The eigenvalues of Q11 of subcycling with held velocities, run as nodes subcycle."""
-    a, _ = dense(waves)
-    every = np.ones(len(a), dtype=int)
-    for k, level in enumerate(waves.system.document["levels"]):
-        every[waves.system.arrays[f"fine{k}"].astype(int)] *= level["substeps"]
-    p = every.max()
-    x, v = np.eye(len(a)), np.zeros((len(a), len(a)))
-    for tick in range(p + 1):
-        kicks = (tick * every % p == 0) * dt / every * (0.5 if tick in (0, p) else 1.0)
-        v = v - kicks[:, None] * (a @ x)
-        x = x + dt / p * v if tick < p else x
-    return np.linalg.eigvals(x)
-
-
-@pytest.mark.parametrize("substeps", [2, 3, (2, 2), (3, 2), (2, 2, 2)])
-def test_subcycling_on_a_mesh_is_stable_where_its_nodes_run_are(substeps: int | tuple[int, ...]) -> None:
-    mesh = refined() if isinstance(substeps, int) else graded()
-    first = kickdrift.mesh.waves(mesh, scheme="newmark", substeps=substeps).system.decide().local_steps
-    # However many the levels are: half a turn of the finest elements in a step is where proofs end.
-    assert first is not None and first["plain_limit"]["hi"] < first["first_unstable"]["lo"]
-    assert first["first_unstable"]["hi"] < 1.58 * first["plain_limit"]["lo"]
-    for share in (0.3, 0.7, 0.99, 0.9999, 1.0001, 1.01, 1.2):
-        step = Fraction(f"{share * first['first_unstable']['lo']:.9g}")
-        verdict = kickdrift.mesh.waves(mesh, scheme="newmark", substeps=substeps, step=step).system.decide()
-        assert verdict.proven or share > 1, share
-        if verdict.proven:
-            mu = held_from_rest(kickdrift.mesh.waves(mesh, scheme="newmark", substeps=substeps), float(step))
-            stays = np.abs(mu.imag).max() < 1e-5 and np.abs(mu.real).max() < 1 + 1e-6
-            assert verdict.stable == stays, share
-
-
-@pytest.mark.parametrize(("substeps", "share"), [(2, 1.4), (2, 1.7), (2, 1.2), (3, 1.4)])
-def test_beyond_the_proofs_subcycling_shows_what_grows_in_doubles(substeps: int, share: float) -> None:
-    waves = kickdrift.mesh.waves(refined(), scheme="newmark", substeps=substeps)
-    first = waves.system.decide().local_steps
-    assert first is not None
-    step = Fraction(f"{share * first['first_unstable']['hi']:.9g}")
-    verdict = kickdrift.mesh.waves(refined(), scheme="newmark", substeps=substeps, step=step).system.decide()
-    # From rest the scheme turns positions by (multiplier + 1/multiplier)/2.
-    truth = np.exp(np.abs(np.arccosh(held_from_rest(waves, float(step)).astype(complex)).real).max())
-    found = np.abs(verdict.multipliers)
-    assert not verdict.proven and (found > 1).sum() == int(truth > 1 + 1e-4)
-    # Both are rounded: the iteration ends at a residual of 1e-9.
-    assert np.allclose(found[found > 1], truth, rtol=1e-8)
-
-
 @pytest.mark.parametrize(
     ("change", "field"),
     [

@@ -24,7 +24,7 @@
 //! | `verdict` | the verdict, part by part, and what is known beside it |
 //! | `along` | about the integrator's own orbit: a Hessian for each kick, measured to an accuracy |
 //! | `jacobian` | forces that are no gradient: Jacobians that are not symmetric |
-//! | `lts` | local time steps, as codes for waves have them: leapfrog, Newmark subcycling, AVI |
+//! | `lts` | local time steps, as codes for waves have them: leapfrog, AVI |
 //! | `geometry` | where degrees of freedom are in space |
 //! | `friction` | O-steps between the kicks: spectral radius, the friction that masks a resonance |
 //! | `vary` | maps; the unstable intervals of one number |
@@ -72,7 +72,7 @@ pub use jacobian::{Jacobians, NoGradient};
 pub use linear::sparse::Symmetric;
 pub use linear::system::{Potential, System};
 pub use linear::{builders, mesh};
-pub use lts::{Growth, Level, LocalSteps, Scheme, SchemeSummary, SparseSteps, SparseSubcycles, Subcycles};
+pub use lts::{ElementSteps, Growth, Level, LocalSteps, Scheme, SchemeSummary, SparseSteps};
 pub use model::{Body, ManyLevels, MeasuredSystem, Model, Number, Oscillator, SparseSystem, TwoLevels};
 pub use pi::{PiPotential, PiSystem};
 pub use single::clocks::{ManyClocks, families, shortest_families, shortest_family};

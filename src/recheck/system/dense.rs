@@ -3,7 +3,6 @@
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
 
-use super::local;
 use crate::avi::Run;
 use crate::error::Result;
 use crate::number::rational::to_f64;
@@ -39,7 +38,6 @@ pub fn traces(scene: &SystemScene, analysis: &Analysis) -> Checked {
     }
     let q: DMatrix<f64> = match scene.model() {
         Model::NoGradient(own) => own.full_period(),
-        Model::Subcycled(_, own) => local::period(own),
         other => full_period(other.moving()?.as_ref()),
     };
     let (norm, n) = (q.norm(), q.nrows() as f64 / 2.0);

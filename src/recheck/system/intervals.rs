@@ -10,7 +10,7 @@ use std::borrow::Cow;
 use faer::Mat;
 use num_traits::One;
 
-use super::{ALONE, LEFT, RUN, local, outcome, run, seen};
+use super::{ALONE, LEFT, outcome};
 use crate::error::{Error, Kind as Reason, Result};
 use crate::number::Rational;
 use crate::number::rational::{from_f64_exact, to_f64};
@@ -23,7 +23,7 @@ use crate::scene::{OUTER, SystemScene};
 use crate::system::levels::Method;
 use crate::system::stretches::Stretch;
 use crate::system::vary::Intervals;
-use crate::system::{Holds, Jacobians, Limits, Model, Route, SparseSystem, half_period};
+use crate::system::{Holds, Jacobians, Limits, Model, Route, half_period};
 
 /// Stretches that are looked at, unless all are asked for; all of measured levels where it costs no more than is allowed.
 const MOST: u64 = 24;
@@ -120,8 +120,7 @@ impl Claim {
                 let width = self.input.width().unwrap_or_default();
                 decided.by_half_periods(&Places::of(scene, &found.number, width)?, &seed)
             }
-            Model::Sparse(own) => decided.sampled(&seed).by_running(own),
-            Model::NoGradient(own) | Model::Subcycled(own, _) => decided.sampled(&seed).exactly(model, own),
+            Model::NoGradient(own) => decided.sampled(&seed).exactly(model, own),
             _ => outcome(context, ALONE, Ok(())),
         }
     }
@@ -171,16 +170,6 @@ impl Decided<'_> {
         }
         found.not_rechecked.push(between.into());
         own.look(found, |stretch| places.stretch(stretch))
-    }
-
-    fn by_running(self, model: &SparseSystem) -> Result<Outcome> {
-        if let Some(own) = model.subcycles() {
-            let check = || self.drawn.iter().try_for_each(|of| local::stretch_of_subcycles(own, of.1));
-            return run(own, self.context, check);
-        }
-        let Some(steps) = model.local_steps() else { return outcome(self.context, ALONE, Ok(())) };
-        let found = seen(steps, outcome(self.context, RUN, Ok(()))?);
-        self.look(found, |own| local::stretch(steps, own))
     }
 
     fn exactly(self, model: &Model, own: &Jacobians) -> Result<Outcome> {

@@ -1,16 +1,12 @@
 //! A scheme of local time steps run as codes run it, substep by substep, against the stiffness that stands for it.
 
-use faer::{Mat, Side, c64};
-use nalgebra::{DMatrix, DMatrixView};
+use faer::{Mat, Side};
 use num_traits::{Num, One, Zero};
 
 use crate::number::Rational;
 use crate::number::rational::to_f64;
 use crate::recheck::context::{Checked, holds};
-use crate::system::stretches::Stretch;
-use crate::system::{
-    Analysis, Holds, Level, LocalSteps, SchemeSummary, SparseSteps, SparseSubcycles, Subcycles,
-};
+use crate::system::{Analysis, Holds, Level, LocalSteps, SchemeSummary, SparseSteps};
 
 /// Degrees of freedom of which one is displaced, at most.
 const MOST: usize = 16;
@@ -49,126 +45,6 @@ pub fn steps(own: &LocalSteps) -> Checked {
     })
 }
 
-/// One period of subcycling with held velocities in doubles.
-pub fn period(own: &Subcycles) -> DMatrix<f64> {
-    let (n, clock, pull) = (own.plain().size(), &own.plain().clocks()[0], pull(own));
-    subcycled(own.levels(), to_f64(&clock.step), |x| &pull * x, DMatrix::identity(2 * n, 2 * n))
-}
-
-/// M⁻¹ K.
-fn pull(own: &Subcycles) -> DMatrix<f64> {
-    let (n, stiffness, mass) = (own.plain().size(), &own.plain().clocks()[0].stiffness, own.plain().mass());
-    DMatrix::from_fn(n, n, |i, j| to_f64(&(stiffness.get(i, j) / mass.get(i, i))))
-}
-
-/// A step dt of the scheme, run on columns of n positions and n velocities, kicks of half weight at both ends: each degree of freedom kicks when its own
-/// step is over.
-fn subcycled(
-    levels: &[Level],
-    dt: f64,
-    pull: impl Fn(DMatrixView<f64>) -> DMatrix<f64>,
-    mut q: DMatrix<f64>,
-) -> DMatrix<f64> {
-    let n = q.nrows() / 2;
-    let substeps: Vec<u32> = (0..n).map(|i| Level::substeps_of(levels, i)).collect();
-    let most = levels.iter().map(|level| level.substeps).product::<u32>();
-    for tick in 0..=most {
-        let weight = if tick % most == 0 { 0.5 } else { 1.0 };
-        let kicks = pull(q.rows(0, n).as_view());
-        for i in (0..n).filter(|&i| tick % (most / substeps[i]) == 0) {
-            let kick = kicks.row(i) * (weight * dt / f64::from(substeps[i]));
-            let mut row = q.row_mut(n + i);
-            row -= kick;
-        }
-        if tick < most {
-            let moved = q.rows(n, n) * (dt / f64::from(most));
-            let mut x = q.rows_mut(0, n);
-            x += moved;
-        }
-    }
-    q
-}
-
-/// Eigenvalues of Q11 that meet move by the root of a rounding times their condition.
-const MEETING: f64 = 1e-5;
-
-/// The verdict on large subcycling and its limits, where all eigenvalues of Q11 can be seen: run from rest, the scheme turns positions by it.
-pub fn subcycles(
-    own: &SparseSubcycles,
-    dt: f64,
-    analysis: &Analysis,
-    said: Option<&SchemeSummary>,
-) -> Checked {
-    held(own, dt, analysis.holds())?;
-    let Some((lo, hi)) = said.and_then(|said| said.first_unstable) else { return Ok(()) };
-    held(own, lo, Holds::Stable)?;
-    held(own, hi, Holds::Unstable)
-}
-
-/// The residual of a mode, relative to it: that of the period is 1e-9, and positions have more than a thousandth of it.
-const MODE: f64 = 1e-6;
-
-/// The growing modes of large subcycling: from rest the scheme, run, turns their positions by 1 + 2 μ.
-pub fn modes(own: &SparseSubcycles, dt: f64, analysis: &Analysis) -> Checked {
-    let n = own.size();
-    let after = |x: &[f64]| {
-        let y = DMatrix::from_vec(n, 1, own.plain().weighted(x)).resize_vertically(2 * n, 0.0);
-        let turned = subcycled(own.levels(), dt, |x| pulled(own, x), y.clone());
-        [y, turned].map(|own| own.rows(0, n).map(|x| c64::new(x, 0.0)))
-    };
-    analysis.parts.iter().flat_map(|part| &part.instabilities).try_for_each(|mode| {
-        let ([re, turned_re], [im, turned_im]) = (after(&mode.shape), after(&mode.quadrature));
-        let (i, by) = (c64::new(0.0, 1.0), mode.multiplier.mu * 2.0 + 1.0);
-        let (y, turned) = (re + im * i, turned_re + turned_im * i);
-        let residual = (turned - &y * by).norm();
-        holds(residual <= MODE * by.norm() * y.norm(), || {
-            format!("a mode that grows is no mode of the scheme, run: the residual is {residual}")
-        })
-    })
-}
-
-/// The first unstable step of subcycling as small as can be seen.
-pub fn first_unstable(own: &Subcycles, (lo, hi): (f64, f64)) -> Checked {
-    let pull = pull(own);
-    let held = |dt, said| from_rest((pull.nrows(), own.levels(), dt), |x| &pull * x, said);
-    held(lo, Holds::Stable)?;
-    held(hi, Holds::Unstable)
-}
-
-/// Checks the verdict of a stretch of steps, in the middle of it.
-pub fn stretch_of_subcycles(own: &SparseSubcycles, said: &Stretch) -> Checked {
-    held(own, said.lo + (said.hi - said.lo) / 2.0, said.verdict)
-}
-
-fn held(own: &SparseSubcycles, dt: f64, said: Holds) -> Checked {
-    from_rest((own.size(), own.levels(), dt), |x| pulled(own, x), said)
-}
-
-/// Its A, on each column.
-fn pulled(own: &SparseSubcycles, x: DMatrixView<f64>) -> DMatrix<f64> {
-    let columns = x.column_iter().flat_map(|y| own.plain().pull(&y.iter().copied().collect::<Vec<_>>()));
-    DMatrix::from_iterator(x.nrows(), x.ncols(), columns)
-}
-
-/// Whether Q11 of a step is as it is said to be.
-fn from_rest(
-    (n, levels, dt): (usize, &[Level], f64),
-    pull: impl Fn(DMatrixView<f64>) -> DMatrix<f64>,
-    said: Holds,
-) -> Checked {
-    let after = subcycled(levels, dt, pull, DMatrix::identity(2 * n, n));
-    let all = after.rows(0, n).into_owned().complex_eigenvalues();
-    let excess = all.iter().map(|mu| mu.im.abs().max(mu.re.abs() - 1.0)).fold(f64::NEG_INFINITY, f64::max);
-    let right = match said {
-        Holds::Stable => excess <= MEETING,
-        Holds::Unstable => excess >= -MEETING,
-        Holds::NotTold => true,
-    };
-    holds(right, || {
-        format!("at a step of {dt} the scheme, run, has Q11 off (-1, 1) by {excess}: not {}", said.name())
-    })
-}
-
 /// The verdict on a large scheme, its growth and its limits.
 pub fn sparse(own: &SparseSteps, dt: f64, analysis: &Analysis, said: Option<&SchemeSummary>) -> Checked {
     verdict(own, dt, analysis.holds())?;
@@ -200,11 +76,6 @@ pub fn sparse(own: &SparseSteps, dt: f64, analysis: &Analysis, said: Option<&Sch
         holds(n > SEEN || excess > -RESONANT, || format!("nothing is unstable up to a step of {hi}"))?;
     }
     Ok(())
-}
-
-/// Checks the verdict of a stretch of steps, in the middle of it.
-pub fn stretch(own: &SparseSteps, said: &Stretch) -> Checked {
-    verdict(own, said.lo + (said.hi - said.lo) / 2.0, said.verdict)
 }
 
 /// No motion beyond the ends where all are said to be stable; some, where all are seen and one is said to grow.

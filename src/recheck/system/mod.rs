@@ -19,7 +19,7 @@ use crate::number::rational::to_f64;
 use crate::question::{Found, Simulate, System, SystemAnswer};
 use crate::report::system::SystemMap;
 use crate::scene::SystemScene;
-use crate::system::{Analysis, Limits, Model, SchemeSummary, SparseSteps, SparseSubcycles};
+use crate::system::{Analysis, Limits, Model, SchemeSummary, SparseSteps};
 use crate::verdict::Kind;
 
 /// Points of a map whose kind is decided by the other route (where it costs no more than is allowed), unless all are.
@@ -74,15 +74,6 @@ fn verdict(
             let (checked, unseen) = levels::run(own, outer, analysis);
             return Ok(Outcome { not_rechecked: unseen, ..outcome(context, levels::ROUTE, checked)? });
         }
-        if let Some(own) = own.subcycles() {
-            let dt = to_f64(&scene.model().steps()[0]);
-            let modes = local::modes(own, dt, analysis);
-            let has_modes = analysis.parts.iter().any(|part| !part.instabilities.is_empty());
-            if own.size() > local::SEEN && has_modes {
-                return outcome(context, "the scheme substep by substep, from the growing mode", modes);
-            }
-            return run(own, context, || modes.and_then(|()| local::subcycles(own, dt, analysis, local)));
-        }
         let Some(steps) = own.local_steps() else { return outcome(context, ALONE, Ok(())) };
         let checked = local::sparse(steps, to_f64(&scene.model().steps()[0]), analysis, local);
         return Ok(seen(steps, outcome(context, RUN, checked)?));
@@ -107,11 +98,6 @@ fn verdict(
     }
     let traces = || {
         scene.model().local_steps().map_or(Ok(()), local::steps)?;
-        if let (Model::Subcycled(_, own), Some(first)) =
-            (scene.model(), local.and_then(|own| own.first_unstable))
-        {
-            local::first_unstable(own, first)?;
-        }
         scene.model().implicit().map_or(Ok(()), |own| implicit::in_doubles(own, analysis))?;
         dense::traces(scene, analysis)
     };
@@ -120,9 +106,6 @@ fn verdict(
             let route = match scene.model() {
                 Model::LocalSteps(_) => {
                     "the scheme substep by substep, the kind in exact arithmetic, multipliers by the traces of the full period"
-                }
-                Model::Subcycled(..) => {
-                    "the kind in exact arithmetic, multipliers by the traces of a period of the scheme, run substep by substep"
                 }
                 _ => {
                     "the kind in exact arithmetic, multipliers by the traces of the dense full period and of its square"
@@ -140,14 +123,6 @@ fn verdict(
 
 /// The scheme run, of large ones.
 const RUN: &str = "the scheme substep by substep, and the eigenvalues of its steps by Lanczos's recursion";
-
-/// Subcycling run, where it is not too large to see all of it.
-fn run(own: &SparseSubcycles, context: &Context, check: impl FnOnce() -> Checked) -> Result<Outcome> {
-    if own.size() > local::SEEN {
-        return outcome(context, ALONE, Ok(()));
-    }
-    outcome(context, "the scheme substep by substep, and the eigenvalues of its period", check())
-}
 
 /// Names the claims that Lanczos's recursion does not see.
 fn seen(steps: &SparseSteps, mut outcome: Outcome) -> Outcome {

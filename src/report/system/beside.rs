@@ -118,7 +118,6 @@ fn local_steps(own: &SchemeSummary) -> Value {
 pub(super) fn local_lines(own: &SchemeSummary, unit: &str) -> Vec<String> {
     let (name, parts) = match own.scheme {
         Scheme::Lts => ("local time steps", "degrees of freedom"),
-        Scheme::Newmark => ("subcycling with held velocities", "degrees of freedom"),
         Scheme::Avi => ("AVI", "elements"),
     };
     let level =
@@ -131,10 +130,8 @@ pub(super) fn local_lines(own: &SchemeSummary, unit: &str) -> Vec<String> {
         let first = decimal::enclosure(lo, hi);
         format!("  first unstable step: {first}{unit}; every smaller one is proven stable")
     });
-    let minus_one =
-        own.is_minus_one.then(|| "  that step has the multiplier -1, and no growth is proven there".into());
     let name = format!("  {name}: {}", levels.join("; of these "));
-    [name].into_iter().chain(limit).chain(first).chain(minus_one).collect()
+    [name].into_iter().chain(limit).chain(first).collect()
 }
 
 /// The entries as lines of text.

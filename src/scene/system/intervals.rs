@@ -245,17 +245,18 @@ impl SystemScene {
             return refused("with friction", "take the friction out of the file");
         }
         match &self.model {
-            Model::Sparse(own) if own.levels().is_some() => {
-                return refused("of this file", "are for dense stiffnesses");
+            Model::Sparse(_) => {
+                return refused(
+                    "of this file",
+                    "are for dense stiffnesses: give these, or --scan the steps of these",
+                );
             }
             Model::Rational(_)
             | Model::Measured(_)
             | Model::LocalSteps(_)
             | Model::Implicit(_)
             | Model::NoGradient(_)
-            | Model::Subcycled(..)
             | Model::Elements(..)
-            | Model::Sparse(_)
                 if self.is_linear() => {}
             Model::Along(_) => {
                 return refused(

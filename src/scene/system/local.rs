@@ -1,12 +1,11 @@
-//! Local time steps in a system file: leapfrog as codes for waves have it, subcycling, AVI.
+//! Local time steps in a system file: leapfrog as codes for waves have it, AVI.
 //!
 //! ```json
 //! "scheme": "lts",
 //! "levels": [{"fine": [4, 5, 6], "substeps": 2}, {"fine": [5], "substeps": 3}]
 //! ```
 //!
-//! * `scheme`: `lts`, leapfrog whose forces on what is not fine stand still; `newmark`, subcycling while that moves on with its velocity; `avi`, each
-//!   element a clock of its own.
+//! * `scheme`: `lts`, leapfrog whose forces on what is not fine stand still; `avi`, each element a clock of its own.
 //! * All potentials have one step, dt, and masses are diagonal.
 //! * `levels`, the coarsest first: `fine`, the degrees of freedom that take `substeps` in a step of the level above, or `elements` of a mesh,
 //!   with all their nodes, in `avi` these alone. Each level is a part of the one above.
@@ -15,7 +14,7 @@ use std::collections::BTreeSet;
 
 use super::document::{Document, LevelDocument, MeshDocument, Number};
 use crate::error::{Error, Result};
-use crate::system::{Level, LocalSteps, Model, Scheme, Subcycles, System};
+use crate::system::{ElementSteps, Level, LocalSteps, Model, Scheme, System};
 
 impl Document {
     /// The scheme that the file names, with its levels.
@@ -28,7 +27,7 @@ impl Document {
                 Err(Error::input("levels", "missing", remedy))
             }
             (None, Some(_)) => {
-                let remedy = "are those of a scheme: give \"scheme\": \"lts\", too, or newmark, or avi";
+                let remedy = "are those of a scheme: give \"scheme\": \"lts\", too, or avi";
                 Err(Error::input("levels", "given", remedy))
             }
         }
@@ -47,8 +46,8 @@ impl Document {
                 let remedy = "needs a mesh, whose elements take the steps; without one give each potential its own step and leave out scheme";
                 return Err(Error::input("scheme", "avi", remedy));
             };
-            let subcycles = Subcycles::avi(plain.clone(), mesh.elements.len(), mesh.levels(levels)?)?;
-            return Ok(Model::Elements(plain, subcycles));
+            let elements = ElementSteps::new(plain.clone(), mesh.elements.len(), mesh.levels(levels)?)?;
+            return Ok(Model::Elements(plain, elements));
         }
         if self.friction.is_some() {
             let remedy = "has no place in a scheme of local steps: leave it out";
@@ -56,11 +55,7 @@ impl Document {
         }
         let level = |(l, own)| self.level(l, own, &plain, moving);
         let levels = levels.iter().enumerate().map(level).collect::<Result<_>>()?;
-        if scheme == Scheme::Lts {
-            return Ok(Model::LocalSteps(LocalSteps::new(plain, levels)?));
-        }
-        let (subcycles, clocks) = Subcycles::newmark(plain, levels)?;
-        Ok(Model::Subcycled(Box::new(clocks), subcycles))
+        Ok(Model::LocalSteps(LocalSteps::new(plain, levels)?))
     }
 
     fn level(

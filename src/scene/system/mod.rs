@@ -31,7 +31,7 @@
 //! * `labels` name the degrees of freedom, or the particles of three each; `friction` is a rate γ per unit time: O, v → exp(−γ t) v,
 //!   in the middle of every drift of the whole schedule, also for what only some of the clocks act on.
 //! * `symmetric`: `false` says that a force is no gradient: `stiffness` by rows is minus its derivative, whatever that is.
-//! * `scheme`: `"lts"`, `"newmark"` or `"avi"` with `levels` are local time steps, see `local`.
+//! * `scheme`: `"lts"` or `"avi"` with `levels` are local time steps, see `local`.
 //! * In place of masses and potentials a `mesh` of finite elements, see `mesh`; or `build`: `{"kind": "chain", "masses": 200, "stiffness": [...], "steps": [...]}`,
 //!   `{"kind": "stiff-soft", "pairs": 4, "stiff": "100", "steps": [stiff, soft]}`,
 //!   `{"kind": "graded-bar", "elements": 100, "classes": 10, "courant": "1/4"}`,
@@ -79,7 +79,7 @@ use crate::number::rational::to_f64;
 use crate::scene::json;
 use crate::system::friction::Friction;
 use crate::system::levels::Method;
-use crate::system::{Limits, Model, OwnOrbit, Potential, Scheme as LocalScheme, Subcycles, System};
+use crate::system::{ElementSteps, Limits, Model, OwnOrbit, Potential, Scheme as LocalScheme, System};
 pub use array::{Array, Arrays};
 use bonds::Nonlinear;
 use document::{Document, SIZES, no_system};
@@ -372,13 +372,6 @@ impl SystemScene {
     fn masses(&self) -> Result<Vec<Rational>> {
         match &self.model {
             Model::Measured(own) => own.refuse_constraints().and(own.refuse_method("a run"))?,
-            Model::Subcycled(..) => {
-                return Err(Error::input(
-                    "scheme",
-                    "newmark",
-                    "cannot be run by simulate: choose avi or lts",
-                ));
-            }
             Model::NoGradient(_) => {
                 return Err(Error::input("symmetric", "false", "a run is for forces that are gradients"));
             }
@@ -441,7 +434,7 @@ impl Document {
             (None, Some(mesh)) if !is_explicit => {
                 let substeps = match self.named_scheme()? {
                     Some((LocalScheme::Avi, levels)) => {
-                        Some(Subcycles::substeps(&mesh.levels(levels)?, mesh.elements.len())?)
+                        Some(ElementSteps::substeps(&mesh.levels(levels)?, mesh.elements.len())?)
                     }
                     _ => None,
                 };

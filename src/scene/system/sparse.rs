@@ -13,7 +13,7 @@
 //! ```
 //!
 //! `csr` names the three arrays `data`, `indices` and `indptr` of compressed rows: `slow.data` and so on, or, where it is empty, those of a file
-//! of `scipy.sparse.save_npz`. With `"scheme": "lts"` or `"newmark"` there is one stiffness, and `"levels": [{"fine": [4, 5], "substeps": 2}]` are local
+//! of `scipy.sparse.save_npz`. With `"scheme": "lts"` there is one stiffness, and `"levels": [{"fine": [4, 5], "substeps": 2}]` are local
 //! time steps (see `local`); `fine` may stand by reference, too, as `{"npz": "mesh.npz", "array": "fine"}`. A stiffness is K, not mass-weighted, symmetric to rounding; both triangles stand in it.
 
 use std::collections::BTreeSet;
@@ -27,7 +27,7 @@ use crate::error::{Error, Result};
 use crate::number::Rational;
 use crate::system::levels::sparse::SparseLevels;
 use crate::system::levels::{rigid_motions, translations};
-use crate::system::{Level, LocalSteps, Removed, Scheme, SparseSteps, SparseSubcycles, SparseSystem};
+use crate::system::{Level, LocalSteps, Removed, Scheme, SparseSteps, SparseSystem};
 
 /// The most degrees of freedom.
 const LARGEST: usize = 1 << 20;
@@ -107,7 +107,7 @@ fn local_steps(document: &Document, arrays: &Arrays) -> Result<SparseSystem> {
             );
         }
         (None, ..) => {
-            let remedy = "are those of a scheme: give \"scheme\": \"lts\", too, or newmark";
+            let remedy = "are those of a scheme: give \"scheme\": \"lts\", too";
             return refused("levels", "given".into(), remedy);
         }
     };
@@ -121,10 +121,6 @@ fn local_steps(document: &Document, arrays: &Arrays) -> Result<SparseSystem> {
     let masses = document.masses(n, arrays)?.ok_or_else(|| Error::missing("masses", "give them"))?;
     let levels = levels.iter().enumerate().map(|(l, own)| own.read(l, n, arrays));
     let (levels, step) = (levels.collect::<Result<_>>()?, potential.step(0)?);
-    if scheme == Some(Scheme::Newmark) {
-        let steps = SparseSubcycles::new(&masses, &stiffness, levels)?;
-        return SparseSystem::with_subcycles(steps, &step);
-    }
     SparseSystem::with_local_steps(SparseSteps::new(&masses, &stiffness, levels)?, &step)
 }
 

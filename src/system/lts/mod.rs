@@ -15,19 +15,14 @@
 //! |---|---|
 //! | `scheme` | the levels, the effective stiffness |
 //! | `intervals` | all unstable intervals of dt, exactly |
-//! | `split` | subcycling with held velocities, AVI: the same levels as kicks and drifts |
+//! | `elements` | AVI of elements in levels |
 //! | `sparse` | many thousands of degrees of freedom: f in sparse doubles, its verdicts, what grows fastest |
-//! | `gaps` | the unstable intervals of dt of these |
-//! | `held` | subcycling of as many: its first stable region |
 
-mod gaps;
-mod held;
+mod elements;
 mod intervals;
 mod scheme;
 mod sparse;
-mod split;
 
-pub use held::SparseSubcycles;
+pub use elements::ElementSteps;
 pub use scheme::{Level, LocalSteps, Scheme, SchemeSummary};
 pub use sparse::{Growth, SparseSteps};
-pub use split::Subcycles;

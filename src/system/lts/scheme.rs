@@ -25,8 +25,6 @@ named! {
     pub enum Scheme {
         /// Leapfrog with local time steps: forces on what is not fine stand still (Diaz and Grote 2009).
         Lts = "lts",
-        /// Explicit Newmark subcycling: what is not fine moves on with its velocity (Belytschko, Yen and Mullen 1979).
-        Newmark = "newmark",
         /// Asynchronous variational integrators: elements kick with steps of their own (Lew, Marsden, Ortiz and West 2003).
         Avi = "avi",
     }
@@ -42,10 +40,22 @@ pub struct SchemeSummary {
     pub levels: Vec<(usize, u32)>,
     /// As [`LocalSteps::plain_limit`].
     pub plain_limit: Option<(f64, f64)>,
-    /// \[lo, hi\]: every step in (0, lo] is proven stable, some step up to hi is proven unstable (of large subcycling, or has the multiplier −1); `None` where that is not known.
+    /// \[lo, hi\]: every step in (0, lo] is proven stable, some step up to hi is proven unstable; `None` where that is not known.
     pub first_unstable: Option<(f64, f64)>,
-    /// Whether all that is proven of a step up to hi is the multiplier −1.
-    pub is_minus_one: bool,
+}
+
+impl std::str::FromStr for Scheme {
+    type Err = Error;
+
+    /// # Errors
+    /// Another name.
+    fn from_str(name: &str) -> Result<Scheme> {
+        let found = Scheme::ALL.into_iter().find(|own| own.name() == name);
+        found.ok_or_else(|| {
+            let remedy = "name lts (leapfrog with local time steps) or avi (a clock for each element)";
+            Error::input("scheme", name, remedy)
+        })
+    }
 }
 
 impl Level {

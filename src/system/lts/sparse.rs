@@ -4,7 +4,7 @@ use faer::Mat;
 
 use super::scheme::{Level, LocalSteps, Scheme, SchemeSummary};
 use crate::error::{Error, Result};
-use crate::number::U;
+use crate::number::{U, bisected};
 use crate::system::half::norm;
 use crate::system::levels::sparse::{Pattern, Triplets};
 use crate::system::verdict::large::start;
@@ -29,14 +29,14 @@ use crate::system::verdict::measured::Holds;
 /// ```
 #[derive(Clone, Debug)]
 pub struct SparseSteps {
-    pub(super) pattern: Pattern,
+    pattern: Pattern,
     /// C_1 first.
     terms: Vec<Term>,
-    pub(super) levels: Vec<Level>,
+    levels: Vec<Level>,
     /// A,
     plain: Block,
     /// and its rows and columns that are fine at the first level, where there are any.
-    pub(super) fine: Option<Block>,
+    fine: Option<Block>,
     /// The common motion, of length 1 and mass-weighted, where all may move together.
     rigid: Mat<f64>,
     roots: Vec<f64>,
@@ -52,27 +52,16 @@ struct Term {
 
 /// Some rows and columns of A, and how far they are from what is meant.
 #[derive(Clone, Debug)]
-pub(super) struct Block {
-    pub pattern: Pattern,
-    pub values: Vec<f64>,
-    pub error: f64,
+struct Block {
+    pattern: Pattern,
+    values: Vec<f64>,
+    error: f64,
 }
 
 impl Block {
-    /// Whether it is proven positive definite.
-    pub fn is_definite(&self) -> bool {
-        self.pattern.is_definite(0.0, &[(1.0, &self.values)], self.error)
-    }
-
     /// Its largest eigenvalue, enclosed to `within` of itself or as near as doubles can decide; `None` where it is not positive.
-    pub fn largest(&self, within: f64) -> Option<(f64, f64)> {
+    fn largest(&self, within: f64) -> Option<(f64, f64)> {
         self.pattern.largest(&self.values, self.error, within)
-    }
-
-    /// 2/√λ of it, where leapfrog of these rows and columns alone becomes unstable.
-    pub fn limit(&self, within: f64) -> Option<(f64, f64)> {
-        let (lo, hi) = self.largest(within)?;
-        Some((2.0 / hi.sqrt() * (1.0 - 4.0 * U), 2.0 / lo.sqrt() * (1.0 + 4.0 * U)))
     }
 }
 
@@ -85,6 +74,10 @@ const ROUNDS: usize = 12;
 /// The most times that these begin anew, nearer to what they seek.
 const MOST_ROUNDS: usize = 12;
 
+/// How sharply eigenvalues are enclosed that limit steps, and the relative width within which the first unstable one is sought.
+const LIMIT: f64 = 1e-6;
+const WIDTH: f64 = 1e-5;
+
 /// How sharp a growth rate is: of λ − 4 of the largest λ.
 const SHARP: f64 = 0.02;
 
@@ -95,16 +88,6 @@ impl SparseSteps {
     /// # Errors
     /// Masses that are not positive, numbers that are not finite, indices beyond the rows; levels as [`LocalSteps::new`].
     pub fn new(masses: &[f64], stiffness: &Triplets, levels: Vec<Level>) -> Result<SparseSteps> {
-        SparseSteps::within(masses, stiffness, levels, 0.0)
-    }
-
-    /// As [`SparseSteps::new`], for entries that are each off by so much, relative to their size.
-    pub(super) fn within(
-        masses: &[f64],
-        stiffness: &Triplets,
-        levels: Vec<Level>,
-        off: f64,
-    ) -> Result<SparseSteps> {
         let n = masses.len();
         if let Some((i, mass)) = masses.iter().enumerate().find(|(_, m)| !(m.is_finite() && **m > 0.0)) {
             return Err(Error::input(&format!("masses[{i}]"), mass, "a mass must be positive"));
@@ -118,7 +101,7 @@ impl SparseSteps {
         let rigid = rigid(stiffness, &roots);
         let below = |&(i, j, x): &(usize, usize, f64)| (i >= j).then(|| (i, j, x / (roots[i] * roots[j])));
         let lower: Vec<_> = stiffness.iter().filter_map(below).collect();
-        let whole = Sparse::symmetric(n, &lower, off);
+        let whole = Sparse::symmetric(n, &lower);
         let plain = whole.block(0..n)?;
         let fine = levels.first().filter(|own| !own.fine.is_empty());
         let fine = fine.map(|own| whole.block(own.fine.iter().copied())).transpose()?;
@@ -158,16 +141,6 @@ impl SparseSteps {
         x.iter().zip(&self.roots).map(|(x, root)| x * root).collect()
     }
 
-    /// The root of a mass.
-    pub(super) fn root(&self, i: usize) -> f64 {
-        self.roots[i]
-    }
-
-    /// The rows of A, rounded.
-    pub(super) fn rows(&self) -> Vec<Vec<(usize, f64)>> {
-        self.plain.pattern.rows(&self.plain.values)
-    }
-
     /// A y = M^-½ K M^-½ y, rounded.
     pub fn pull(&self, y: &[f64]) -> Vec<f64> {
         let own = &self.plain;
@@ -200,18 +173,6 @@ impl SparseSteps {
             (Holds::Unstable, _) | (_, Holds::Unstable) => Holds::Unstable,
             _ => Holds::NotTold,
         }
-    }
-
-    /// Whether 4 − f > 0 is proven: one factorization.
-    pub(super) fn is_proven_below_four(&self, dt: f64) -> bool {
-        let (values, off) = self.at(dt * dt);
-        self.pattern.is_definite(4.0, &[(-1.0, &values)], off)
-    }
-
-    /// Whether 4 − f > 0, or what grows proves that it is not.
-    pub(super) fn is_below_four(&self, dt: f64) -> Holds {
-        let (values, off) = self.at(dt * dt);
-        self.below(&values, off, 4.0)
     }
 
     /// Whether c − f > 0: stable, or an eigenvalue of f is above c.
@@ -313,12 +274,40 @@ impl SparseSteps {
 
     /// Where plain leapfrog, all with the step of the whole, becomes unstable, as [`LocalSteps::plain_limit`].
     pub fn plain_limit(&self) -> Option<(f64, f64)> {
-        self.plain_limit_within(1e-6)
+        let (lo, hi) = self.plain.largest(LIMIT)?;
+        Some((2.0 / hi.sqrt() * (1.0 - 4.0 * U), 2.0 / lo.sqrt() * (1.0 + 4.0 * U)))
     }
 
-    /// The limit of plain leapfrog, enclosed as sharply as given.
-    pub(super) fn plain_limit_within(&self, within: f64) -> Option<(f64, f64)> {
-        self.plain.limit(within)
+    /// \[lo, hi\]: every step in (0, lo] is proven stable, some step up to hi is proven unstable; `None` where nothing is proven, or with several levels.
+    ///
+    /// With the fine part F of A, y its eigenvalues and θ of the substep, 4 sin²(θ/2) = (dt/p)² y, stable steps are one interval up to where the fastest fine
+    /// motion has p θ = π (proofs/LOCAL_STEPS.md). There f has an eigenvalue of 4 or more, however weakly that motion is coupled: where every step up to there
+    /// is stable, hi is no more than the resonance itself is known to, and no factorization could see what lies beyond.
+    pub fn first_unstable(&self) -> Option<(f64, f64)> {
+        let [level] = &self.levels[..] else { return None };
+        let (low, high) = self.fine.as_ref()?.largest(LIMIT)?;
+        let p = f64::from(level.substeps);
+        let z = 4.0 * (std::f64::consts::FRAC_PI_2 / p).sin().powi(2);
+        let at = |y: f64, round: f64| p * (z / y).sqrt() * (1.0 + round * 8.0 * U);
+        let (top, resonance) = (at(high, -1.0), at(low, 1.0));
+        let is_below = |dt: f64| {
+            let (values, off) = self.at(dt * dt);
+            self.pattern.is_definite(4.0, &[(-1.0, &values)], off)
+        };
+        // f > 0 at one step below is A > 0, and then f > 0 at all.
+        let is_stable = |dt: &f64| is_below(*dt) && self.verdict(*dt) == Holds::Stable;
+        let start = (0..12).map(|k| top * 0.5f64.powi(k)).find(is_stable)?;
+        if start == top || is_below(top) {
+            return Some((top, resonance));
+        }
+        let (lo, beyond) = bisected((start, top), WIDTH, |dt| Some(is_below(dt)));
+        let steps = (0..40).map(|k| beyond * (1.0 + WIDTH / 1.6 * 1.5f64.powi(k)));
+        let is_beyond = |dt: &f64| {
+            let (values, off) = self.at(dt * dt);
+            self.below(&values, off, 4.0) == Holds::Unstable
+        };
+        let told = steps.take_while(|dt| *dt < resonance).find(is_beyond);
+        Some((lo, told.unwrap_or(resonance)))
     }
 
     /// The summary of the scheme in answers.
@@ -329,7 +318,6 @@ impl SparseSteps {
             levels: self.levels.iter().map(|own| (own.fine.len(), own.substeps)).collect(),
             plain_limit: self.plain_limit(),
             first_unstable: self.first_unstable(),
-            is_minus_one: false,
         }
     }
 }
@@ -423,8 +411,8 @@ struct Sparse {
 }
 
 impl Sparse {
-    /// From its lower triangle, each entry off by so much, weighed with masses: two roots, their product, the quotient.
-    fn symmetric(n: usize, lower: &Triplets, off: f64) -> Sparse {
+    /// From its lower triangle, weighed with masses: two roots, their product, the quotient.
+    fn symmetric(n: usize, lower: &Triplets) -> Sparse {
         let upper = lower.iter().filter(|own| own.0 != own.1).map(|&(i, j, x)| (j, i, x));
         let mut all: Vec<_> = lower.iter().copied().chain(upper).collect();
         all.sort_by_key(|own| (own.1, own.0));
@@ -437,7 +425,7 @@ impl Sparse {
         }
         (0..n).for_each(|j| own.ends[j + 1] += own.ends[j]);
         own.size = own.sums();
-        own.error = (4.1 * U + 1.01 * off) * own.size;
+        own.error = 4.1 * U * own.size;
         own
     }
 
@@ -548,7 +536,6 @@ impl LocalSteps {
             levels: self.levels().iter().map(|own| (own.fine.len(), own.substeps)).collect(),
             plain_limit: self.plain_limit(),
             first_unstable: None,
-            is_minus_one: false,
         }
     }
 }

@@ -23,7 +23,7 @@ use crate::system::implicit::{ImplicitExplicit, two_clocks};
 use crate::system::jacobian::Jacobians;
 use crate::system::levels::{Hessians, Method};
 use crate::system::linear::system::{Potential, System};
-use crate::system::lts::{LocalSteps, Scheme, SchemeSummary, Subcycles};
+use crate::system::lts::{ElementSteps, LocalSteps, Scheme, SchemeSummary};
 use crate::system::pi::PiSystem;
 use crate::system::verdict::analysis::Analysis;
 use crate::system::verdict::decide::{decide_by, exact_kind, verdict_cost};
@@ -52,10 +52,8 @@ pub enum Model {
     Implicit(Box<ImplicitExplicit>),
     /// Forces that are no gradient: their Jacobians are not symmetric.
     NoGradient(Box<Jacobians>),
-    /// Subcycling with held velocities: the kicks of its levels are no gradients, though the force is one.
-    Subcycled(Box<Jacobians>, Subcycles),
     /// AVI of elements in levels, each level a clock of rational stiffness.
-    Elements(System, Subcycles),
+    Elements(System, ElementSteps),
     /// Hessians measured along the integrator's own orbit, one for each kick.
     Along(Box<Along>),
     /// Sparse stiffnesses of thousands of degrees of freedom: two levels, or one with local time steps.
@@ -75,7 +73,7 @@ impl Model {
             Model::Measured(own) => own.system(),
             Model::LocalSteps(own) => own.system(),
             Model::Implicit(own) => own.system(),
-            Model::NoGradient(own) | Model::Subcycled(own, _) => own.symmetric(),
+            Model::NoGradient(own) => own.symmetric(),
             Model::Along(own) => own.clocks(),
             Model::Sparse(own) => own.system(),
         }
@@ -93,7 +91,7 @@ impl Model {
     pub fn cost(&self) -> u64 {
         match self {
             Model::Measured(own) => own.cost(),
-            Model::NoGradient(own) | Model::Subcycled(own, _) => own.cost(),
+            Model::NoGradient(own) => own.cost(),
             Model::Along(own) => own.cost(),
             Model::Sparse(own) => own.cost(),
             _ => verdict_cost(self.system()),
@@ -127,7 +125,7 @@ impl Model {
             Model::Measured(own) => own.decide(route, limits),
             Model::LocalSteps(own) => decide_by(route, own.system(), limits),
             Model::Implicit(own) => decide_by(route, own.system(), limits),
-            Model::NoGradient(own) | Model::Subcycled(own, _) => own.decide(route, limits),
+            Model::NoGradient(own) => own.decide(route, limits),
             Model::Along(own) => own.decide(route, limits),
             Model::Sparse(_) if route == Route::Exact => Err(self.refused("exact arithmetic")),
             Model::Sparse(own) => own.decide(limits),
@@ -172,7 +170,7 @@ impl Model {
     pub fn moving(&self) -> Result<Cow<'_, System>> {
         match self {
             Model::Measured(own) => own.moving(),
-            Model::NoGradient(_) | Model::Along(_) | Model::Subcycled(..) | Model::Sparse(_) => {
+            Model::NoGradient(_) | Model::Along(_) | Model::Sparse(_) => {
                 Err(self.refused("varying another number than outer"))
             }
             _ => Ok(Cow::Borrowed(self.system())),
@@ -191,7 +189,7 @@ impl Model {
             Model::Rational(own) | Model::Elements(own, _) => exact_kind(own, limits),
             Model::LocalSteps(own) => exact_kind(own.system(), limits),
             Model::Implicit(own) => exact_kind(own.system(), limits),
-            Model::NoGradient(own) | Model::Subcycled(own, _) => own.exact(limits).map(|(kind, _)| kind),
+            Model::NoGradient(own) => own.exact(limits).map(|(kind, _)| kind),
             Model::Along(own) => own.exact(limits).map(|(kind, _)| kind),
             Model::Sparse(_) => Err(self.refused("exact arithmetic")),
             Model::Measured(own) => exact_kind(own.moving()?.as_ref(), limits),
@@ -209,7 +207,7 @@ impl Model {
                 let remedy = "with several degrees of freedom write stiffnesses without pi";
                 Err(Error::input("friction", rate, remedy))
             }
-            Model::LocalSteps(_) | Model::Subcycled(..) => {
+            Model::LocalSteps(_) => {
                 Err(Error::input("friction", rate, "has no place in a scheme of local steps: leave it out"))
             }
             Model::Implicit(_) => {
@@ -230,10 +228,6 @@ impl Model {
         match self {
             Model::Sparse(_) => {
                 Error::input("stiffness", "sparse", format!("{what} needs dense stiffnesses"))
-            }
-            Model::Subcycled(_, own) => {
-                let remedy = format!("{what} needs kicks that are gradients: choose avi or lts");
-                Error::input("scheme", own.scheme().name(), remedy)
             }
             Model::Along(_) => {
                 let remedy =
@@ -257,7 +251,6 @@ impl Model {
             | Model::Pi(_)
             | Model::Oscillator(_)
             | Model::LocalSteps(_)
-            | Model::Subcycled(..)
             | Model::Elements(..)
             | Model::Along(_)
                 if method == Method::Respa =>
@@ -276,7 +269,7 @@ impl Model {
             Model::Oscillator(_) => refused(
                 "is for rational numbers: of one mass with pi ask kickdrift word --method, or compare --methods",
             ),
-            Model::LocalSteps(_) | Model::Subcycled(..) | Model::Elements(..) => {
+            Model::LocalSteps(_) | Model::Elements(..) => {
                 refused("has no place in a scheme of local steps: leave it out")
             }
             Model::NoGradient(_) => refused("is for forces that are gradients: leave it out"),
@@ -318,7 +311,7 @@ impl Model {
     pub fn local_steps_summary(&self) -> Option<SchemeSummary> {
         match self {
             Model::LocalSteps(own) => Some(own.summary()),
-            Model::Subcycled(_, own) | Model::Elements(_, own) => Some(own.summary()),
+            Model::Elements(_, own) => Some(own.summary()),
             Model::Sparse(own) => own.summary(),
             _ => None,
         }
@@ -380,7 +373,7 @@ impl Model {
                 return Err(Error::input("stiffness", "sparse", remedy));
             }
             Model::LocalSteps(_) => Some(Scheme::Lts),
-            Model::Subcycled(_, own) | Model::Elements(_, own) => Some(own.scheme()),
+            Model::Elements(..) => Some(Scheme::Avi),
             _ => None,
         };
         if let Some(scheme) = scheme {

@@ -12,10 +12,9 @@ use crate::system::levels::sparse::SparseLevels;
 use crate::system::levels::{Method, Outer};
 use crate::system::linear::sparse::Symmetric;
 use crate::system::linear::system::{Potential, System};
-use crate::system::lts::{Growth, SchemeSummary, SparseSteps, SparseSubcycles};
+use crate::system::lts::{Growth, SchemeSummary, SparseSteps};
 use crate::system::spectrum::modes::Origin;
 use crate::system::spectrum::rate::{Multiplier, per_time};
-use crate::system::vary::stretches::Stretch;
 use crate::system::verdict::analysis::{Analysis, Evidence, Instability, Part};
 use crate::system::verdict::limits::{Limits, degrees_of_freedom};
 use crate::system::verdict::measured::{Holds, Measured, Removed, check_accuracy};
@@ -36,8 +35,6 @@ enum Of {
     Levels { levels: Arc<SparseLevels>, outer: Outer, accuracy: f64, removed: Option<Removed> },
     /// One stiffness, with local time steps.
     Steps(Box<SparseSteps>),
-    /// One stiffness, with subcycles.
-    Subcycles(Box<SparseSubcycles>),
 }
 
 /// The note on two levels: what is decided of them, and what does more.
@@ -51,21 +48,7 @@ const NO_MODE: &str = "the mode that ends the first stable region grows at this 
 /// The note on local time steps.
 const FASTEST: &str = "of sparse stiffnesses only the motion that grows fastest is computed";
 
-/// The notes on subcycles: on a verdict, on what was found to grow.
-const HALF_TURN: &str = "of sparse subcycling no verdict is proven where the fastest fine motion takes half a turn or more in a step";
-const ROUNDED: &str = "the multiplier that grows fastest is computed, rounded: no growth rate is enclosed";
-const SLOW: &str = "no growing mode was found: growth is slow here";
-const NOT_PROVEN: &str = "in doubles a mode grows: its multiplier is rounded, and nothing is proven";
-const NONE_FOUND: &str =
-    "in doubles no growing mode was found: if one grows it does so slowly; nothing is proven";
-
-/// Multipliers on the circle that meet are known to the root of a residual of 1e-9. What is beyond it by no more need not grow.
-const MEETING: f64 = 3e-5;
-
 const TOGETHER: &str = "all may move together: that motion is set apart";
-
-/// The cost of one resonance: to find it, and both edges of its unstable steps.
-const A_RESONANCE: f64 = 60.0;
 
 /// Factorizations that an answer takes, roughly, with all else.
 const FACTORIZATIONS: f64 = 6.0;
@@ -123,14 +106,6 @@ impl SparseSystem {
         SparseSystem::of_one(steps.size(), Of::Steps(Box::new(steps)), step)
     }
 
-    /// Subcycling with held velocities.
-    ///
-    /// # Errors
-    /// A step that is not positive.
-    pub fn with_subcycles(steps: SparseSubcycles, step: &Rational) -> Result<SparseSystem> {
-        SparseSystem::of_one(steps.size(), Of::Subcycles(Box::new(steps)), step)
-    }
-
     fn of_one(n: usize, of: Of, step: &Rational) -> Result<SparseSystem> {
         let clock = Potential::new(Symmetric::zero(n), step.clone());
         let clocks = System::new(Symmetric::diagonal(&vec![Rational::one(); n]), vec![clock])?;
@@ -153,42 +128,12 @@ impl SparseSystem {
         }
     }
 
-    /// Where it has subcycles.
-    pub fn subcycles(&self) -> Option<&SparseSubcycles> {
-        match &self.of {
-            Of::Subcycles(own) => Some(own),
-            _ => None,
-        }
-    }
-
     /// The summary of its scheme in answers, where it has one.
     pub(super) fn summary(&self) -> Option<SchemeSummary> {
         match &self.of {
             Of::Levels { .. } => None,
             Of::Steps(own) => Some(own.summary()),
-            Of::Subcycles(own) => Some(own.summary()),
         }
-    }
-
-    /// The verdicts on all steps in a range, as [`SparseSteps::stretches`]; `None` for two levels.
-    pub(super) fn stretches(&self, range: (f64, f64), width: f64) -> Option<Result<Vec<Stretch>>> {
-        match &self.of {
-            Of::Levels { .. } => None,
-            Of::Steps(own) => Some(own.stretches(range, width)),
-            Of::Subcycles(own) => Some(own.stretches(range)),
-        }
-    }
-
-    /// The cost of these, as [`SparseSystem::cost`].
-    pub(super) fn cost_of_stretches(&self, range: (f64, f64)) -> Option<f64> {
-        if let Of::Subcycles(own) = &self.of {
-            return Some(A_RESONANCE / FASTER * own.products());
-        }
-        let own = self.local_steps()?;
-        let top = own.plain_limit().map_or(range.1, |(lo, _)| lo * f64::from(own.substeps()) * 0.99);
-        let range = (range.0, range.1.min(top));
-        let count = if range.0 < range.1 { own.count(range).unwrap_or(own.size()) } else { 0 };
-        Some((count + 1) as f64 * A_RESONANCE / FASTER * own.products())
     }
 
     /// Local time steps in another step; `None` for two levels.
@@ -210,7 +155,7 @@ impl SparseSystem {
             Of::Levels { levels, outer, removed, .. } => {
                 Ok(SparseSystem { of: Of::Levels { levels, outer, accuracy, removed }, ..self })
             }
-            Of::Steps(_) | Of::Subcycles(_) => {
+            Of::Steps(_) => {
                 Err(Error::input("accuracy", accuracy, "has no meaning with local steps: leave it out"))
             }
         }
@@ -239,7 +184,6 @@ impl SparseSystem {
         let products = match &self.of {
             Of::Levels { levels, .. } => OF_LEVELS * levels.products(),
             Of::Steps(own) => FACTORIZATIONS * own.products(),
-            Of::Subcycles(own) => FACTORIZATIONS * own.products(),
         };
         (products / FASTER).min(1e19) as u64
     }
@@ -254,7 +198,6 @@ impl SparseSystem {
         let (levels, outer, accuracy, removed) = match &self.of {
             Of::Levels { levels, outer, accuracy, removed } => (levels, outer, *accuracy, removed),
             Of::Steps(own) => return Ok(self.of_steps(own)),
-            Of::Subcycles(own) => return self.of_subcycles(own),
         };
         levels.look(outer.inner_steps());
         let margin = if levels.is_unstable(outer, 0.0) { None } else { levels.margin(outer) };
@@ -301,7 +244,6 @@ impl SparseSystem {
         Ok(match &self.of {
             Of::Levels { levels, outer, .. } => levels.verdict(outer, 0.0),
             Of::Steps(own) => own.verdict(to_f64(&self.step)),
-            Of::Subcycles(own) => own.verdict(to_f64(&self.step)),
         })
     }
 
@@ -335,31 +277,6 @@ impl SparseSystem {
             notes.push(TOGETHER.into());
         }
         Analysis::of_part(Part { largest, ..part }, 1, notes)
-    }
-
-    /// The verdict on subcycles, and what grows fastest.
-    fn of_subcycles(&self, own: &SparseSubcycles) -> Result<Analysis> {
-        let (dt, period) = (to_f64(&self.step), Laurent::from_rational(self.step.clone()));
-        let verdict = own.verdict(dt);
-        let mut notes = vec![HALF_TURN.into()];
-        let mut modes = Default::default();
-        if verdict != Holds::Stable {
-            let is_proven = verdict == Holds::Unstable;
-            let found = own.growing(dt, if is_proven { 0.0 } else { MEETING })?;
-            let note = match (is_proven, found.is_some()) {
-                (true, true) => ROUNDED,
-                (true, false) => SLOW,
-                (false, true) => NOT_PROVEN,
-                (false, false) => NONE_FOUND,
-            };
-            notes.push(note.into());
-            modes = found.unwrap_or_default();
-        }
-        let part = Part::new(own.size(), period, decided(verdict), modes);
-        if own.plain().rigid_motions() > 0 {
-            notes.push(TOGETHER.into());
-        }
-        Ok(Analysis::of_part(part, 1, notes))
     }
 }
 

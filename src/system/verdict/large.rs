@@ -2,7 +2,7 @@
 //!
 //! All eigenvalues of n degrees of freedom cost 25 n³ and are asked for by nobody where n is in the thousands. Where the signs
 //! prove instability all μ are real (one end's action is definite, so that one of the forms is), and a few thousand sparse periods
-//! find the fastest. The same iteration looks for what grows under subcycling, where pairs may be complex.
+//! find the fastest.
 
 use faer::Mat;
 use faer::c64;
