@@ -261,3 +261,24 @@ fn what_does_not_fit_is_named() {
     }
     assert!(own.free_of(&[columns(2, 1), columns(2, 1)]).is_ok());
 }
+
+/// One triangle of a matrix is no Hessian along an orbit, and neither is what is off by more than the accuracy.
+#[test]
+fn hessians_along_an_orbit_that_are_not_symmetric_are_refused_by_their_entry() {
+    use kickdrift::scene::{Array, Arrays, SystemScene};
+    let read = |off: f64| {
+        let kick = [2.0, off, 0.0, 2.0];
+        let array = Array::new(vec![2, 2, 2], [kick, [2.0, 0.0, 0.0, 2.0]].concat()).unwrap();
+        let held = Arrays::Held(std::sync::Arc::new([("k".to_string(), array)].into()));
+        let file = serde_json::json!({
+            "schema": "kickdrift/system/1", "along_orbit": true, "masses": [1, 1], "accuracy": 1e-6, "keep_rigid": true,
+            "potentials": [{"step": "1/4", "stiffness": {"npz": "a.npz", "array": "k"}}],
+        });
+        SystemScene::from_json_in(held, file)
+    };
+    let error = read(1e-4).unwrap_err();
+    assert_eq!(error.field(), "potentials[0].stiffness[0][0][1]", "{error}");
+    assert!(error.to_string().contains("differs from [1][0] by 1e-4"), "{error}");
+    // Within the accuracy its symmetric part is taken, and what else is wrong is no longer this.
+    assert!(read(1e-8).map_or_else(|error| !error.to_string().contains("differs"), |_| true));
+}

@@ -203,7 +203,7 @@ class System(Frozen):
             document["bonded"] = _pairs("bonded", bonded)
         document["potentials"] = []
         for place, (name, (_, hessian)) in enumerate(potentials.items()):
-            at, own = _compressed(place, name, hessian) or _dense(place, name, hessian)
+            at, own = _compressed(place, name, hessian, float(known)) or _dense(place, name, hessian)
             potential = {"name": name, "step": written(name, steps[name]), "stiffness": at}
             arrays |= own
             if forces is not None:
@@ -593,11 +593,30 @@ def _dense(place: int, name: str, hessian: npt.ArrayLike) -> tuple[dict[str, str
     return _at(own), {own: doubles(name, hessian)}
 
 
-def _compressed(place: int, name: str, hessian: Any) -> tuple[dict[str, str], _Arrays] | None:
-    """The three arrays of compressed rows of a sparse matrix of SciPy's, made symmetric; None of anything else."""
+def _compressed(place: int, name: str, hessian: Any, accuracy: float) -> tuple[dict[str, str], _Arrays] | None:
+    """The three arrays of compressed rows of a sparse matrix of SciPy's; None of anything else.
+
+    It is to be symmetric to its accuracy, as a dense one: what asymmetry there is within that is split evenly.
+    """
     if not hasattr(hessian, "tocsr"):
         return None
     rows = hessian.tocsr()
+    if rows.shape[0] != rows.shape[1]:
+        raise KickdriftError(name, f"of shape {tuple(rows.shape)}", "give a square matrix")
+    sizes = doubles(name, rows.data)
+    off = (rows - rows.T).tocoo()
+    # Of two entries, each half of the difference.
+    if np.linalg.norm(off.data) / 2 > accuracy * np.linalg.norm(sizes):
+        most = int(np.abs(off.data).argmax())
+        i, j = int(off.row[most]), int(off.col[most])
+        own, other = (float(rows[place]) for place in ((i, j), (j, i)))
+        if own == 0:
+            (i, j), (own, other) = (j, i), (other, own)
+        remedy = (
+            f"is not symmetric: entry [{j}, {i}] is {other!r}, and they differ by {abs(own - other):.3g}; give both "
+            "triangles: T + T.T - diags(T.diagonal()) of one triangle T, (K + K.T)/2 of what was to be symmetric"
+        )
+        raise KickdriftError(f"{name}[{i}, {j}]", repr(own), remedy)
     rows = ((rows + rows.T) / 2).tocsr()
     rows.sum_duplicates()
     own = f"hessian{place}"

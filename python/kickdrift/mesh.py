@@ -217,7 +217,7 @@ def waves(
     potentials = []
     for k, (few, factor) in enumerate([(own > 1, factors[0]), (own == 1, 1)] if scheme == "avi" else [(own > 0, 1)]):
         matrix = _assembled(place[cells[few]], stiffness[few], len(nodes))
-        at, matrices = _compressed(k, "stiffness", matrix) or ({}, {})
+        at, matrices = _compressed(k, "stiffness", matrix, 1e-12) or ({}, {})
         arrays |= matrices
         potentials.append({"step": text("step", Fraction(dt) / factor), "stiffness": at})
     if scheme != "avi":

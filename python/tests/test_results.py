@@ -264,3 +264,30 @@ def test_sparse_levels_are_decided_as_dense_ones_in_the_first_region() -> None:
     with pytest.raises(kd.KickdriftError) as caught:
         system.intervals(("1/500", "1/200"))
     assert caught.value.field == "intervals"
+
+
+@pytest.mark.parametrize("form", ["csr_matrix", "csc_matrix", "coo_matrix", "lil_matrix", "csr_array", "coo_array"])
+def test_a_triangle_of_a_sparse_matrix_is_refused_with_its_entry_and_never_halved(form: str) -> None:
+    sparse = pytest.importorskip("scipy.sparse")
+    whole = np.array([[2.0, -1.0, 0.0], [-1.0, 2.0, -0.5], [0.0, -0.5, 2.0]])
+    made = getattr(sparse, form)
+
+    def system(matrix: np.ndarray) -> kd.System:
+        potentials = {"fast": ("1/8", made(np.eye(3))), "slow": ("1/2", made(matrix))}
+        return kd.System.from_hessians(np.ones(3), potentials, accuracy=1e-6, keep_rigid=True)
+
+    for triangle in (np.tril(whole), np.triu(whole)):
+        with pytest.raises(kd.KickdriftError) as caught:
+            system(triangle)
+        assert caught.value.field in ("slow[1, 0]", "slow[0, 1]") and caught.value.value == "-1.0"
+        assert "is 0.0, and they differ by 1" in caught.value.remedy
+        # What the remedy says is what was meant.
+        mended = system(triangle + triangle.T - np.diag(triangle.diagonal()))
+        assert np.array_equal(mended.arrays["hessian1.data"], system(whole).arrays["hessian1.data"])
+    off = np.array([[0.0, 1e-3, 0.0], [0.0] * 3, [0.0] * 3])
+    with pytest.raises(kd.KickdriftError, match="differ by 0.001"):
+        system(whole + off)
+    # Within the accuracy it is split evenly, as a dense one.
+    assert system(whole + 1e-4 * off).decide().proven
+    with pytest.raises(kd.KickdriftError, match="of shape"):
+        system(whole[:2])

@@ -4,7 +4,6 @@ use faer::{Mat, Side};
 use num_traits::{Num, One, Zero};
 
 use crate::number::Rational;
-use crate::number::rational::to_f64;
 use crate::recheck::context::{Checked, holds};
 use crate::system::{Analysis, Holds, Level, LocalSteps, SchemeSummary, SparseSteps};
 

@@ -57,7 +57,7 @@ pub(super) struct Document {
     _time_unit: Option<String>,
     #[serde(default)]
     pub mass_weighted: bool,
-    pub masses: Option<Reference>,
+    pub masses: Option<MassesDocument>,
     pub positions: Option<Reference>,
     #[serde(default)]
     pub periodic: bool,
@@ -113,6 +113,38 @@ pub(super) struct LevelDocument {
 pub(super) enum FineDocument {
     List(Vec<usize>),
     Array(Reference),
+}
+
+/// Masses: numbers in the file, or an array of them.
+#[derive(Debug, Deserialize)]
+#[serde(try_from = "Value")]
+pub(super) enum MassesDocument {
+    List(Vec<Number>),
+    Array(Reference),
+}
+
+impl TryFrom<Value> for MassesDocument {
+    type Error = String;
+
+    fn try_from(value: Value) -> std::result::Result<Self, String> {
+        match value {
+            Value::Array(all) => Ok(MassesDocument::List(all.into_iter().map(Number::from).collect())),
+            other => Reference::try_from(other).map(MassesDocument::Array),
+        }
+    }
+}
+
+impl MassesDocument {
+    fn read(&self, arrays: &Arrays) -> Result<Vec<f64>> {
+        match self {
+            MassesDocument::Array(at) => Ok(at.read("masses", arrays)?.into_values()),
+            MassesDocument::List(all) => {
+                let number =
+                    |(i, own): (usize, &Number)| own.read(&format!("masses[{i}]")).map(|own| to_f64(&own));
+                all.iter().enumerate().map(number).collect()
+            }
+        }
+    }
 }
 
 /// Whether some stiffness of the file stands by reference.
@@ -202,7 +234,9 @@ impl Document {
                 let remedy = "scale and force have no place along an orbit: leave them out";
                 return Err(Error::input(&format!("potentials[{k}]"), "given", remedy));
             }
-            kicks.push(own.stiffness.read(&field, arrays)?.matrices(&field)?);
+            let own = own.stiffness.read(&field, arrays)?.matrices(&field)?;
+            check_symmetric(&field, &own, self.accuracy()?)?;
+            kicks.push(own);
         }
         let n = kicks.first().and_then(|own: &Vec<DMatrix<f64>>| own.first()).map_or(0, DMatrix::nrows);
         if n == 0 || n > LARGEST {
@@ -250,8 +284,7 @@ impl Document {
 
     /// The mass of each degree of freedom, where masses are given.
     pub fn masses(&self, n: usize, arrays: &Arrays) -> Result<Option<Vec<f64>>> {
-        let masses = self.masses.as_ref().map(|at| at.read("masses", arrays)).transpose()?;
-        masses.map(|own| spread(own.into_values(), n)).transpose()
+        self.masses.as_ref().map(|own| spread(own.read(arrays)?, n)).transpose()
     }
 
     /// The positions of the particles, where they are given. Elements and bonds are checked against the number of particles.
@@ -335,6 +368,26 @@ impl PotentialDocument {
         let scale = scale.map_or(1.0, |own| to_f64(&own));
         Ok(Read { step, scale, stiffness: stiffness * scale })
     }
+}
+
+/// That the Hessians of a clock's kicks are symmetric to their accuracy, which is relative to the largest norm among them: within that the symmetric part is
+/// taken.
+fn check_symmetric(field: &str, kicks: &[DMatrix<f64>], accuracy: f64) -> Result<()> {
+    let largest = kicks.iter().map(DMatrix::norm).fold(0.0, f64::max);
+    let square = kicks.iter().enumerate().filter(|(_, own)| own.is_square());
+    for (k, own) in square {
+        let off = own - own.transpose();
+        if off.norm() / 2.0 > accuracy * largest {
+            let (i, j) = off.map(f64::abs).iamax_full();
+            let remedy = format!(
+                "differs from [{j}][{i}] by {:e}, more than the accuracy of {accuracy:e} allows: give (K + K.T)/2 of what was to be symmetric, or an \
+                 accuracy that covers it",
+                off[(i, j)].abs()
+            );
+            return Err(Error::input(&format!("{field}[{k}][{i}][{j}]"), own[(i, j)], remedy));
+        }
+    }
+    Ok(())
 }
 
 /// A mass for each degree of freedom, from one each or from one for each three.

@@ -25,7 +25,7 @@ use super::array::{Arrays, Reference};
 use super::measured::{self, Document, FineDocument, LevelDocument};
 use crate::error::{Error, Result};
 use crate::number::Rational;
-use crate::system::levels::sparse::SparseLevels;
+use crate::system::levels::sparse::{SparseLevels, symmetric};
 use crate::system::levels::{rigid_motions, translations};
 use crate::system::{Level, LocalSteps, Removed, Scheme, SparseSteps, SparseSystem};
 
@@ -204,28 +204,7 @@ fn rows(stiffness: &Reference, field: &str, arrays: &Arrays) -> Result<Rows> {
         let remedy = "give data, indices and indptr of compressed rows, as scipy.sparse.csr_matrix has them";
         return refused(format!("{} entries of {n} rows", data.len()), remedy);
     }
-    let (mut lower, mut upper) = (Vec::new(), Vec::new());
-    for i in 0..n {
-        for at in ends[i] as usize..ends[i + 1] as usize {
-            let (j, x) = (indices[at] as usize, data[at]);
-            if i >= j {
-                lower.push((i, j, x));
-            }
-            if i <= j {
-                upper.push((j, i, x));
-            }
-        }
-    }
-    lower.sort_unstable_by_key(|&(i, j, _)| (i, j));
-    upper.sort_unstable_by_key(|&(i, j, _): &(usize, usize, f64)| (i, j));
-    let largest = data.iter().fold(0.0f64, |most, x| most.max(x.abs()));
-    let is_same = |(a, b): (&(usize, usize, f64), &(usize, usize, f64))| {
-        (a.0, a.1) == (b.0, b.1) && (a.2 - b.2).abs() <= SYMMETRIC * largest
-    };
-    if lower.len() != upper.len() || !lower.iter().zip(&upper).all(is_same) {
-        return refused("not symmetric".into(), "give both triangles, the same to rounding: (K + K.T)/2");
-    }
-    Ok((n, lower))
+    let row = |i: usize| (ends[i] as usize..ends[i + 1] as usize).map(move |at| (i, at));
+    let all: Vec<_> = (0..n).flat_map(row).map(|(i, at)| (i, indices[at] as usize, data[at])).collect();
+    Ok((n, symmetric(field, n, &all, true)?))
 }
-/// Entries of both triangles may differ by so much, relative to the largest one: the roundings of a product.
-const SYMMETRIC: f64 = 1e-14;

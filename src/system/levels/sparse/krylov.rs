@@ -2,8 +2,6 @@
 
 use faer::{Mat, Side};
 
-use crate::system::verdict::large::start;
-
 /// How often a space is looked at.
 const EVERY: usize = 16;
 

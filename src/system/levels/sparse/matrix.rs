@@ -31,8 +31,64 @@ pub(in crate::system) struct Pattern {
     terms: usize,
 }
 
-/// A symmetric matrix of n rows as triplets (i, j, x), each pair of entries once or both alike.
+/// A symmetric matrix of n rows as triplets (i, j, x), each pair of entries once or both alike; triplets of one entry add up, in doubles.
 pub type Triplets = [(usize, usize, f64)];
+
+/// Entries of both triangles may differ by so much, relative to the largest one: the roundings of a product.
+const SYMMETRIC: f64 = 1e-14;
+
+/// The lower triangle of a symmetric matrix of n rows. Where it `is_whole` an entry that is not given is 0, else it is that of the other triangle.
+///
+/// # Errors
+/// Numbers that are not finite, indices beyond the rows, an entry and its mirror image that differ, all by `field`.
+pub(crate) fn symmetric(
+    field: &str,
+    n: usize,
+    given: &Triplets,
+    is_whole: bool,
+) -> Result<Vec<(usize, usize, f64)>> {
+    if let Some((i, j, x)) = given.iter().find(|(i, j, x)| !x.is_finite() || *i.max(j) >= n) {
+        let remedy = format!("give finite numbers, and indices below {n}");
+        return Err(Error::input(&format!("{field}[{i}][{j}]"), x, remedy));
+    }
+    let largest = given.iter().fold(0.0f64, |most, own| most.max(own.2.abs()));
+    let lower: Vec<_> = given.iter().filter(|(i, j, _)| i >= j).copied().collect();
+    let upper: Vec<_> = given.iter().filter(|(i, j, _)| i < j).map(|&(i, j, x)| (j, i, x)).collect();
+    let (lower, upper) = (added(lower), added(upper));
+    let (mut below, mut above) = (lower.iter().peekable(), upper.iter().peekable());
+    let mut all = Vec::with_capacity(lower.len());
+    let place = |own: &&(usize, usize, f64)| (own.0, own.1);
+    while let Some(at) = below.peek().into_iter().chain(above.peek()).map(place).min() {
+        let (i, j) = at;
+        let [x, y] = [&mut below, &mut above].map(|own| own.next_if(|own| place(own) == at).map(|own| own.2));
+        let (x, y) = match (x, y) {
+            (x, y) if is_whole && i != j => (x.unwrap_or(0.0), y.unwrap_or(0.0)),
+            (x, y) => (x.or(y).unwrap_or(0.0), y.or(x).unwrap_or(0.0)),
+        };
+        if (x - y).abs() > SYMMETRIC * largest {
+            let remedy = format!(
+                "is not symmetric: entry [{j}][{i}] is {y}, and they differ by {:e}; give (K + K.T)/2 where that is meant",
+                (x - y).abs()
+            );
+            return Err(Error::input(&format!("{field}[{i}][{j}]"), x, remedy));
+        }
+        all.push((i, j, x));
+    }
+    Ok(all)
+}
+
+/// In order, the triplets of each entry added up.
+fn added(mut own: Vec<(usize, usize, f64)>) -> Vec<(usize, usize, f64)> {
+    own.sort_by_key(|&(i, j, _)| (i, j));
+    own.dedup_by(|next, kept| {
+        let is_same = (next.0, next.1) == (kept.0, kept.1);
+        if is_same {
+            kept.2 += next.2;
+        }
+        is_same
+    });
+    own
+}
 
 impl Pattern {
     /// That of all entries of some matrices, each with its entries in it.
@@ -94,20 +150,6 @@ impl Pattern {
 
     fn column(&self, j: usize) -> impl Iterator<Item = (usize, usize)> + '_ {
         (self.columns[j]..self.columns[j + 1]).map(|at| (at, self.rows[at]))
-    }
-
-    /// The entries of each row with their columns.
-    pub(in crate::system) fn rows(&self, values: &[f64]) -> Vec<Vec<(usize, f64)>> {
-        let mut rows = vec![Vec::new(); self.size()];
-        for j in 0..self.size() {
-            for (at, i) in self.column(j) {
-                rows[i].push((j, values[at]));
-                if i != j {
-                    rows[j].push((i, values[at]));
-                }
-            }
-        }
-        rows
     }
 
     /// A x for each column x.

@@ -29,4 +29,5 @@ mod region;
 
 pub(in crate::system) use matrix::Pattern;
 pub use matrix::Triplets;
+pub(crate) use matrix::symmetric;
 pub use region::SparseLevels;

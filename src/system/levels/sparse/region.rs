@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use faer::Mat;
 
 use super::krylov::top;
-use super::matrix::{Factors, Pattern, Triplets};
+use super::matrix::{Factors, Pattern, Triplets, symmetric};
 use crate::error::{Error, Result};
 use crate::number::{U, bisected};
 use crate::parallel::both;
@@ -125,22 +125,20 @@ impl SparseLevels {
     /// stiffnesses do along them is projected out: forms that are definite on all vectors are so on those that are not rigid.
     ///
     /// # Errors
-    /// Masses that are not positive or as many as rows; numbers that are not finite; indices beyond the rows.
+    /// Masses that are not positive or as many as rows; numbers that are not finite; indices beyond the rows; pairs of entries that differ.
     pub fn new(masses: &[f64], [fast, slow]: [&Triplets; 2], rigid: Mat<f64>) -> Result<SparseLevels> {
         let n = masses.len();
         if let Some((i, mass)) = masses.iter().enumerate().find(|(_, m)| !(m.is_finite() && **m > 0.0)) {
             return Err(Error::input(&format!("masses[{i}]"), mass, "a mass must be positive"));
         }
-        if [fast, slow].iter().any(|own| own.iter().any(|(_, _, x)| !x.is_finite())) {
-            return Err(Error::input("stiffness", "an entry that is not finite", "give finite numbers"));
-        }
-        let weighted = |own: &Triplets| -> Vec<_> {
-            let weight = |i: usize, j: usize| {
-                masses.get(i).zip(masses.get(j)).map_or(1.0, |(a, b)| a.sqrt() * b.sqrt())
-            };
-            own.iter().filter(|(i, j, _)| i >= j).map(|&(i, j, x)| (i, j, x / weight(i, j))).collect()
+        let weighted = |own: &Triplets| -> Result<Vec<_>> {
+            let weight = |i: usize, j: usize| masses[i].sqrt() * masses[j].sqrt();
+            Ok(symmetric("stiffness", n, own, false)?
+                .into_iter()
+                .map(|(i, j, x)| (i, j, x / weight(i, j)))
+                .collect())
         };
-        let [fast_terms, slow_terms] = [fast, slow].map(weighted);
+        let (fast_terms, slow_terms) = (weighted(fast)?, weighted(slow)?);
         let (both, [fast, slow]) = Pattern::of(n, [&fast_terms, &slow_terms])?;
         let (alone, [fast_alone]) = Pattern::of(n, [&fast_terms])?;
         let sizes = [&fast, &slow].map(|own| both.size_of(own));
