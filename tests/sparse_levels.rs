@@ -224,6 +224,175 @@ fn compressed_rows_are_read_and_refused_by_name() {
     }
 }
 
+/// A document of sparse levels by its compressed rows.
+fn small(matrices: [&DMatrix<f64>; 2], steps: [&str; 2]) -> kickdrift::error::Result<SystemScene> {
+    let mut arrays = std::collections::BTreeMap::new();
+    let mut hold = |name: String, values: Vec<f64>| {
+        arrays.insert(name, Array::new(vec![values.len()], values).unwrap());
+    };
+    for (k, own) in matrices.into_iter().enumerate() {
+        let (n, mut ends, mut held) = (own.nrows(), vec![0.0], Vec::new());
+        for i in 0..n {
+            held.extend((0..n).filter(|&j| own[(i, j)] != 0.0).map(|j| (j as f64, own[(i, j)])));
+            ends.push(held.len() as f64);
+        }
+        hold(format!("k{k}.indices"), held.iter().map(|own| own.0).collect());
+        hold(format!("k{k}.data"), held.iter().map(|own| own.1).collect());
+        hold(format!("k{k}.indptr"), ends);
+    }
+    let held = kickdrift::scene::Arrays::Held(std::sync::Arc::new(arrays));
+    let potential =
+        |k: usize| json!({"step": steps[k], "stiffness": {"npz": "a.npz", "csr": format!("k{k}")}});
+    let file = json!({
+        "schema": "kickdrift/system/1", "masses": vec![1; matrices[0].nrows()], "accuracy": 1e-9,
+        "potentials": [potential(0), potential(1)],
+    });
+    SystemScene::from_json_in(held, file)
+}
+
+/// 1 and 0.01 on the fast clock, 0.1 and -0.02 on the slow one: the first mode resonates, the second falls, and faster.
+#[test]
+fn where_the_total_falls_nothing_is_counted_and_no_smaller_step_is_called_stable() {
+    use kickdrift::question::{Question, System, Work};
+    let diagonal = |own: [f64; 2]| DMatrix::from_diagonal(&own.to_vec().into());
+    let (fast, slow) = (diagonal([1.0, 0.01]), diagonal([0.1, -0.02]));
+    for (steps, told) in [(["0.376", "3.008"], Some(false)), (["1/80", "1/10"], None)] {
+        let scene = small([&fast, &slow], steps).unwrap();
+        let found = scene.model().decide(Route::Cheapest, &Limits::default()).unwrap();
+        assert_eq!(found.holds().is_stable(), told, "{found:?}");
+        let measured = found.measured.as_ref().unwrap();
+        assert_eq!((measured.margin, measured.first_unstable, found.growth_rate()), (None, None, None));
+        let falls = &found.warnings[1];
+        assert!(falls.starts_with("along 1 direction, ") && falls.contains("may fall"), "{falls}");
+        let [resonance] = &found.warnings[2..] else { panic!("{:?}", found.warnings) };
+        assert!(resonance.starts_with("apart from such falls"), "{resonance}");
+    }
+    // In a scan, too, and in words.
+    let scene = small([&fast, &slow], ["0.376", "3.008"]).unwrap();
+    assert_eq!(scene.model().at_point(Route::Cheapest, &Limits::default()).unwrap().is_stable(), false);
+    let folder = tempfile::tempdir().unwrap();
+    for (name, own) in [("f", &fast), ("s", &slow)] {
+        npz_of(&folder.path().join(format!("{name}.npz")), own);
+    }
+    let potential = |name: &str, step: &str| json!({"step": step, "stiffness": {"npz": format!("{name}.npz"), "csr": ""}});
+    let file = json!({
+        "schema": "kickdrift/system/1", "masses": [1, "1"],
+        "potentials": [potential("f", "0.376"), potential("s", "3.008")],
+    });
+    let asked: System = serde_json::from_value(json!({"file": "a.json", "system": file})).unwrap();
+    let arrays = kickdrift::scene::Arrays::from(folder.path());
+    let answer = asked.answer(&Work { arrays: Some(&arrays), ..Work::default() }).unwrap();
+    let text = asked.document(&answer).render(kickdrift::format::Format::Text).unwrap();
+    assert!(text.starts_with("unstable") && text.contains("growth rate not enclosed"), "{text}");
+    assert!(!text.contains("no other") && !text.contains("every smaller"), "{text}");
+}
+
+/// A matrix as `scipy.sparse.save_npz` writes it, but for its shape.
+fn npz_of(path: &std::path::Path, own: &DMatrix<f64>) {
+    use kickdrift::report::npz::{self, Element};
+    let n = own.nrows();
+    let row = |i: usize| (0..n).filter(move |&j| own[(i, j)] != 0.0).map(move |j| (j as f64, own[(i, j)]));
+    let (indices, data): (Vec<f64>, Vec<f64>) = (0..n).flat_map(row).unzip();
+    let ends = std::iter::once(0).chain((0..n).map(|i| row(i).count())).scan(0.0, |end, count| {
+        *end += count as f64;
+        Some(*end)
+    });
+    let arrays = [("data", data), ("indices", indices), ("indptr", ends.collect())].map(|(name, values)| {
+        let mut array = npz::Array::new(path, name, Element::F64, &[values.len()]).unwrap();
+        array.put_f64(values).unwrap();
+        array
+    });
+    npz::write(path, arrays.into()).unwrap();
+}
+
+/// Small systems whose stiffnesses are singular, indefinite, or cancel: whatever is proven is what a dense period does.
+#[test]
+fn what_is_proven_of_small_systems_is_what_their_dense_period_does() {
+    let (mut numbers, mut seen, mut first) = (Numbers(21), [0; 3], 0);
+    for case in 0..700 {
+        let n = 2 + case % 3;
+        let mut matrix = |size: f64| {
+            let raw = DMatrix::from_fn(n, n, |_, _| numbers.next());
+            let own: DMatrix<f64> = match case % 5 {
+                // Definite, of rank 1, indefinite.
+                0 | 1 => &raw * raw.transpose() + DMatrix::identity(n, n) * 0.05,
+                2 => raw.column(0) * raw.column(0).transpose(),
+                _ => (&raw + raw.transpose()) / 2.0,
+            };
+            // Symmetric to the last digit.
+            DMatrix::from_fn(n, n, |i, j| size * own[(i.max(j), i.min(j))])
+        };
+        let fast = matrix(1.0);
+        let slow = if case % 7 == 0 { -&fast } else { matrix(0.2) };
+        let lower = |own: &DMatrix<f64>| -> Vec<_> {
+            (0..n).flat_map(|i| (0..=i).map(move |j| (i, j))).map(|(i, j)| (i, j, own[(i, j)])).collect()
+        };
+        let [a, b] = [&fast, &slow].map(lower);
+        let levels = SparseLevels::new(&vec![1.0; n], [&a, &b], faer::Mat::zeros(n, 0)).unwrap();
+        let least = (&fast + &slow).symmetric_eigenvalues().min();
+        let inner_steps = 1 + case as u64 % 6;
+        let radius = |outer: f64| {
+            let inner = outer / inner_steps as f64;
+            let shear = |up: bool, by: DMatrix<f64>| {
+                let mut own = DMatrix::identity(2 * n, 2 * n);
+                own.view_mut(if up { (0, n) } else { (n, 0) }, (n, n)).copy_from(&by);
+                own
+            };
+            let (kick, half) = (shear(false, -outer / 2.0 * &slow), shear(false, -inner / 2.0 * &fast));
+            let step = &half * shear(true, DMatrix::identity(n, n) * inner) * &half;
+            let period = &kick * step.pow(inner_steps as u32) * &kick;
+            period.complex_eigenvalues().iter().fold(0.0f64, |most, own| most.max(own.norm()))
+        };
+        for _ in 0..3 {
+            let step = 8.0 * (numbers.next() + 0.5) + 1e-3;
+            let told = levels.verdict(&Outer::new(step, inner_steps).unwrap(), 0.0);
+            seen[told as usize] += 1;
+            // Doubles know a pair of nearly equal multipliers to half of their digits.
+            match told {
+                Holds::Stable => assert!(radius(step) < 1.0 + 1e-6 && least > 0.0, "{case} {step} {least}"),
+                Holds::Unstable => assert!(radius(step) > 1.0, "{case} {step} {least}"),
+                Holds::NotTold => {}
+            }
+        }
+        if let Some((lo, _)) = levels.first_unstable(inner_steps) {
+            first += 1;
+            assert!(least > 0.0, "{case} {least}");
+            (1..20).for_each(|k| assert!(radius(lo * f64::from(k) / 20.0) < 1.0 + 1e-6, "{case} {k}"));
+        }
+    }
+    assert!(seen.iter().all(|&count| count > 50) && first > 100, "{seen:?} {first}");
+}
+
+/// One triangle of a matrix is no symmetric matrix, and nothing is made so in silence.
+#[test]
+fn what_is_not_symmetric_is_refused_with_the_entry_and_the_difference() {
+    let whole = DMatrix::from_row_slice(2, 2, &[2.0, -1.0, -1.0, 2.0]);
+    for (i, j) in [(0, 1), (1, 0)] {
+        let mut triangle = whole.clone();
+        triangle[(i, j)] = 0.0;
+        let error = small([&whole, &triangle], ["1/8", "1/2"]).unwrap_err();
+        assert_eq!(error.field(), "potentials[1].stiffness[1][0]", "{error}");
+        assert!(
+            error.to_string().contains("is not symmetric: entry [0][1] is")
+                && error.to_string().contains("differ by 1e0"),
+            "{error}"
+        );
+    }
+    let own = |entries: &[(usize, usize, f64)]| {
+        SparseLevels::new(&[1.0; 2], [&[(0, 0, 1.0), (1, 1, 1.0)], entries], faer::Mat::zeros(2, 0))
+    };
+    // In Rust each pair may be given once, in either triangle, and means both.
+    let pairs = [vec![(1, 0, -0.5)], vec![(0, 1, -0.5)], vec![(0, 1, -0.5), (1, 0, -0.5)]].map(|own| {
+        let mut entries = vec![(0, 0, 1.0), (1, 1, 1.0)];
+        entries.extend(own);
+        entries
+    });
+    let first = pairs.map(|entries| own(&entries).unwrap().first_unstable(4).unwrap());
+    assert!(first[0] == first[1] && first[1] == first[2], "{first:?}");
+    let error = own(&[(0, 1, -0.5), (1, 0, -0.25)]).unwrap_err();
+    assert_eq!(error.field(), "stiffness[1][0]", "{error}");
+}
+
 /// What falls by itself falls at any step; the resonances of the steps are those of the same system without it.
 #[test]
 fn resonances_are_proven_where_the_forces_hold_no_minimum() {

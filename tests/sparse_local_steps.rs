@@ -1,7 +1,11 @@
 //! Local time steps of sparse stiffnesses in doubles, against exact arithmetic and dense eigenvalues.
 
 use kickdrift::number::rational::{from_f64_exact, ratio, to_f64};
-use kickdrift::system::{Holds, Level, Limits, LocalSteps, Potential, SparseSteps, Symmetric, System};
+use kickdrift::system::{
+    Holds, Level, Limits, LocalSteps, Model, Potential, Route, SparseSteps, SparseSystem, Symmetric, System,
+    exact_kind,
+};
+use kickdrift::verdict::Kind;
 use nalgebra::DMatrix;
 
 /// Numbers that repeat.
@@ -146,4 +150,96 @@ fn the_first_unstable_step_is_as_sharp_where_a_resonance_is_hardly_coupled() {
     // (dt/4)² y = 4 sin²(π/8) of the largest y, a little below 160.
     let expected = |y: f64| 8.0 * (std::f64::consts::PI / 8.0).sin() / f64::sqrt(y);
     assert!(expected(160.0) < lo && hi < expected(120.0), "{lo} {hi}");
+}
+
+/// A free chain of four, each mass pulled by so much more.
+fn floating(more: f64) -> Entries {
+    let mut own = chain(&[1.0; 5], true);
+    own.iter_mut().filter(|own| own.0 == own.1).for_each(|own| own.2 += more);
+    own
+}
+
+#[test]
+fn all_together_are_set_apart_only_where_rows_sum_to_0_within_the_rounding_of_their_entries() {
+    let levels = vec![Level { fine: [3].into(), substeps: 2 }];
+    let decided = |more: f64| {
+        let steps = SparseSteps::new(&[1.0; 4], &floating(more), levels.clone()).unwrap();
+        let rigid = steps.rigid_motions();
+        let model = SparseSystem::with_local_steps(steps, &ratio(1, 1)).unwrap();
+        let found = Model::Sparse(Box::new(model)).decide(Route::Cheapest, &Limits::default()).unwrap();
+        (found, rigid)
+    };
+    let (free, rigid) = decided(0.0);
+    assert!(free.is_stable() && free.is_proof() && rigid == 1);
+    // Pushed apart by 10^-12 of its springs all of it runs away, e-fold in 10^6.
+    let (pushed, rigid) = decided(-1e-12);
+    let (lo, hi) = pushed.growth_rate().unwrap();
+    assert!(!pushed.is_stable() && pushed.is_proof() && rigid == 0, "{pushed:?}");
+    // 1e-12 as doubles have it, known to a fiftieth of the excess.
+    assert!(lo < 1.0001e-6 && 1e-6 < hi && hi < 1.1 * lo, "{lo} {hi}");
+    // Pulled by as much it is held.
+    let (held, rigid) = decided(1e-12);
+    assert!(held.is_stable() && held.is_proof() && rigid == 0 && held.rigid_modes.is_empty(), "{held:?}");
+    // Of many masses exact arithmetic is too much, and what doubles do not tell is said.
+    let n = 100;
+    let mut many = chain(&vec![1.0; n + 1], true);
+    many.iter_mut().filter(|own| own.0 == own.1).for_each(|own| own.2 += 3e-14);
+    let steps = SparseSteps::new(&vec![1.0; n], &many, levels).unwrap();
+    assert_eq!((steps.rigid_motions(), steps.verdict(1.0)), (0, Holds::NotTold));
+    let model = Model::Sparse(Box::new(SparseSystem::with_local_steps(steps, &ratio(1, 1)).unwrap()));
+    let found = model.decide(Route::Cheapest, &Limits::default()).unwrap();
+    assert!(
+        found.warnings.iter().any(|own| own.contains("neither clearly free nor clearly held")),
+        "{found:?}"
+    );
+}
+
+/// Half of 1/2 and 8 with four substeps: the second mass makes a full turn in a step of 2.
+#[test]
+fn a_full_turn_of_a_fine_motion_is_no_rigid_motion() {
+    let levels = vec![Level { fine: [1].into(), substeps: 4 }];
+    let steps = SparseSteps::new(&[1.0; 2], &[(0, 0, 0.5), (1, 1, 8.0), (1, 0, 0.1)], levels).unwrap();
+    assert_eq!((steps.rigid_motions(), steps.verdict(2.0)), (0, Holds::NotTold));
+    let model = Model::Sparse(Box::new(SparseSystem::with_local_steps(steps, &ratio(2, 1)).unwrap()));
+    let found = model.decide(Route::Cheapest, &Limits::default()).unwrap();
+    assert_eq!(found.kind, Some(Kind::Parabolic), "{found:?}");
+    assert!(!found.is_stable() && found.is_proof() && found.rigid_modes.is_empty());
+}
+
+/// Walls, none, and none but for a last digit; steps at which fine motions make whole and half turns: what is proven is so in exact arithmetic.
+#[test]
+fn what_is_proven_of_small_schemes_is_so_in_exact_arithmetic() {
+    let (mut numbers, mut seen) = (Numbers(17), [0; 3]);
+    for case in 0..300 {
+        let n = 1 + numbers.below(4) as usize;
+        let springs: Vec<_> = (0..=n).map(|_| 2f64.powi(numbers.below(4) as i32)).collect();
+        let mut stiffness = chain(&springs, case % 3 > 0 && n > 1);
+        if case % 3 == 2 {
+            let by = [1e-12, -1e-12, 3e-10, -2f64.powi(-50)][numbers.below(4) as usize];
+            stiffness.iter_mut().filter(|own| own.0 == own.1).for_each(|own| own.2 += by);
+        }
+        let masses: Vec<_> = (0..n).map(|_| (1 + numbers.below(3)) as f64).collect();
+        let fine = (0..n).filter(|_| numbers.below(2) > 0).collect();
+        let levels = [Level { fine, substeps: 1 + numbers.below(4) as u32 }];
+        let (sparse, exact) = both(&masses, &stiffness, &levels);
+        for step in [ratio(1, 2), ratio(1, 1), ratio(2, 1), ratio(1 + numbers.below(200), 100)] {
+            let truth = exact_kind(exact.at(&step).unwrap().system(), &Limits::default()).unwrap();
+            let told = sparse.verdict(to_f64(&step));
+            seen[told as usize] += 1;
+            // Within the rounding of entries a chain whose rows do not quite sum to 0 may move together.
+            let is_free = sparse.rigid_motions() == 1 && case % 3 == 2;
+            match told {
+                Holds::Stable => assert!(truth.is_stable() || is_free, "{case} {step} {truth:?}"),
+                Holds::Unstable => assert!(!truth.is_stable(), "{case} {step} {truth:?}"),
+                Holds::NotTold => {
+                    let model = SparseSystem::with_local_steps(sparse.clone(), &step).unwrap();
+                    let model = Model::Sparse(Box::new(model));
+                    let found = model.decide(Route::Cheapest, &Limits::default()).unwrap();
+                    assert_eq!(found.kind, Some(truth), "{case} {step}");
+                }
+            }
+        }
+    }
+    let [stable, unstable, open] = seen;
+    assert!(stable > 200 && unstable > 200 && open > 4, "{seen:?}");
 }

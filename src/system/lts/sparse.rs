@@ -4,9 +4,12 @@ use faer::Mat;
 
 use super::scheme::{Level, LocalSteps, Scheme, SchemeSummary};
 use crate::error::{Error, Result};
-use crate::number::{U, bisected};
+use crate::number::rational::from_f64_exact;
+use crate::number::{Rational, U, bisected};
 use crate::system::half::norm;
-use crate::system::levels::sparse::{Pattern, Triplets};
+use crate::system::levels::sparse::{Pattern, Triplets, symmetric};
+use crate::system::linear::sparse::Symmetric;
+use crate::system::linear::system::{Potential, System};
 use crate::system::verdict::large::start;
 use crate::system::verdict::measured::Holds;
 
@@ -39,7 +42,11 @@ pub struct SparseSteps {
     fine: Option<Block>,
     /// The common motion, of length 1 and mass-weighted, where all may move together.
     rigid: Mat<f64>,
+    /// The largest sum of a row of K beside that of its |entries|.
+    sums: f64,
     roots: Vec<f64>,
+    /// Of a small one masses and K, for exact arithmetic.
+    given: Option<(Vec<f64>, Vec<(usize, usize, f64)>)>,
 }
 
 /// C_j, how far it is from the one that is meant, and no less than its norm (2-norms).
@@ -65,8 +72,14 @@ impl Block {
     }
 }
 
-/// Sums of rows as small beside those of |entries| are rounding: then all may move together.
-const RIGID: f64 = 1e-12;
+/// Sums of rows so small beside those of |entries| are the rounding of each entry: then all may move together.
+const RIGID: f64 = 8.0 * U;
+
+/// Sums of rows that are small and no rounding: all together are neither clearly free nor clearly held.
+const NEARLY: f64 = 1e-9;
+
+/// Degrees of freedom up to which exact arithmetic tells what doubles do not.
+const SMALL: usize = 24;
 
 /// Rounds of inverse iteration for the motion that grows fastest.
 const ROUNDS: usize = 12;
@@ -86,22 +99,18 @@ impl SparseSteps {
     /// and that motion is set apart.
     ///
     /// # Errors
-    /// Masses that are not positive, numbers that are not finite, indices beyond the rows; levels as [`LocalSteps::new`].
+    /// Masses that are not positive, numbers that are not finite, indices beyond the rows, pairs of entries that differ; levels as [`LocalSteps::new`].
     pub fn new(masses: &[f64], stiffness: &Triplets, levels: Vec<Level>) -> Result<SparseSteps> {
         let n = masses.len();
         if let Some((i, mass)) = masses.iter().enumerate().find(|(_, m)| !(m.is_finite() && **m > 0.0)) {
             return Err(Error::input(&format!("masses[{i}]"), mass, "a mass must be positive"));
         }
-        if let Some((i, j, _)) = stiffness.iter().find(|(i, j, x)| !x.is_finite() || *i.max(j) >= n) {
-            let remedy = format!("give finite numbers of {n} rows");
-            return Err(Error::input("stiffness", format!("entry {i}, {j}"), remedy));
-        }
         Level::check(&levels, n)?;
+        let given = symmetric("stiffness", n, stiffness, false)?;
         let roots: Vec<f64> = masses.iter().map(|m| m.sqrt()).collect();
-        let rigid = rigid(stiffness, &roots);
-        let below = |&(i, j, x): &(usize, usize, f64)| (i >= j).then(|| (i, j, x / (roots[i] * roots[j])));
-        let lower: Vec<_> = stiffness.iter().filter_map(below).collect();
-        let whole = Sparse::symmetric(n, &lower);
+        let (rigid, sums) = rigid(&given, &roots);
+        let weighted: Vec<_> = given.iter().map(|&(i, j, x)| (i, j, x / (roots[i] * roots[j]))).collect();
+        let whole = Sparse::symmetric(n, &weighted);
         let plain = whole.block(0..n)?;
         let fine = levels.first().filter(|own| !own.fine.is_empty());
         let fine = fine.map(|own| whole.block(own.fine.iter().copied())).transpose()?;
@@ -113,7 +122,8 @@ impl SparseSteps {
             Term { size: pattern.size_of(&values).0, values, error: 2.0 * own.error }
         };
         let terms = values.into_iter().zip(&coefficients).map(term).collect();
-        Ok(SparseSteps { pattern, terms, levels, plain, fine, rigid, roots })
+        let given = (n <= SMALL).then(|| (masses.to_vec(), given));
+        Ok(SparseSteps { pattern, terms, levels, plain, fine, rigid, sums, roots, given })
     }
 
     /// The number of degrees of freedom.
@@ -150,6 +160,22 @@ impl SparseSteps {
     /// Rigid motions that are set apart: 0 or 1.
     pub fn rigid_motions(&self) -> usize {
         self.rigid.ncols()
+    }
+
+    /// The largest sum of a row of K relative to that of its |entries|, where that is small and yet no rounding: whether all together are free is not clear.
+    pub fn nearly_free(&self) -> Option<f64> {
+        (self.rigid.ncols() == 0 && self.sums <= NEARLY).then_some(self.sums)
+    }
+
+    /// The same scheme with this step in rational numbers, of some dozen degrees of freedom at most; `None` of more.
+    pub fn exactly(&self, step: &Rational) -> Option<Result<LocalSteps>> {
+        let (masses, stiffness) = self.given.as_ref()?;
+        let exact = |x: f64| from_f64_exact(x).expect("finite");
+        let mut own = Symmetric::zero(self.size());
+        stiffness.iter().for_each(|&(i, j, x)| own.add(i, j, &exact(x)));
+        let mass = Symmetric::diagonal(&masses.iter().map(|&m| exact(m)).collect::<Vec<_>>());
+        let plain = System::new(mass, vec![Potential::new(own, step.clone())]);
+        Some(plain.and_then(|plain| LocalSteps::new(plain, self.levels.clone())))
     }
 
     /// f at dt² = `square` to its rounding, and how far the f that is meant is from it (2-norm).
@@ -347,21 +373,23 @@ const TRIES: u32 = 3;
 /// The least room above what is sought, relative to ‖f‖: below that factorizations prove nothing.
 const LEAST: f64 = 1e-11;
 
-/// The mass-weighted motion of all together, where the rows of K sum to 0.
-fn rigid(stiffness: &Triplets, roots: &[f64]) -> Mat<f64> {
+/// The mass-weighted motion of all together, where the rows of K, given by its lower triangle, sum to 0 within the rounding of their entries; and the largest
+/// of these sums, relative to those of |entries|.
+fn rigid(stiffness: &Triplets, roots: &[f64]) -> (Mat<f64>, f64) {
     let n = roots.len();
-    let (mut sums, mut sizes) = (vec![0.0; n], vec![0.0f64; n]);
-    for &(i, j, x) in stiffness.iter().filter(|(i, j, _)| i >= j) {
-        for (row, again) in [(i, true), (j, i != j)] {
-            if again {
-                sums[row] += x;
-                sizes[row] += x.abs();
-            }
+    let (mut sums, mut sizes, mut counts) = (vec![0.0; n], vec![0.0f64; n], vec![0.0; n]);
+    for &(i, j, x) in stiffness {
+        for row in std::iter::once(i).chain((i != j).then_some(j)) {
+            sums[row] += x;
+            sizes[row] += x.abs();
+            counts[row] += 1.0;
         }
     }
-    let is_rigid = sums.iter().zip(&sizes).all(|(sum, size): (&f64, &f64)| sum.abs() <= RIGID * size);
+    let rows = || sums.iter().zip(&sizes).map(|(sum, size): (&f64, &f64)| (sum.abs(), *size));
+    let is_rigid = rows().zip(&counts).all(|((sum, size), count)| sum <= RIGID * count * size);
+    let largest = rows().filter(|own| own.1 > 0.0).map(|(sum, size)| sum / size).fold(0.0, f64::max);
     let length = roots.iter().map(|x| x * x).sum::<f64>().sqrt();
-    Mat::from_fn(n, usize::from(is_rigid), |i, _| roots[i] / length)
+    (Mat::from_fn(n, usize::from(is_rigid), |i, _| roots[i] / length), largest)
 }
 
 /// C_j of f, j from 1 on.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use num_complex::Complex64;
 use num_traits::One;
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Kind as Reason, Result};
 use crate::number::rational::to_f64;
 use crate::number::{Laurent, Rational};
 use crate::system::levels::sparse::SparseLevels;
@@ -16,7 +16,8 @@ use crate::system::lts::{Growth, SchemeSummary, SparseSteps};
 use crate::system::spectrum::modes::Origin;
 use crate::system::spectrum::rate::{Multiplier, per_time};
 use crate::system::verdict::analysis::{Analysis, Evidence, Instability, Part};
-use crate::system::verdict::limits::{Limits, degrees_of_freedom};
+use crate::system::verdict::decide::decide_by;
+use crate::system::verdict::limits::{Limits, Route, degrees_of_freedom};
 use crate::system::verdict::measured::{Holds, Measured, Removed, check_accuracy};
 use crate::verdict::Kind;
 
@@ -48,7 +49,10 @@ const NO_MODE: &str = "the mode that ends the first stable region grows at this 
 /// The note on local time steps.
 const FASTEST: &str = "of sparse stiffnesses only the motion that grows fastest is computed";
 
-const TOGETHER: &str = "all may move together: that motion is set apart";
+const TOGETHER: &str = "the rows of the stiffness sum to 0 within the rounding of their entries, so all may move together: that motion is set apart";
+
+/// The note on a small system that sparse factorizations do not decide.
+const EXACTLY: &str = "decided as a dense system: sparse factorizations in doubles do not prove it";
 
 /// Factorizations that an answer takes, roughly, with all else.
 const FACTORIZATIONS: f64 = 6.0;
@@ -197,7 +201,7 @@ impl SparseSystem {
         self.allow(limits)?;
         let (levels, outer, accuracy, removed) = match &self.of {
             Of::Levels { levels, outer, accuracy, removed } => (levels, outer, *accuracy, removed),
-            Of::Steps(own) => return Ok(self.of_steps(own)),
+            Of::Steps(own) => return self.of_steps(own, limits),
         };
         levels.look(outer.inner_steps());
         let margin = if levels.is_unstable(outer, 0.0) { None } else { levels.margin(outer) };
@@ -248,9 +252,14 @@ impl SparseSystem {
     }
 
     /// The verdict on local time steps, and what grows fastest.
-    fn of_steps(&self, own: &SparseSteps) -> Analysis {
+    fn of_steps(&self, own: &SparseSteps, limits: &Limits) -> Result<Analysis> {
         let (dt, period) = (to_f64(&self.step), Laurent::from_rational(self.step.clone()));
         let verdict = own.verdict(dt);
+        if verdict == Holds::NotTold
+            && let Some(found) = self.exactly(own, limits)?
+        {
+            return Ok(found);
+        }
         let growth = if verdict == Holds::Unstable { own.growth(dt) } else { None };
         let largest = growth.as_ref().map(|growth| growth.rate);
         let growing = growth.map(|growth| {
@@ -276,7 +285,26 @@ impl SparseSystem {
         if own.rigid_motions() > 0 {
             notes.push(TOGETHER.into());
         }
-        Analysis::of_part(Part { largest, ..part }, 1, notes)
+        notes.extend(own.nearly_free().filter(|_| verdict == Holds::NotTold).map(|sums| {
+            format!(
+                "the rows of the stiffness sum to nearly 0 ({sums:.0e} of their entries): all together are neither clearly free nor clearly held, and \
+                 nothing is proven; assemble it so that they sum to 0 to rounding, or hold a node"
+            )
+        }));
+        Ok(Analysis::of_part(Part { largest, ..part }, 1, notes))
+    }
+
+    /// What exact arithmetic tells of a small one, where doubles tell nothing; `None` where that is too much.
+    fn exactly(&self, own: &SparseSteps, limits: &Limits) -> Result<Option<Analysis>> {
+        let Some(Ok(exact)) = own.exactly(&self.step) else { return Ok(None) };
+        match decide_by(Route::Cheapest, exact.system(), limits) {
+            Ok(mut found) => {
+                found.warnings.push(EXACTLY.into());
+                Ok(Some(found))
+            }
+            Err(error) if error.kind() == Reason::Budget => Ok(None),
+            Err(error) => Err(error),
+        }
     }
 }
 
