@@ -77,7 +77,7 @@ const TEXTS: [(Engine, &str, &str); 16] = [
     (Engine::Gromacs, "integrator = md\ndt = 0.0005\n", "0.5"),
     (
         Engine::Namd,
-        "structure a.psf\ntimestep 1.0 # fs\nnonbondedFreq 2\nfullElectFrequency = 4\nstepspercycle 20\n",
+        "structure a.psf\nPME on\ntimestep 1.0 # fs\nnonbondedFreq 2\nfullElectFrequency = 4\nstepspercycle 20\n",
         "1,2,4",
     ),
     (Engine::Tinker, "parameters amoeba\nINTEGRATOR RESPA\nRESPA-INNER 0.5\n", "0.5,4"),
@@ -252,7 +252,8 @@ fn what_an_engine_refuses_is_said_and_what_is_not_symplectic_is_refused() {
     let error = of("structure a.psf\ntimestep 1\nnonbondedFreq 2\nMTSAlgorithm naive\n").unwrap_err();
     assert!(error.field() == "MTSAlgorithm" && error.remedy().contains("not symplectic"), "{error}");
     // 1, 2 and 3 fs: NAMD wants multiples; the scheme is answered all the same.
-    let reading = of("structure a.psf\ntimestep 1\nnonbondedFreq 2\nfullElectFrequency 3\n").unwrap();
+    let reading =
+        of("structure a.psf\nPME yes\ntimestep 1\nnonbondedFreq 2\nfullElectFrequency 3\n").unwrap();
     assert_eq!(steps(&reading), "1,2,3");
     assert_eq!(reading.remarks, ["NAMD itself refuses this: 3 fs is no multiple of 2 fs"]);
     assert!(not_nested(&of(TEXTS[4].1).unwrap().scheme).is_none());
@@ -282,7 +283,7 @@ fn unknown_keys_are_passed_over_and_what_was_used_is_listed() {
 
 /// A line that each engine passes over; where it goes.
 const UNKNOWN: [(Engine, &str, &str); 6] = [
-    (Engine::Gromacs, "dt", "nstlog = 7\ndt"),
+    (Engine::Gromacs, "dt", "nstxout = 7\ndt"),
     (Engine::Lammps, "timestep", "thermo 7\ntimestep"),
     (Engine::Namd, "timestep", "outputName run7\ntimestep"),
     (Engine::Tinker, "integrator", "vdw-cutoff 7\nintegrator"),
@@ -368,7 +369,9 @@ fn ten_thousand_damaged_texts_are_read_or_refused_in_one_line() {
                 let outer = reading.scheme.last_but_one() * ratio(2, 1);
                 if let Ok(new) = reading.rewritten(&outer) {
                     let again = started_with(&new, &outer).map(|again| again.scheme.outer().clone());
-                    assert!(again.is_err() || again.unwrap() == outer, "{text:?}\n{new:?}");
+                    // A step that needs more digits is a little shorter.
+                    let near = |again: &Rational| *again <= outer && *again > &outer * ratio(99_999, 100_000);
+                    assert!(again.is_err() || near(&again.unwrap()), "{text:?}\n{new:?}");
                 }
             }
             Err(error) => {
@@ -405,9 +408,13 @@ fn what_an_engine_wants_to_be_multiples_of_the_factor_is_rewritten_with_it() {
     }
     // NAMD: electrostatics every whole number of nonbonded evaluations, a cycle every whole number of both.
     let both =
-        of("structure a.psf\ntimestep 1\nnonbondedFreq 2\nfullElectFrequency 2\nstepspercycle 20\n").unwrap();
+        of("structure a.psf\nPME yes\ntimestep 1\nnonbondedFreq 2\nfullElectFrequency 2\nstepspercycle 20\n")
+            .unwrap();
     let new = both.rewritten(&ratio(3, 1)).unwrap();
-    assert_eq!(new, "structure a.psf\ntimestep 1\nnonbondedFreq 3\nfullElectFrequency 3\nstepspercycle 21\n");
+    assert_eq!(
+        new,
+        "structure a.psf\nPME yes\ntimestep 1\nnonbondedFreq 3\nfullElectFrequency 3\nstepspercycle 21\n"
+    );
 }
 
 #[test]

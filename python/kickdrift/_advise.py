@@ -477,7 +477,11 @@ def _text(engine: str | PathLike[str]) -> str:
     if "\n" in own:
         return own
     try:
-        return Path(own).read_text()
+        raw = Path(own).read_bytes()
+        try:
+            return raw.decode()
+        except UnicodeDecodeError:  # Letters in comments, which no engine reads.
+            return raw.decode("latin-1")
     except (OSError, ValueError) as cause:
         raise KickdriftError(own, "not read", f"{cause}: name an engine's input") from cause
 

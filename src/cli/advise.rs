@@ -22,6 +22,9 @@ pub struct Args {
     path: Option<PathBuf>,
     #[command(flatten)]
     asked: Advise,
+    /// An input of OpenMM, LAMMPS, GROMACS, NAMD, Tinker or i-PI, or a log, for its steps; twice with an OpenMM system
+    #[arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath)]
+    engine: Vec<PathBuf>,
     /// Draws what would let the step grow, a bar a row: FILE.svg, .pdf or .png.
     #[arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath, conflicts_with = "no_levers")]
     levers: Option<PathBuf>,
@@ -54,7 +57,7 @@ impl Args {
     /// With the texts of the engine's files, and the system.
     fn asked(&self) -> Result<Advise> {
         let mut asked = self.asked.clone();
-        asked.engine = asked.engine.iter().map(|path| text(Path::new(path))).collect::<Result<_>>()?;
+        asked.engine = self.engine.iter().map(|path| text(path)).collect::<Result<_>>()?;
         if let Some(path) = &self.path {
             asked.file = Some(path.file_name().unwrap_or_default().to_string_lossy().into());
             let archive = path.extension().is_some_and(|extension| extension == "npz");
@@ -65,7 +68,7 @@ impl Args {
 }
 
 fn text(path: &Path) -> Result<String> {
-    file::text(path, file::LONGEST).map_err(|cause| {
+    file::any_text(path, file::LONGEST).map_err(|cause| {
         Error::io(path.display(), format!("cannot read it ({cause}): name an engine's input"))
             .caused_by(cause)
     })

@@ -36,8 +36,8 @@ question! {
         /// The steps from the innermost to the outermost one; again for another scheme.
         #[arg(long, value_name = "0.5fs,4fs")]
         steps: Vec<String>,
-        /// An input of OpenMM, LAMMPS, GROMACS, NAMD, Tinker or i-PI, for its steps; twice with an OpenMM system
-        #[arg(long, value_name = "FILE", value_hint = clap::ValueHint::AnyPath)]
+        /// The contents of an engine's files.
+        #[arg(skip)]
         engine: Vec<String>,
         /// How far every period may be off.
         #[arg(long, value_name = "PART")]
@@ -389,7 +389,7 @@ impl Question for Advise {
     type Answer = Answer;
 
     fn answer(&self, work: &Work) -> Result<Answer> {
-        let reading = self.reading()?;
+        let mut reading = self.reading()?;
         let archive = self.file.as_ref().filter(|file| self.system.is_none() && file.ends_with(".npz"));
         let system = match archive {
             Some(name) => Some(self.archive(name, reading.as_ref())?),
@@ -399,6 +399,9 @@ impl Question for Advise {
             Some(file) => self.of_system(file, reading.as_ref(), work)?,
             None => self.of_periods(reading.as_ref())?,
         };
+        if let Some(reading) = &mut reading {
+            reading.remarks.extend(self.left_open(reading));
+        }
         let safe = asked.answer(work)?;
         let mut notes = Vec::new();
         if let (Safe::Hessians(own), Some(_)) = (&safe, archive) {
@@ -494,15 +497,44 @@ impl Advise {
         })
     }
 
+    /// What the engine's text says of bonds and masses, and cannot be applied to what was asked.
+    fn left_open(&self, reading: &Reading) -> Vec<String> {
+        let mut open: Vec<String> = Vec::new();
+        let mut say = |why: &str| open.push(why.into());
+        let of_hessians = self.file.is_some();
+        if reading.constraints.is_some() && self.constraints.is_none() {
+            if of_hessians {
+                say(
+                    "the text holds bonds, the Hessians given do not: add --constraints h-bonds if these are they",
+                );
+            } else if !self.period.is_empty() {
+                say(
+                    "the text holds bonds, and periods do not say which of them are bonds: leave those out, or name them, as --constraints OH",
+                );
+            }
+        }
+        if reading.hydrogen.is_some() && self.hmr.is_none() {
+            if of_hessians {
+                say("the text has heavy hydrogens, which the Hessians given do not: add --hmr");
+            } else if !self.period.is_empty() {
+                say(
+                    "the text has heavy hydrogens, and periods have no masses: give those of the heavier molecule",
+                );
+            }
+        }
+        open
+    }
+
     fn of_periods(&self, reading: Option<&Reading>) -> Result<Advised> {
-        let hydrogen = self.hydrogen()?;
-        if hydrogen.is_some() && self.bond.is_empty() {
+        let asked = self.hydrogen()?;
+        if asked.is_some() && self.bond.is_empty() {
             return Err(Error::input(
                 "hmr",
                 "given without a bond",
                 "a period has no masses: give the bond, as CH:K=340kcal/mol/A^2,12.011,1.008",
             ));
         }
+        let hydrogen = asked.or_else(|| reading.and_then(|own| own.hydrogen.clone()));
         let bonds = self.bond.iter().map(|text| Mode::from_bond(text, hydrogen.as_ref()));
         let periods = self.period.iter().map(|text| Mode::from_period(text));
         let mut modes = bonds.chain(periods).collect::<Result<Vec<_>>>()?;

@@ -15,6 +15,21 @@ const AT_ONCE: u64 = 1 << 16;
 /// # Errors
 /// Those of the file; more bytes; a zero byte, which no text holds but devices and binary files do; bytes that are not UTF-8.
 pub fn text(path: &Path, most: u64) -> io::Result<String> {
+    let bytes = characters(path, most)?;
+    String::from_utf8(bytes).map_err(|_| io::Error::new(ErrorKind::InvalidData, "it is not UTF-8"))
+}
+
+/// The same, or else in Latin-1: letters in comments are then not those meant, which matters to no engine.
+///
+/// # Errors
+/// Those of the file; more bytes; a zero byte.
+pub fn any_text(path: &Path, most: u64) -> io::Result<String> {
+    let latin = |bytes: Vec<u8>| bytes.into_iter().map(char::from).collect();
+    Ok(String::from_utf8(characters(path, most)?).unwrap_or_else(|error| latin(error.into_bytes())))
+}
+
+/// The bytes of a text, read to the first zero byte at most.
+fn characters(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     let (mut file, mut bytes) = (File::open(path)?.take(most + 1), Vec::new());
     while file.by_ref().take(AT_ONCE).read_to_end(&mut bytes)? > 0 {
         if bytes[bytes.len().saturating_sub(AT_ONCE as usize)..].contains(&0) {
@@ -22,7 +37,7 @@ pub fn text(path: &Path, most: u64) -> io::Result<String> {
         }
     }
     bounded(bytes.len(), most)?;
-    String::from_utf8(bytes).map_err(|_| io::Error::new(ErrorKind::InvalidData, "it is not UTF-8"))
+    Ok(bytes)
 }
 
 /// The bytes of a file of at most so many.

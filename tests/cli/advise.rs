@@ -174,6 +174,49 @@ fn constrained_bonds_are_on_no_clock() {
 }
 
 #[test]
+fn held_bonds_and_heavy_hydrogens_of_an_engine_s_text_are_those_of_the_answer() {
+    let desk = Desk::new();
+    desk.write(
+        "run.conf",
+        "structure a.psf\nPME yes\ntimestep 2.0\nrigidBonds all; # held\nfullElectFrequency 2\n",
+    );
+    let water = "--bond OH:K=450kcal/mol/A^2,15.999,1.008 --period angle=19.45fs --period 60fs --no-levers";
+    let held = desk.run(&words(&format!("advise --engine run.conf {water}"), &[])).stdout;
+    assert!(
+        held.contains("  assumed    OH") && held.contains("  write      fullElectFrequency 3\n"),
+        "{held}"
+    );
+    // Which of the periods are bonds is asked for.
+    assert!(held.contains("periods do not say which of them are bonds"), "{held}");
+    desk.write("md.mdp", "dt = 0.002\nmts = yes\nmts-level2-factor = 2\nmass-repartition-factor = 3\n");
+    let line = "advise --engine md.mdp --bond CH:K=340kcal/mol/A^2,12.011,1.008,3 --period 60fs --no-levers";
+    let heavy = desk.run(&words(line, &[])).stdout;
+    assert!(heavy.contains("CH (T = 16.7") && heavy.contains("hydrogens of 3.024 amu"), "{heavy}");
+    // grompp wants a mesh's forces on the second level and no other integrator: then nothing is written.
+    desk.write("sd.mdp", "integrator = sd\ndt = 0.0005\nmts = yes\nmts-level2-factor = 10\n");
+    let text =
+        desk.run(&words("advise --engine sd.mdp --period OH=10fs --period 40fs --no-levers", &[])).stdout;
+    assert!(
+        text.contains("  write      nothing: grompp refuses this text: mts is for integrator = md"),
+        "{text}"
+    );
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn an_engine_s_file_may_have_any_name_a_mark_before_its_text_and_latin_letters_in_comments() {
+    use std::os::unix::ffi::OsStrExt;
+    let desk = Desk::new();
+    let name = std::ffi::OsStr::from_bytes(b"md\xff.mdp");
+    std::fs::write(desk.path().join(name), b"\xef\xbb\xbfdt = 0.002 ; \xe9quilibration\nnstlist = 10\n")
+        .unwrap();
+    let mut command = desk.command(&words("advise --period OH=10fs --period 40fs --no-levers --engine", &[]));
+    let output = command.arg(name).output().unwrap();
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(text.contains("  used       dt = 0.002\n"), "{text} {}", String::from_utf8_lossy(&output.stderr));
+}
+
+#[test]
 fn exact_inputs_are_echoed() {
     let document = json(&words(WATER, &[]));
     assert_eq!(document["input"]["modes"][0]["stiffness"], "pi^2/25");

@@ -371,7 +371,10 @@ fn numbers_whose_squares_are_no_doubles_are_no_steps() {
 #[test]
 fn work_beyond_the_budget_is_refused_with_its_cost_before_it_begins() {
     let desk = Desk::new();
-    desk.write("n2.namd", "structure a.psf\ntimestep 1\nnonbondedFreq 2\nfullElectFrequency 99999\n");
+    desk.write(
+        "n2.namd",
+        "structure a.psf\nPME yes\ntimestep 1\nnonbondedFreq 2\nfullElectFrequency 99999\n",
+    );
     desk.copy(&["tiny.json", "tiny-fast.npy", "tiny-slow.npy"]);
     let advised = desk.run(&words("advise tiny.json --steps 2.2fs,4.4fs --quiet --output advice.json"));
     assert_eq!((advised.code, advised.stderr.as_str()), (Some(0), ""));

@@ -36,7 +36,7 @@ const NO_GRADIENT: &str = include_str!("../../data/scenes/no-gradient.json");
 const TENSION: &str = include_str!("../../data/scenes/tension.json");
 const LENNARD_JONES: &str = include_str!("../../data/scenes/lennard-jones.json");
 
-const ENGINE: &str = "integrator = md-vv\ndt = 0.0005\nmts = yes\nmts-levels = 2\nmts-level2-forces = longrange-nonbonded\n\
+const ENGINE: &str = "integrator = md\ndt = 0.0005\nmts = yes\nmts-levels = 2\nmts-level2-forces = longrange-nonbonded\n\
                       mts-level2-factor = 8\nconstraints = none\n";
 
 /// The arrays of tiny.json on three clocks, where both rest on one; and as Jacobians.

@@ -1,10 +1,11 @@
 //! Small inputs in the style of each engine's documentation, with what the engine itself does with them: its steps, or that it refuses.
 //!
-//! OpenMM was asked: its scripts ran, and the steps are those of the integrators that they made. The others' rules are in the files.
+//! LAMMPS and OpenMM were asked: inputs and scripts ran, and the steps are those that they took. The others' rules are in the files.
 
 #![cfg(feature = "advise")]
 
 mod ipi;
+mod lines;
 mod openmm;
 mod serialized;
 mod tinker;

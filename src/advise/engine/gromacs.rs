@@ -34,9 +34,9 @@ pub(super) const WORDS: Vocabulary = Vocabulary {
 
 const NOTATION: Notation = Notation { comment: ';', equals: true, ends: None, goes_on: None, braces: false };
 
-/// Those that move in steps of time, then those that do not.
-const INTEGRATORS: [&str; 6] = ["md", "md-vv", "md-vv-avek", "sd", "sd2", "bd"];
-const TIMELESS: [&str; 7] = ["steep", "cg", "l-bfgs", "nm", "tpi", "tpic", "mimic"];
+/// Those that move in steps of time, then those that do not, as grompp compares them.
+const INTEGRATORS: [&str; 6] = ["md", "mdvv", "mdvvavek", "sd", "sd2", "bd"];
+const TIMELESS: [&str; 7] = ["steep", "cg", "lbfgs", "nm", "tpi", "tpic", "mimic"];
 
 /// The groups that can stand in `mts-level2-forces`.
 const GROUPS: [&str; 7] = ["longrange-nonbonded", "nonbonded", "pair", "dihedral", "angle", "pull", "awh"];
@@ -50,7 +50,7 @@ fn plain(word: &str) -> String {
 }
 
 fn is_integrator(line: &Line) -> bool {
-    let known = |word: &Word| INTEGRATORS.iter().chain(&TIMELESS).any(|own| word.0.eq_ignore_ascii_case(own));
+    let known = |word: &Word| INTEGRATORS.iter().chain(&TIMELESS).any(|own| plain(word.0) == *own);
     line.key().eq_ignore_ascii_case("integrator") && line.words.get(1).is_some_and(known)
 }
 
@@ -71,12 +71,17 @@ impl<'a> Keys<'a> {
         last(&self.lines, key).and_then(|line| line.words.get(1)).cloned()
     }
 
+    /// As grompp compares it.
     fn text(&self, key: &str, default: &str) -> String {
-        self.word(key).map_or(default, |word| word.0).to_ascii_lowercase()
+        plain(self.word(key).map_or(default, |word| word.0))
     }
 
-    fn is_on(&self, key: &str) -> bool {
-        ["yes", "on", "true"].contains(&self.text(key, "no").as_str())
+    fn is_on(&self, key: &str) -> Result<bool> {
+        match self.text(key, "no").as_str() {
+            "yes" | "on" | "true" => Ok(true),
+            "no" | "off" | "false" => Ok(false),
+            other => Err(Error::input(key, other, "write yes or no")),
+        }
     }
 }
 
@@ -103,7 +108,7 @@ pub(super) fn read(text: &str) -> Result<Reading> {
         let remedy = "takes no steps of time: give the .mdp file of the run that does";
         return Err(Error::input("integrator", integrator, remedy));
     }
-    let mut reading = if keys.is_on("mts") {
+    let mut reading = if keys.is_on("mts")? {
         two_levels(text, &keys, &inner)?
     } else {
         let mut reading = Reading::new(Engine::Gromacs, text, scheme(vec![inner])?);
@@ -130,9 +135,9 @@ fn masses_and_bonds(keys: &Keys, reading: &mut Reading) -> Result<()> {
         reading.used.extend(keys.word(key).map(|word| format!("{key} = {}", word.0)));
     }
     reading.constraints = match keys.text("constraints", "none").as_str() {
-        "h-bonds" | "hbonds" => Some(Constraints::HBonds),
-        "all-bonds" | "allbonds" => Some(Constraints::AllBonds),
-        "h-angles" | "all-angles" | "hangles" | "allangles" => {
+        "hbonds" => Some(Constraints::HBonds),
+        "allbonds" => Some(Constraints::AllBonds),
+        "hangles" | "allangles" => {
             reading.remarks.push(
                 "the angles that constraints hold are not taken out: leave their periods out yourself".into(),
             );
@@ -202,7 +207,7 @@ fn two_levels(text: &str, keys: &Keys, inner: &Rational) -> Result<Reading> {
 
 /// Whether a sum over a mesh or over waves is there.
 fn is_full(keys: &Keys) -> bool {
-    let [coulomb, vdw] = ["coulombtype", "vdwtype"].map(|key| keys.text(key, "cut-off"));
+    let [coulomb, vdw] = ["coulombtype", "vdwtype"].map(|key| keys.text(key, "cutoff"));
     ["pme", "ewald", "p3m", "fmm"].iter().any(|own| coulomb.starts_with(own)) || vdw == "pme"
 }
 
@@ -240,7 +245,7 @@ fn multiples(keys: &Keys, slow: &[&str]) -> Vec<(std::ops::Range<usize>, Place)>
     if keys.text("pcoupl", "no") != "no" {
         alone.push(("nstpcouple", 0));
     }
-    if keys.is_on("pull") && is_slow("pull") {
+    if keys.text("pull", "no") != "no" && is_slow("pull") {
         alone.extend([("pull-nstxout", 50), ("pull-nstfout", 50)]);
     }
     let own = alone.into_iter().filter_map(|(key, default)| interval(&keys.lines, keys.end, key, default));

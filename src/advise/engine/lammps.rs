@@ -24,6 +24,9 @@ pub(super) const WORDS: Vocabulary = Vocabulary {
 const NOTATION: Notation =
     Notation { comment: '#', equals: false, ends: None, goes_on: Some('&'), braces: false };
 
+/// What sets more than stands in the text.
+const OPEN: [&str; 5] = ["include", "jump", "read_restart", "python", "kim"];
+
 const BETTER: &str = "give LAMMPS's log of the run instead (`lmp -in in.file` writes log.lammps), which has every command as LAMMPS took it";
 
 /// The commands that count: those between the last `clear` and the last `run`, with names followed.
@@ -60,16 +63,30 @@ impl<'a> Commands<'a> {
         self.last(key).map(|line| line.words.iter().map(|word| self.names.follow(word)).collect())
     }
 
+    fn has(&self, keys: &[&str]) -> bool {
+        self.lines.iter().any(|line| keys.contains(&line.key()))
+    }
+
+    /// Whether more may be set than stands in the text.
+    fn is_open(&self) -> bool {
+        let opens = |line: &Line| {
+            line.words.iter().any(|word| OPEN.contains(&word.0.trim_start_matches(['"', '\''])))
+        };
+        self.has(&OPEN) || self.lines.iter().any(|line| line.key() == "if" && opens(line))
+    }
+
     /// Commands that are done in a condition or for each of several values.
     fn refuse_conditions(&self) -> Result<()> {
+        const STEPS: [&str; 3] = ["units", "timestep", "run_style"];
         for line in self.lines.iter().filter(|line| line.key() == "if") {
-            let shown = line.shown();
-            if ["run_style ", "timestep ", "units "].iter().any(|own| shown.contains(own)) {
-                return Err(Error::input(
-                    "if",
-                    shown,
-                    format!("decides on the steps, and conditions are not followed: {BETTER}"),
-                ));
+            let begins = |pair: &[Word]| {
+                let quoted = pair[1].0.starts_with(['"', '\'']);
+                let follows = ["then", "else"].contains(&pair[0].0) || quoted;
+                follows && STEPS.contains(&pair[1].0.trim_start_matches(['"', '\'']))
+            };
+            if line.words.windows(2).any(begins) {
+                let remedy = format!("decides on the steps, and conditions are not followed: {BETTER}");
+                return Err(Error::input("if", line.shown(), remedy));
             }
         }
         Ok(())
@@ -100,6 +117,11 @@ pub(super) fn read(text: &str) -> Result<Reading> {
 
 fn of_commands(text: &str, commands: &Commands) -> Result<Reading> {
     let named = commands.words("units");
+    if named.is_none() && commands.is_open() {
+        let remedy =
+            format!("a text that includes others, or decides on conditions, may have them there: {BETTER}");
+        return Err(Error::missing("units", remedy));
+    }
     let named = named.as_ref().map_or(Ok("lj"), |words| {
         words.get(1).map(|word| word.0).ok_or_else(|| Error::missing("units", "its line has no value"))
     })?;
@@ -131,6 +153,12 @@ fn of_commands(text: &str, commands: &Commands) -> Result<Reading> {
         Some(_) => {}
         // Without a timestep there is no number to change.
         None => {
+            if commands.is_open() {
+                let remedy = format!(
+                    "a text that includes others, or decides on conditions, may have it there: {BETTER}"
+                );
+                return Err(Error::missing("timestep", remedy));
+            }
             reading.places.clear();
             reading.default = Some(format!("{default} in units {named}"));
         }
@@ -167,7 +195,7 @@ fn respa(text: &str, commands: &Commands, words: &[Word], outer: Rational) -> Re
     }
     steps.reverse();
     let styles = pair_styles(&commands.lines);
-    let all = on_levels(&words[2 + levels..], &styles, levels);
+    let all = on_levels(&words[2 + levels..], commands, &styles, levels)?;
     let on = |level: usize| {
         let own = all.iter().filter(|(_, at)| *at == level);
         own.map(|(force, _)| force.as_str()).collect::<Vec<_>>().join(", ")
@@ -240,55 +268,59 @@ fn notes(commands: &Commands, reading: &mut Reading) {
             ));
         }
     }
-    for line in commands.lines.iter().filter(|line| line.key() == "fix") {
-        held(line, commands, reading);
+    let of = |key: &'static str| commands.lines.iter().filter(move |line| line.key() == key);
+    let unfixed: HashSet<&str> = of("unfix").filter_map(|line| Some(line.words.get(1)?.0)).collect();
+    for line in of("fix").filter(|line| line.words.len() > 3 && !unfixed.contains(line.words[1].0)) {
+        held(line, reading);
     }
     let bonded =
         reading.scheme.steps().len() > 1 && reading.forces[0].split(", ").all(|own| BONDED.contains(&own));
-    if bonded
-        && !has(&["bond_style", "angle_style", "dihedral_style", "improper_style", "include", "read_restart"])
-    {
+    if bonded && !commands.is_open() && !BONDED.iter().any(|own| commands.has(&[&format!("{own}_style")])) {
         let why = "the innermost level has bonded forces alone, and the text no bond_style: without bonds it is no clock, and all forces have the outer steps";
         reading.remarks.push(why.into());
     }
 }
 
 /// Bonds that a fix holds, bodies that it makes rigid, steps that it changes.
-fn held(fix: &Line, commands: &Commands, reading: &mut Reading) {
-    let Some(style) = fix.words.get(3).map(|word| word.0) else { return };
-    let plain = style.split('/').next().unwrap_or_default();
-    let unfixed = commands.lines.iter().any(|line| {
-        line.key() == "unfix" && line.words.get(1).map(|word| word.0) == fix.words.get(1).map(|word| word.0)
-    });
-    match plain {
-        _ if unfixed => {}
+fn held(fix: &Line, reading: &mut Reading) {
+    let plain = fix.words[3].0.split('/').next().unwrap_or_default();
+    let remark = match plain {
         "shake" | "rattle" => {
-            let shown: Vec<&str> = fix.words[3..].iter().map(|word| word.0).collect();
+            let shown = fix.words[3..].iter().map(|word| word.0);
             let mut masses = shown
-                .iter()
-                .skip_while(|word| **word != "m")
+                .clone()
+                .skip_while(|word| *word != "m")
                 .skip(1)
                 .map_while(|word| word.parse::<f64>().ok());
-            reading.used.push(format!("fix {}", shown.join(" ")));
-            if masses.any(|mass| (0.9..1.2).contains(&mass)) {
-                reading.constraints = Some(Constraints::HBonds);
-            } else {
-                let why = "holds bonds by their types, which are not read here: name those of the periods given that are held, as --constraints h-bonds or --constraints OH,CH";
-                reading.remarks.push(format!("fix {style} {why}"));
+            let is_hydrogen = masses.any(|mass| (0.9..1.2).contains(&mass));
+            if reading.used.len() < MOST_USED {
+                reading.used.push(format!("fix {}", shown.collect::<Vec<_>>().join(" ")));
             }
+            if is_hydrogen {
+                reading.constraints = Some(Constraints::HBonds);
+                return;
+            }
+            format!(
+                "fix {plain} holds bonds by their types, which are not read here: name those of the periods given that are held, as \
+                 --constraints h-bonds or --constraints OH,CH"
+            )
         }
-        "rigid" | "poems" => reading
-            .remarks
-            .push(format!("fix {style} makes bodies rigid: leave out the periods of motions inside them")),
-        "dt" => reading
-            .remarks
-            .push(format!("fix {style} changes the step in the run: this answer is for the step given")),
+        "rigid" | "poems" => {
+            format!("fix {plain} makes bodies rigid: leave out the periods of motions inside them")
+        }
+        "dt" => "fix dt/reset changes the step in the run: this answer is for the step given".into(),
         "adapt" if fix.words.iter().any(|word| word.0 == "dt") => {
-            reading.remarks.push("fix adapt may change the step in the run".into())
+            "fix adapt may change the step in the run".into()
         }
-        _ => {}
+        _ => return,
+    };
+    if !reading.remarks.contains(&remark) {
+        reading.remarks.push(remark);
     }
 }
+
+/// Fixes beyond so many are not shown.
+const MOST_USED: usize = 8;
 
 /// A log has every command as it was done, and LAMMPS's own table of levels.
 pub(super) fn of_log(text: &str) -> Option<Result<Reading>> {
@@ -331,10 +363,12 @@ fn of_screen(text: &str) -> Result<Reading> {
     let steps =
         steps.iter().map(|step| Ok(number("timestep", step)? * unit.size())).collect::<Result<Vec<_>>>()?;
     let table = text.rfind("Respa levels:").map_or("", |at| &text[at..]);
+    let fixes = value("r-RESPA fixes").unwrap_or_default();
     let on = |level: usize| {
-        let own =
-            table.lines().skip(level).next().and_then(|line| line.split_once('=')).map_or("", |own| own.1);
-        own.split_whitespace().collect::<Vec<_>>().join(", ")
+        let own = table.lines().nth(level).and_then(|line| line.split_once('=')).map_or("", |own| own.1);
+        let fixed = fixes.split_whitespace().filter_map(|fix| fix.strip_prefix(&format!("{level}:")));
+        let fixed = fixed.map(|fix| format!("fix {fix}"));
+        own.split_whitespace().map(String::from).chain(fixed).collect::<Vec<_>>().join(", ")
     };
     let forces =
         if levels.is_some() { (1..=steps.len()).map(on).collect() } else { vec!["all forces".into()] };
@@ -380,11 +414,21 @@ fn is_on(word: &str) -> bool {
 
 const BONDED: [&str; 4] = ["bond", "angle", "dihedral", "improper"];
 
-/// Each force with its level, as LAMMPS sets them: `hybrid` has a level for each part of the pair style; what is not named has a default.
-fn on_levels(rest: &[Word], styles: &[PairStyle], levels: usize) -> Vec<(String, usize)> {
+/// Each force with its level, as LAMMPS sets them: `hybrid` has a level for each part of the pair style, a word that is given twice its last one.
+///
+/// # Errors
+/// A word that LAMMPS does not know there, or a level that there is not.
+fn named(rest: &[Word], styles: &[PairStyle], levels: usize) -> Result<Vec<(String, usize)>> {
     let mut found: Vec<(String, usize)> = Vec::new();
     let mut words = rest.iter().map(|word| word.0).peekable();
+    let mut keys = 0;
     while let Some(key) = words.next() {
+        keys += 1;
+        if keys > 2 * KEYWORDS.len() || !KEYWORDS.contains(&key) {
+            let remedy =
+                format!("LAMMPS knows no such word behind the factors: there are {}", KEYWORDS.join(", "));
+            return Err(Error::input("run_style", key, remedy));
+        }
         let mut next = || words.next_if(|word| word.parse::<f64>().is_ok());
         if key == "hybrid" {
             let own = std::iter::from_fn(&mut next).map(str::parse::<usize>);
@@ -392,27 +436,57 @@ fn on_levels(rest: &[Word], styles: &[PairStyle], levels: usize) -> Vec<(String,
                 |k: usize| styles.get(k).map_or_else(|| format!("pair {}", k + 1), |own| own.name.into());
             found.extend(own.enumerate().filter_map(|(k, level)| Some((name(k), level.ok()?))));
         } else {
+            found.retain(|own| own.0 != key);
             found.extend(next().and_then(|level| level.parse().ok()).map(|level| (key.to_string(), level)));
             // The distances of `inner`, `middle` and `outer`.
             std::iter::from_fn(next).for_each(drop);
         }
     }
+    match found.iter().find(|own| own.1 < 1 || own.1 > levels) {
+        Some((key, level)) => Err(Error::input(
+            "run_style",
+            format!("{key} {level}"),
+            format!("there are levels 1 to {levels}"),
+        )),
+        None => Ok(found),
+    }
+}
+
+const KEYWORDS: [&str; 10] =
+    ["bond", "angle", "dihedral", "improper", "pair", "inner", "middle", "outer", "hybrid", "kspace"];
+
+/// The same with the defaults: bonded forces on the level of the bonded one before, the first on 1; pairs on the last level, the sum over waves with them.
+/// A force that is not named and has no style is none.
+fn on_levels(
+    rest: &[Word],
+    commands: &Commands,
+    styles: &[PairStyle],
+    levels: usize,
+) -> Result<Vec<(String, usize)>> {
+    let mut found = named(rest, styles, levels)?;
+    let is_open = commands.is_open();
+    let there = |force: &str| is_open || commands.has(&[&format!("{force}_style")]);
     let at = |found: &[(String, usize)], key: &str| found.iter().find(|own| own.0 == key).map(|own| own.1);
+    // With its outermost part, where pairs are several.
+    let parts = |own: &&(String, usize)| !BONDED.contains(&own.0.as_str()) && own.0 != "kspace";
+    let pairs = found.iter().filter(parts).map(|own| own.1).max();
     let mut before = 1;
     for key in BONDED {
-        before = at(&found, key).unwrap_or(before);
-        if at(&found, key).is_none() {
+        let given = at(&found, key);
+        before = given.unwrap_or(before);
+        if given.is_none() && there(key) {
             found.push((key.into(), before));
         }
     }
-    // The sum over waves goes with the pairs, or with their outermost part.
-    let parts = |own: &&(String, usize)| !BONDED.contains(&own.0.as_str()) && own.0 != "kspace";
-    let pairs = found.iter().filter(parts).map(|own| own.1).max();
     if pairs.is_none() {
         found.push(("pair".into(), levels));
     }
-    if at(&found, "kspace").is_none() {
+    if at(&found, "kspace").is_none() && there("kspace") {
         found.push(("kspace".into(), pairs.unwrap_or(levels)));
     }
-    found
+    found.extend(commands.lines.iter().filter(|line| line.key() == "fix_modify").filter_map(|line| {
+        let at = line.words.iter().position(|word| word.0 == "respa")?;
+        Some((format!("fix {}", line.words.get(1)?.0), line.words.get(at + 1)?.0.parse().ok()?))
+    }));
+    Ok(found)
 }

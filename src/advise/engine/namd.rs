@@ -66,6 +66,11 @@ impl<'a> Keys<'a> {
         Ok(word.is_some_and(|word| ["yes", "on", "true"].iter().any(|on| word.0.eq_ignore_ascii_case(on))))
     }
 
+    /// Whether more may be set than stands in the text.
+    fn is_open(&self) -> bool {
+        ["source", "if", "proc", "foreach", "while"].iter().any(|key| last(&self.lines, key).is_some())
+    }
+
     fn is_full(&self) -> Result<bool> {
         FULL.iter().try_fold(false, |any, key| Ok(any || self.is_on(key)?))
     }
@@ -86,6 +91,12 @@ pub(super) fn read(text: &str) -> Result<Reading> {
     refuse_naive(algorithm.as_ref().map_or("impulse", |word| word.0))?;
     let step = keys.word("timestep")?;
     let shown = step.as_ref().map_or("1.0 (the default)", |word| word.0);
+    if step.is_none() && keys.is_open() {
+        return Err(Error::missing(
+            "timestep",
+            format!("a text that sources others, or decides on conditions, may have it there: {BETTER}"),
+        ));
+    }
     let inner = number("timestep", step.as_ref().map_or("1.0", |word| word.0))
         .map_err(|error| better(error, shown))?;
     let (nonbonded, full) = (keys.word("nonbondedFreq")?, keys.word("fullElectFrequency")?);
@@ -194,8 +205,7 @@ fn bonds(keys: &Keys, reading: &mut Reading) -> Result<()> {
 }
 
 fn notes(keys: &Keys, reading: &mut Reading) {
-    let has = |key: &str| last(&keys.lines, key).is_some();
-    if has("source") || has("if") || has("proc") {
+    if keys.is_open() {
         reading.remarks.push(format!("what `source`, `if` and `proc` do is not followed: {BETTER}"));
     }
     if keys.is_on("molly").unwrap_or(false) {

@@ -304,21 +304,29 @@ fn at_end(text: &str, at: &Range<usize>, line: &str) -> String {
     }
 }
 
-/// A positive number that stands in a text.
+/// A positive number that stands in a text, as C reads it.
 pub(super) fn number(field: &str, text: &str) -> Result<Rational> {
-    // Engines read 1d0 and 1E0; a name or a formula is none.
-    let plain = |c: char| c.is_ascii_digit() || matches!(c, '.' | '+' | '-' | 'e' | 'E' | 'd' | 'D');
+    // A name or a formula is none.
+    let plain = |c: char| c.is_ascii_digit() || matches!(c, '.' | '+' | '-' | 'e' | 'E');
     let sound = !text.is_empty() && text.len() < 40 && text.chars().all(plain);
-    let lower = text.to_ascii_lowercase().replace('d', "e");
+    let lower = text.to_ascii_lowercase();
     // Exponents beyond those of doubles are none of steps.
     let small = lower
         .split_once('e')
         .is_none_or(|(_, power)| power.parse::<i32>().is_ok_and(|power| power.abs() < 300));
-    let value = if sound && small { parse_rational(field, &lower).ok() } else { None };
+    // C reads 4. and +4, too.
+    let plain = lower.strip_prefix('+').unwrap_or(&lower).replace(".e", ".0e");
+    let plain = plain.strip_suffix('.').unwrap_or(&plain);
+    let value = if sound && small { parse_rational(field, plain).ok() } else { None };
     let remedy = || {
         Error::input(field, text, "write a positive number here (variables and formulas are not evaluated)")
     };
     value.filter(|value| *value > Rational::default()).ok_or_else(remedy)
+}
+
+/// The same as Fortran reads it, 1d0 too.
+pub(super) fn fortran(field: &str, text: &str) -> Result<Rational> {
+    number(field, &text.replace(['d', 'D'], "e"))
 }
 
 /// A positive whole number that stands in a text.

@@ -7,7 +7,7 @@ use std::ops::Range;
 
 use super::evidence::Vocabulary;
 use super::lines::{Line, PLAIN as NOTATION, last, lines};
-use super::reading::{Engine, MOST_COUNT, Place, Reading, count, number, scheme, times};
+use super::reading::{Engine, MOST_COUNT, Place, Reading, count, fortran, scheme, times};
 use crate::advise::constraint::Constraints;
 use crate::error::{Error, Result};
 use crate::number::Rational;
@@ -139,7 +139,7 @@ impl Key<'_> {
             );
             return Err(Error::input("RESPA-INNER", word, remedy));
         }
-        let n = self.part(self.outer, &number("RESPA-INNER", word)?)?;
+        let n = self.part(self.outer, &fortran("RESPA-INNER", word)?)?;
         let step = self.outer / times(&Rational::from_integer(1.into()), n);
         let used = vec!["INTEGRATOR RESPA".into(), format!("RESPA-INNER {word} fs")];
         let mut reading = self.reading(vec![step, self.outer.clone()], &LEVELS, used)?;
@@ -181,7 +181,7 @@ impl Key<'_> {
             }
         };
         let word = given.map(|(word, _)| word).or(default).unwrap_or_default();
-        Ok((number(key, word)? * Rational::from_integer(1000.into()), shown))
+        Ok((fortran(key, word)? * Rational::from_integer(1000.into()), shown))
     }
 
     /// `RESPA` and `BAOABRESPA` of Tinker-HP.
@@ -226,7 +226,7 @@ impl Key<'_> {
                 .push(format!("{} {}", key.to_uppercase(), how.as_deref().unwrap_or("")).trim().into());
         }
         if let Some(line) = last(self.lines, "heavy-hydrogen") {
-            let own = line.words.get(1).and_then(|word| number("heavy-hydrogen", word.0).ok());
+            let own = line.words.get(1).and_then(|word| fortran("heavy-hydrogen", word.0).ok());
             let shown = own.map_or_else(|| "4".into(), |own| crate::advise::unit::decimal(&own));
             reading.remarks.push(format!("HEAVY-HYDROGEN was not read: hydrogens have up to {shown} amu, and no more than the equal share of a group: say so by --hmr"));
         }

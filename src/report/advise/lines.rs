@@ -59,8 +59,10 @@ pub(super) fn of_answer(answer: &Answer) -> Option<&Rational> {
 pub(super) fn read_from(advised: Option<&Rational>, reading: &Reading) -> Vec<String> {
     let name = reading.engine.name();
     let mut lines = Vec::new();
-    if let Some(changed) = advised.and_then(|outer| reading.changed_lines(outer).ok()) {
-        lines.extend(changed.iter().map(|line| format!("  write      {line}")));
+    match advised.map(|outer| reading.changed_lines(outer)) {
+        Some(Ok(changed)) => lines.extend(changed.iter().map(|line| format!("  write      {line}"))),
+        Some(Err(error)) => lines.push(format!("  write      nothing: {}", error.remedy())),
+        None => {}
     }
     let steps: Vec<String> = reading.scheme.steps().iter().map(fs).collect();
     let forces = reading.forces.iter().zip(&steps).map(|(forces, step)| format!("{step}: {forces}"));

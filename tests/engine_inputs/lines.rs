@@ -1,0 +1,430 @@
+//! LAMMPS, GROMACS, NAMD: the steps are those that the engine itself takes, or the text is refused with the reason.
+//! What LAMMPS takes was asked of LAMMPS (22 Jul 2025, the files in `lammps` run by it); what GROMACS and NAMD take are the rules of
+//! their sources (`readir.cpp` and `multipletimestepping.cpp`, `SimParameters.C`).
+
+use std::time::{Duration, Instant};
+
+use kickdrift::advise::Constraints;
+use kickdrift::advise::engine::Engine;
+use kickdrift::number::rational::ratio;
+
+use super::{of, steps};
+
+macro_rules! lammps {
+    ($($name:literal $steps:literal $forces:literal,)*) => {
+        [$(($name, include_str!(concat!("lammps/", $name, ".in")), $steps, $forces)),*]
+    };
+}
+
+/// Inputs that LAMMPS runs, its steps in fs ("Time steps" as a run begins), and its forces on each level less those that have no style.
+const LAMMPS: [(&str, &str, &str, &str); 17] = lammps![
+    "two_levels" "0.5,4" "bond, angle; pair",
+    "default_levels" "0.5,2" "bond, angle; pair",
+    "four_levels" "0.5,1,4" "bond; angle; pair",
+    "empty_levels" "0.5,4" "bond, angle; pair",
+    "pair_below_the_top" "1,2" "bond, angle; pair",
+    "inner_outer" "0.5,1.5,3" "bond, angle; inner; outer",
+    "hybrid" "0.5,2" "lj/cut, bond, angle; morse",
+    "no_bonds" "2" "angle, pair",
+    "metal_default" "1" "all forces",
+    "electron_default" "0.001" "all forces",
+    "nano" "2" "all forces",
+    "variable" "0.5,2" "bond, angle; pair",
+    "clear" "0.25,1" "bond, angle; pair",
+    "two_runs" "0.5,2" "bond, angle; pair",
+    "back_to_verlet" "1.5" "all forces",
+    "given_twice" "0.5,2" "bond, angle; pair",
+    "fix_on_a_level" "1,2,4" "bond, angle; fix s; pair",
+];
+
+#[test]
+fn the_steps_of_lammps_are_those_that_lammps_shows() {
+    for (name, text, expected, forces) in LAMMPS {
+        let reading = of(text).unwrap_or_else(|error| panic!("{name}: {error}"));
+        assert_eq!((reading.engine, steps(&reading).as_str()), (Engine::Lammps, expected), "{name}");
+        let all = |own: &str| own.split(", ").map(String::from).collect::<std::collections::BTreeSet<_>>();
+        let own: Vec<_> = reading.forces.iter().map(|own| all(own)).collect();
+        assert_eq!(own, forces.split("; ").map(all).collect::<Vec<_>>(), "{name}");
+    }
+}
+
+/// A log: lines with names are followed by the same ones with values, conditions by what was done.
+const LOG: &str = "LAMMPS (22 Jul 2025 - Update 4)
+OMP_NUM_THREADS environment is not set. Defaulting to 1 thread.
+units real
+variable ts equal 2.0
+bond_style harmonic
+pair_style lj/cut 8
+timestep ${ts}
+timestep 2
+if \"1 == 1\" then \"run_style respa 4 2 2 2 bond 1 pair 4\"
+run_style respa 4 2 2 2 bond 1 pair 4
+Respa levels:
+  1 = bond angle dihedral improper
+  2 =
+  3 =
+  4 = pair kspace
+WARNING: One or more respa levels compute no forces (src/src/respa.cpp:239)
+run 2
+Loop time of 4.0696e-05 on 1 procs for 2 steps with 2 atoms
+";
+
+/// What LAMMPS shows where it does not echo commands.
+const SCREEN: &str = "LAMMPS (22 Jul 2025 - Update 4)
+Respa levels:
+  1 = bond angle dihedral improper
+  2 =
+  3 = pair kspace
+Setting up r-RESPA run ...
+  Unit style    : metal
+  Current step  : 0
+  Time steps    : 1:0.00025 2:0.0005 3:0.002
+  r-RESPA fixes : 2:spring/self[s]
+";
+
+/// NAMD's log, as SimParameters.C writes it.
+const NAMD_LOG: &str = "Charm++> Running in non-SMP mode
+Info: NAMD 3.0 for Linux-x86_64-multicore
+Info: SIMULATION PARAMETERS:
+Info: TIMESTEP               2
+Info: NUMBER OF STEPS        500
+Info: STEPS PER CYCLE        20
+Info: PARTICLE MESH EWALD (PME) ACTIVE
+Info: FULL ELECTROSTATIC EVALUATION FREQUENCY      4
+Info: USING VERLET I (r-RESPA) MTS SCHEME.
+Info: RIGID BONDS TO HYDROGEN : ALL
+Info: NONBONDED FORCES EVALUATED EVERY 2 STEPS
+";
+
+/// The part of GROMACS's log, or of `gmx dump`, that says what grompp understood.
+const GROMACS_LOG: &str = "                      :-) GROMACS - gmx mdrun, 2025.1 (-:
+
+Input Parameters:
+   integrator                     = md
+   tinit                          = 0
+   dt                             = 0.002
+   nsteps                         = 5000
+   mts                            = true
+   mts-level2-forces              = longrange-nonbonded nonbonded
+   mts-level2-factor              = 3
+   mass-repartition-factor        = 1
+   comm-mode                      = Linear
+   nstlist                        = 30
+   coulombtype                    = PME
+   constraints                    = none
+grpopts:
+   nrdf:          45
+";
+
+#[test]
+fn logs_are_read_and_say_which_input_to_change() {
+    for (text, expected, forces) in
+        [(LOG, "0.25,2", 2), (SCREEN, "0.25,0.5,2", 3), (NAMD_LOG, "2,4,8", 3), (GROMACS_LOG, "2,6", 2)]
+    {
+        let reading = of(text).unwrap_or_else(|error| panic!("{text}: {error}"));
+        assert_eq!((steps(&reading).as_str(), reading.forces.len()), (expected, forces), "{text}");
+        let outer = reading.scheme.last_but_one() * ratio(3, 1);
+        let error = reading.changed_lines(&outer).unwrap_err();
+        assert!(["change", "write"].iter().any(|word| error.remedy().contains(word)), "{error}");
+    }
+    assert_eq!(of(NAMD_LOG).unwrap().constraints, Some(Constraints::HBonds));
+    let empty = &of(LOG).unwrap().remarks;
+    assert!(empty.iter().any(|own| own.contains("no force is on level 2, 3")), "{empty:?}");
+}
+
+/// grompp's rules: `dt` in ps is the inner step, 0.001 by default; two levels, factor 2 by default.
+const GROMACS: [(&str, &str); 12] = [
+    ("integrator = md\nnsteps = 10\ndt = 0.002\n", "2"),
+    ("integrator = md-vv\nnsteps = 10\n", "1"),
+    ("Integrator = SD\ndt = .0005 ; ps\ntau_t = 1\ntc-grps = System\n", "0.5"),
+    ("dt = 0.002\nmts = yes\ncoulombtype = PME\n", "2,4"),
+    ("dt = 0.002\nmts = yes\nmts_level2_factor = 3\ncoulombtype = PME\n", "2,6"),
+    ("dt = 0.002\nMTS = no\nmts-level2-factor = 3\nnstlist = 10\n", "2"),
+    (
+        "dt = 0.001\nmts = yes\nmts-levels = 2\nmts-level2-factor = 4\nmts-level2-forces = longrange-nonbonded pair dihedral\nrcoulomb = 1\n",
+        "1,4",
+    ),
+    // As grompp's mdout.mdp has it: every key, some without a value.
+    (
+        "; VARIOUS PREPROCESSING OPTIONS\ninclude = \ndefine = \n; RUN CONTROL PARAMETERS\nintegrator = md\ntinit = 0\ndt = 0.002\nnsteps = 100\nmts = no\nmass-repartition-factor = 1\nnstlist = 20\ntc-grps = \n",
+        "2",
+    ),
+    ("title = a run\nintegrator=md\ndt=2.0e-3\ncutoff-scheme = Verlet\n", "2"),
+    (
+        "pull = yes\npull-ncoords = 1\npull-coord1-k = 100\ndt = 0.004\nconstraints = h-bonds\ntcoupl = no\n",
+        "4",
+    ),
+    ("dt = 0.001\ndt = 0.002\nnstxout = 100\n", "2"),
+    ("integrator = bd\nbd-fric = 100\ndt = +0.01\n", "10"),
+];
+
+/// NAMD's rules: `timestep` in fs is the inner step, 1 by default; no full electrostatics without a method for them.
+const NAMD: [(&str, &str); 14] = [
+    ("structure a.psf\ncoordinates a.pdb\ntimestep 2.0\noutputEnergies 100\n", "2"),
+    ("structure a.psf\ncutoff 12.0\noutputname b\n", "1"),
+    ("structure a.psf\nPME yes\ntimestep 2.0\nfullElectFrequency 2\nstepspercycle 20\n", "2,4"),
+    ("structure a.psf\nPME on ;# always\ntimestep 1; fullElectFrequency 4\n", "1,4"),
+    ("structure a.psf\nGBIS on\ntimestep 1\nnonbondedFreq 2\nfullElectFrequency 4\n", "1,2,4"),
+    ("structure a.psf\nFullDirect yes\ntimestep 1\nnonbondedFreq 2\n", "1,2"),
+    ("structure a.psf\nPME no\ntimestep 1\nnonbondedFreq 2\nfullElectFrequency 4\n", "1,2"),
+    ("parmfile a.prmtop\nambercoor a.crd\namber on\ntimestep=2\nPME = yes\nfullElectFrequency = 2\n", "2,4"),
+    ("set dt 2.0\nset n 2\nstructure a.psf\nPME yes\ntimestep $dt\nfullElectFrequency ${n}\n", "2,4"),
+    ("structure a.psf\nPME yes\nTimestep 2\nFULLELECTFREQUENCY 3\nmtsalgorithm verletI\n", "2,6"),
+    ("structure a.psf\nif {$argc > 1} {\n  margin 3\n}\nPME yes\ntimestep 2\nfullElectFrequency 2\n", "2,4"),
+    ("structure a.psf\nrigidBonds none\ntimestep 0.5\nlangevin on\nlangevinDamping 1\n", "0.5"),
+    ("structure a.psf\nMSM yes\ntimestep 1\nfullElectFrequency 3\nnonbondedFreq 3\n", "1,3"),
+    ("structure a.psf\nLCPO on\nGBISSer on\ntimestep 1 ;\nfullElectFrequency 2 ;\n", "1,2"),
+];
+
+#[test]
+fn the_steps_of_gromacs_and_namd_are_those_of_their_rules() {
+    let all =
+        GROMACS.map(|own| (Engine::Gromacs, own)).into_iter().chain(NAMD.map(|own| (Engine::Namd, own)));
+    for (engine, (text, expected)) in all {
+        let reading = of(text).unwrap_or_else(|error| panic!("{text}: {error}"));
+        assert_eq!((reading.engine, steps(&reading).as_str()), (engine, expected), "{text}");
+    }
+    // A default is named as one.
+    let default = |text: &str| of(text).unwrap().used.iter().any(|own| own.contains("the default"));
+    assert!(default(GROMACS[1].0) && default(NAMD[1].0) && !default(NAMD[0].0));
+}
+
+/// Texts that are refused, and words of the message.
+const REFUSED: [(&str, &str); 24] = [
+    // Other engines, by name.
+    (
+        "[INPUT]\ntopfile = a.psf\n[DYNAMICS]\nintegrator = VRES\ntimestep = 0.0025\nelec_long_period = 2\n",
+        "GENESIS",
+    ),
+    (
+        "app = mdsim\nintegrator = {\n  dt = 0.002\n  respa = {\n near_timesteps = 1\n far_timesteps = 3\n }\n}\n",
+        "Desmond",
+    ),
+    (" &cntrl\n  nstlim = 100\n  dt = 0.001\n  nrespa = 4\n /\n", "AMBER"),
+    ("&GLOBAL\n RUN_TYPE MD\n&END\n&MOTION\n&MD\nTIMESTEP 0.5\n&END\n&END\n", "CP2K"),
+    ("&control\n calculation = 'md'\n dt = 20\n/\n&system\n/\n", "Quantum ESPRESSO"),
+    ("import numpy as np\ndt = 0.1\nx = dt\n", "Python"),
+    ("def f(x):\n    return x\ndt = 0.002\n", "Python"),
+    // Nobody's.
+    ("x = 1.0\ndt = 0.1\ny = x + dt\n", "no engine"),
+    ("dt = 0.002\nintegrator = leapfrog\nnsteps = 10\n", "no engine"),
+    ("timestep 2.0\nrun 1000\n", "no engine"),
+    // Words that the engine does not know, and no step.
+    ("nstlist = 10\nfoo = 3\n", "its default of 0.001 ps is not taken"),
+    // What decides on the steps and is not followed.
+    (
+        "units real\nread_data d\ntimestep 4.0\nif \"$(is_active(pair,respa))\" then \"run_style respa 2 8 inner 1 5 7 outer 2\" else \"run_style respa 2 8\"\n",
+        "log",
+    ),
+    ("units real\nread_data d\nvariable ts equal 2*3\ntimestep ${ts}\n", "log"),
+    ("units real\nread_data d\nvariable ts equal 2\nvariable ts equal 3\ntimestep ${ts}\n", "log"),
+    ("units real\npair_style lj/cut 9\ninclude settings.in\n", "log"),
+    ("structure a.psf\nPME yes\nif {$x} {\n timestep 2\n}\n", "log"),
+    ("structure a.psf\noutputname b\nsource more.conf\n", "log"),
+    ("structure a.psf\nPME yes\nset dt 1\nincr dt\ntimestep $dt\n", "log"),
+    ("structure a.psf\nPME yes\ntimestep [expr 2*1]\nfullElectFrequency 2\n", "log"),
+    // What the engine refuses, and runs without steps.
+    ("units real\nread_data d\nrun_style respa 2 4 pair 2 bogus 3\n", "no such word"),
+    ("units real\nread_data d\nrun_style respa 2 4 bond 1 pair 3\n", "levels 1 to 2"),
+    ("integrator = steep\nemtol = 100\nnstlist = 10\n", "no steps of time"),
+    ("integrator = md\nmts = perhaps\n", "write yes or no"),
+    ("integrator = md\ndt = 1d-3\nnstlist = 10\n", "positive number"),
+];
+
+#[test]
+fn what_is_not_known_for_certain_is_refused_with_a_remedy() {
+    for (text, words) in REFUSED {
+        let error = of(text).map(|own| steps(&own)).expect_err(text).to_string();
+        assert!(error.contains(words), "{text}\n{error}");
+    }
+    // With the step in the text the strange word is told, and no more.
+    let reading = of("nstlist = 10\nfoo = 3\ndt = 0.002\n").unwrap();
+    assert_eq!(reading.remarks, ["not understood, since GROMACS has no such words: foo"]);
+}
+
+/// Texts, a step in fs, and the lines that change to take it; none where the engine refuses the text anyway.
+const LINES: [(&str, (i64, i64), &[&str]); 15] = [
+    (
+        "units real\nread_data d\ntimestep 1.0\n",
+        (6_809_316_352_826_907, 2_251_799_813_685_248),
+        &["timestep 3.02394"],
+    ),
+    ("integrator = md\ndt = 0.001\n", (22, 7), &["dt = 0.00314285"]),
+    ("structure a.psf\noutputname b\ntimestep 1.0\n", (22, 7), &["timestep 3.14285"]),
+    ("units si\nread_data d\ntimestep 1e-15\n", (2, 1), &["timestep 2e-15"]),
+    (
+        "units real\nread_data d\ntimestep 2.0\nbond_style harmonic\nrun_style respa 2 7\n",
+        (22, 7),
+        &["timestep 3.14285", "run_style respa 2 11"],
+    ),
+    (
+        "units real\nread_data d\nvariable dt equal 2.0\ntimestep ${dt}\nbond_style harmonic\nrun_style respa 2 4\n",
+        (3, 1),
+        &["variable dt equal 3", "run_style respa 2 6"],
+    ),
+    // NAMD: both frequencies divide the cycle, energies are written at full electrostatics or the other way round.
+    (
+        "structure a.psf\nPME yes\ntimestep 1\nfullElectFrequency 4\nstepspercycle 20\noutputEnergies 100\n",
+        (3, 1),
+        &["fullElectFrequency 3", "stepspercycle 21", "outputEnergies 102"],
+    ),
+    (
+        "structure a.psf\nPME yes\ntimestep 1\nfullElectFrequency 4\nstepspercycle 20\noutputEnergies 2\n",
+        (2, 1),
+        &["fullElectFrequency 2"],
+    ),
+    (
+        "structure a.psf\nPME yes\ntimestep 1\nfullElectFrequency 4\nstepspercycle 20\nrun 100000\n",
+        (3, 1),
+        &["fullElectFrequency 3", "stepspercycle 21", "run 100002"],
+    ),
+    // GROMACS: multiples of the factor.
+    (
+        "dt = 0.0005\nmts = yes\nmts-level2-forces = longrange-nonbonded nonbonded\nmts-level2-factor = 10\nnstlist = 20\nnstcalcenergy = 10\nnstenergy = 100\nnstlog = 0\n",
+        (3, 1),
+        &["mts-level2-factor = 6", "nstlist = 24", "nstcalcenergy = 12", "nstenergy = 108"],
+    ),
+    (
+        "dt = 0.001\nmts = yes\nmts-level2-forces = nonbonded longrange-nonbonded\nmts-level2-factor = 2\nnstcalcenergy = 12\nnstenergy = 12\nnstlog = 12\n",
+        (3, 1),
+        &["mts-level2-factor = 3", "nstlist = 12"],
+    ),
+    (
+        "dt = 0.0005\nmts = yes\nmts-level2-factor = 4\npcoupl = C-rescale\nnstpcouple = 20\nfree-energy = yes\nnstdhdl = 60\nnstcalcenergy = 60\nnstenergy = 60\nnstlog = 60\n",
+        (4, 1),
+        &[
+            "mts-level2-factor = 8",
+            "nstpcouple = 24",
+            "nstdhdl = 64",
+            "nstcalcenergy = 64",
+            "nstenergy = 64",
+            "nstlog = 64",
+        ],
+    ),
+    ("dt = 0.002\nmts = yes\nmts-level2-factor = 2\n", (2, 1), &["mts = no"]),
+    (
+        "integrator = sd\ndt = 0.0005\nmts = yes\nmts-level2-forces = longrange-nonbonded\nmts-level2-factor = 4\n",
+        (1, 1),
+        &[],
+    ),
+    (
+        "dt = 0.0005\nmts = yes\nmts-level2-forces = nonbonded\nmts-level2-factor = 4\ncoulombtype = PME\n",
+        (1, 1),
+        &[],
+    ),
+];
+
+#[test]
+fn lines_that_are_written_are_lines_that_the_engine_takes() {
+    for (text, (over, under), expected) in LINES {
+        let reading = of(text).unwrap_or_else(|error| panic!("{text}: {error}"));
+        let outer = ratio(over, under);
+        if expected.is_empty() {
+            let error = reading.changed_lines(&outer).unwrap_err();
+            assert!(error.remedy().starts_with("grompp refuses this text"), "{text}\n{error}");
+            assert!(reading.remarks.iter().any(|own| own == error.remedy()), "{text}");
+            continue;
+        }
+        let mut written = reading.changed_lines(&outer).unwrap();
+        let mut expected = expected.to_vec();
+        written.sort_unstable();
+        expected.sort_unstable();
+        assert_eq!(written, expected, "{text}");
+        // Read again it is that step, or one a little shorter; nothing is left to change.
+        let again = of(&reading.rewritten(&outer).unwrap()).unwrap();
+        assert!(
+            *again.scheme.outer() <= outer && *again.scheme.outer() > &outer * ratio(99_999, 100_000),
+            "{text}"
+        );
+        assert_eq!(again.changed_lines(again.scheme.outer()).unwrap(), Vec::<String>::new(), "{text}");
+    }
+}
+
+/// What a text says of bonds, masses and forces, and the answer has to say.
+const SAID: [(&str, &str); 10] = [
+    (
+        "units real\nread_data d\nbond_style harmonic\nfix s all shake 1e-6 100 0 b 1 a 1\ntimestep 4.0\nrun_style respa 2 2\n",
+        "fix shake holds bonds by their types",
+    ),
+    ("units real\nread_data d\nfix r all rigid/nvt molecule\ntimestep 2\n", "makes bodies rigid"),
+    (
+        "units real\nread_data d\nfix d all dt/reset 10 NULL NULL 0.1\ntimestep 2\n",
+        "changes the step in the run",
+    ),
+    ("units real\nread_data d\ninclude more.in\ntimestep 2\n", "log.lammps"),
+    ("units real\nread_data d\nrun 10\ntimestep 2\ntimestep 3\nrun 10\n", "timestep is given 2 times"),
+    ("dt = 0.0005\nmts = yes\nmts-level2-factor = 4\n", "no force is on the second level"),
+    (
+        "dt = 0.0005\nmts = yes\nmts-level2-factor = 4\nnstlog = 10\n",
+        "grompp refuses this text as it stands: 10",
+    ),
+    ("dt = 0.002\nconstraints = all-angles\nnstlist = 10\n", "angles that constraints hold"),
+    ("structure a.psf\nPME yes\ntimestep 2\nrigidBonds water\nfullElectFrequency 2\n", "water alone"),
+    ("structure a.psf\ntimestep 1\nfullElectFrequency 6\n", "takes fullElectFrequency for 0"),
+];
+
+#[test]
+fn what_bears_on_the_answer_is_read_or_said() {
+    for (text, words) in SAID {
+        let remarks = of(text).unwrap_or_else(|error| panic!("{text}: {error}")).remarks;
+        assert!(remarks.iter().any(|own| own.contains(words)), "{text}\n{remarks:?}");
+    }
+    for (text, held) in [
+        (
+            "units real\nread_data d\nfix s all rattle 1e-6 100 0 m 1.0\ntimestep 2\n",
+            Some(Constraints::HBonds),
+        ),
+        ("units real\nread_data d\nfix s all shake 1e-6 100 0 m 1.0\nunfix s\ntimestep 2\n", None),
+        ("structure a.psf\ntimestep 2.0\nrigidBonds all; # held\noutputname b\n", Some(Constraints::HBonds)),
+        ("dt = 0.002\nconstraints = H_bonds ; all\nnstlist = 10\n", Some(Constraints::HBonds)),
+        ("dt = 0.002\nconstraints = h-bonds ; all\nnstlist = 10\n", Some(Constraints::HBonds)),
+        ("dt = 0.002\nconstraints = all-bonds\nnstlist = 10\n", Some(Constraints::AllBonds)),
+    ] {
+        assert_eq!(of(text).unwrap().constraints, held, "{text}");
+    }
+    let heavy = of("dt = 0.004\nmass-repartition-factor = 3\nconstraints = h-bonds\n").unwrap().hydrogen;
+    assert_eq!(heavy, Some(ratio(3024, 1000)));
+}
+
+#[test]
+fn a_byte_order_mark_is_no_part_of_the_first_line() {
+    let all = [GROMACS[0].0, NAMD[0].0, LAMMPS[0].1, "dt = 0.004\nmts = yes\nconstraints = none\n"];
+    for text in all {
+        let marked = of(&format!("\u{feff}{text}")).unwrap();
+        assert_eq!((steps(&marked), marked.used), (steps(&of(text).unwrap()), of(text).unwrap().used));
+    }
+    assert_eq!(steps(&of("\u{feff}dt = 0.004\nnstlist = 10\n").unwrap()), "4");
+}
+
+#[test]
+fn large_texts_are_read_or_refused_in_time_that_grows_with_their_length() {
+    let parts = |n: usize| (1..=n).map(|k| format!(" s{k}")).collect::<String>();
+    let many = |line: &str, n: usize| line.repeat(n);
+    let named = (0..80_000).map(|k| format!("pair_coeff * * s{k}\n")).collect::<String>();
+    for text in [
+        format!(
+            "units real\ntimestep 1\npair_style hybrid{}\n{named}run_style respa 2 2 hybrid{}\n",
+            parts(80_000),
+            many(" 1", 80_000)
+        ),
+        format!("units real\ntimestep 1\n{}", many("fix a all shake 1 2 3 b 1\nunfix b\n", 100_000)),
+        format!("units real\ntimestep 1\nrun_style respa 2 2{}\n", many(" bond 1", 100_000)),
+        format!("structure a.psf\ntimestep 1\n{}", many("set a 1;", 300_000)),
+        format!(
+            "nstlist = 10\ndt = 0.001\n{}",
+            (0..200_000).map(|k| format!("k{k} = 1\n")).collect::<String>()
+        ),
+        format!("units real\ntimestep 1\nvariable{}\n", many(" &\n a", 300_000)),
+    ] {
+        let begun = Instant::now();
+        let answer = of(&text).map(|own| steps(&own));
+        let head: String = text.chars().take(60).collect();
+        // About a second each on two cores that others use; a quadratic reader takes some minutes.
+        assert!(
+            begun.elapsed() < Duration::from_secs(20),
+            "{head}: {:?} after {:?}",
+            answer.is_ok(),
+            begun.elapsed()
+        );
+    }
+}
