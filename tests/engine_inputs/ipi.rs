@@ -2,6 +2,7 @@
 
 use super::{all_are_refused, all_have_their_steps, of, steps};
 use kickdrift::advise::engine::Engine;
+use kickdrift::number::rational::ratio;
 
 /// A file with this inside of `<system>`, and this inside of `<dynamics>`.
 macro_rules! file {
@@ -85,6 +86,18 @@ fn steps_are_those_that_ipi_takes() {
     assert!(of(&idle).unwrap().remarks[0].contains("no force on level 1"));
 }
 
+/// i-PI reads its step by `float()`.
+#[test]
+fn a_step_without_an_end_is_rewritten_as_a_shorter_decimal() {
+    let text = file!("nve", "", "<timestep units='femtosecond'> 2.0 </timestep><nmts> [1,7] </nmts>");
+    let reading = of(text).unwrap();
+    assert_eq!(steps(&reading), "2/7,2");
+    let new = reading.rewritten(&ratio(22, 7)).unwrap();
+    assert!(new.contains("> 3.14285 <") && new.contains("[1,11]"), "{new}");
+    let again = of(&new).unwrap();
+    assert!(again.scheme.outer() <= &ratio(22, 7) && again.scheme.inner() <= reading.scheme.inner());
+}
+
 #[test]
 fn what_ipi_refuses_or_is_no_such_scheme_is_refused() {
     let split = |list: &str| {
@@ -117,10 +130,7 @@ fn motions_of_different_steps_are_refused_and_of_equal_ones_rewritten_together()
         .replace(motion, &format!("<motion mode='multi'>{motion}{motion}<motion mode='atomswap'/></motion>"));
     let reading = of(&two).unwrap();
     assert_eq!((steps(&reading).as_str(), &reading.remarks[0][..]), ("0.5", "not read: motion atomswap"));
-    assert_eq!(
-        reading.rewritten(&kickdrift::number::rational::ratio(1, 4)).unwrap().matches("> 0.25 <").count(),
-        2
-    );
+    assert_eq!(reading.rewritten(&ratio(1, 4)).unwrap().matches("> 0.25 <").count(), 2);
     let error = of(&two.replacen("0.5", "0.25", 1)).unwrap_err();
     assert!(error.field() == "dynamics" && error.to_string().contains("different steps"), "{error}");
 }
