@@ -253,7 +253,8 @@ fn what_an_engine_refuses_is_said_and_what_is_not_symplectic_is_refused() {
     assert!(error.field() == "MTSAlgorithm" && error.remedy().contains("not symplectic"), "{error}");
     // 1, 2 and 3 fs: NAMD wants multiples; the scheme is answered all the same.
     let reading =
-        of("structure a.psf\nPME yes\ntimestep 1\nnonbondedFreq 2\nfullElectFrequency 3\n").unwrap();
+        of("structure a.psf\nPME yes\ntimestep 1\nnonbondedFreq 2\nfullElectFrequency 3\nstepspercycle 6\n")
+            .unwrap();
     assert_eq!(steps(&reading), "1,2,3");
     assert_eq!(reading.remarks, ["NAMD itself refuses this: 3 fs is no multiple of 2 fs"]);
     assert!(not_nested(&of(TEXTS[4].1).unwrap().scheme).is_none());

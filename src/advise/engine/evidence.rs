@@ -1,6 +1,7 @@
 //! Which engine a text of lines speaks of: words that this engine alone has, and hardly one that it does not know.
 
 use std::collections::HashSet;
+use std::sync::LazyLock;
 
 use super::lines::{Line, Notation, lines};
 use super::reading::Engine;
@@ -34,11 +35,7 @@ pub(super) struct Evidence {
 }
 
 impl Evidence {
-    fn of(vocabulary: &Vocabulary, text: &str) -> Evidence {
-        let set = |part: usize| -> HashSet<&str> {
-            vocabulary.words.split("\n\n").nth(part).unwrap_or_default().split_whitespace().collect()
-        };
-        let (own, shared) = (set(0), set(1));
+    fn of((vocabulary, [own, shared]): &(Vocabulary, [HashSet<&str>; 2]), text: &str) -> Evidence {
         let mut found = Evidence { engine: vocabulary.engine, own: 0, known: 0, unknown: vec![], strange: 0 };
         let mut seen = HashSet::new();
         for line in lines(text, &vocabulary.notation) {
@@ -65,7 +62,13 @@ impl Evidence {
 
 /// The engine that most words speak of.
 pub(super) fn evidence(text: &str) -> Option<Evidence> {
-    let all = [lammps::WORDS, gromacs::WORDS, namd::WORDS, tinker::WORDS];
-    let speaking = all.iter().map(|own| Evidence::of(own, text)).filter(Evidence::speaks);
+    static ALL: LazyLock<[(Vocabulary, [HashSet<&str>; 2]); 4]> = LazyLock::new(|| {
+        [lammps::WORDS, gromacs::WORDS, namd::WORDS, tinker::WORDS].map(|own| {
+            let set = |part: usize| own.words.split("\n\n").nth(part).unwrap_or_default();
+            let sets = [0, 1].map(|part| set(part).split_whitespace().collect());
+            (own, sets)
+        })
+    });
+    let speaking = ALL.iter().map(|own| Evidence::of(own, text)).filter(Evidence::speaks);
     speaking.max_by_key(|own| (own.own, std::cmp::Reverse(own.strange)))
 }

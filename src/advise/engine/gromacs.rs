@@ -95,6 +95,8 @@ pub(super) fn of_log(text: &str) -> Option<Result<Reading>> {
     let own = &own[..own.find("grpopts:").unwrap_or(end).min(own.len())];
     Some(read(own).map(|mut reading| {
         reading.stays = Some("this is what grompp understood of an .mdp file: change that one".into());
+        let bonds = "which bonds are held stands in the .mdp file and the topology alone: say so by --constraints, as h-bonds";
+        reading.remarks.push(bonds.into());
         reading
     }))
 }
@@ -181,20 +183,8 @@ fn two_levels(text: &str, keys: &Keys, inner: &Rational) -> Result<Reading> {
         reading.remarks.push(why.into());
     }
     let places = multiples(keys, &slow);
-    let wrong = |place: &Place| match place {
-        Place::Interval(own) if own.steps % n != 0 && n > 1 => Some(own.steps.to_string()),
-        _ => None,
-    };
-    let wrong: Vec<String> = places
-        .iter()
-        .filter(|(_, own)| matches!(own, Place::Interval(own) if own.key.is_none()))
-        .filter_map(|(_, place)| wrong(place))
-        .collect();
-    if !wrong.is_empty() {
-        reading.remarks.push(format!(
-            "grompp refuses this text as it stands: {} among its intervals is no multiple of {n}",
-            wrong.join(", ")
-        ));
+    if n > 1 {
+        reading.note_intervals("grompp", &places, n);
     }
     if n > 1 {
         reading.places = places;
@@ -232,8 +222,15 @@ fn refusals(keys: &Keys, n: u64, slow: &[&str]) -> Vec<String> {
 /// Intervals that grompp wants to be multiples of the factor, where they are not 0.
 fn multiples(keys: &Keys, slow: &[&str]) -> Vec<(std::ops::Range<usize>, Place)> {
     let is_slow = |group: &str| slow.iter().any(|own| own.eq_ignore_ascii_case(group));
-    let mut tied = vec![("nstcalcenergy", 100), ("nstenergy", 1000), ("nstlog", 1000), ("nstfout", 0)];
-    if keys.text("free-energy", "no") != "no" {
+    let is_free = keys.text("free-energy", "no") != "no";
+    // grompp lowers the first to the others.
+    let lower = |key: &str, default: u64| {
+        let own = keys.word(key).map_or(Some(default), |word| word.0.parse::<u64>().ok());
+        own.filter(|n| *n > 0).unwrap_or(100)
+    };
+    let least = lower("nstenergy", 1000).min(if is_free { lower("nstdhdl", 50) } else { 100 }).min(100);
+    let mut tied = vec![("nstcalcenergy", least), ("nstenergy", 1000), ("nstlog", 1000), ("nstfout", 0)];
+    if is_free {
         tied.push(("nstdhdl", 50));
     }
     let mut places = intervals(&keys.lines, keys.end, &tied);

@@ -200,6 +200,7 @@ fn respa(text: &str, commands: &Commands, words: &[Word], outer: Rational) -> Re
         let own = all.iter().filter(|(_, at)| *at == level);
         own.map(|(force, _)| force.as_str()).collect::<Vec<_>>().join(", ")
     };
+    refuse_order(&all, &shown)?;
     let forces: Vec<String> = (1..=levels).map(on).collect();
     let (steps, forces, remarks) = clocks(steps, forces);
     let mut reading = Reading::new(Engine::Lammps, text, scheme(steps)?);
@@ -219,6 +220,19 @@ fn respa(text: &str, commands: &Commands, words: &[Word], outer: Rational) -> Re
         );
     }
     Ok(reading)
+}
+
+/// LAMMPS wants every force on a level at least as far out as that of the one before.
+fn refuse_order(forces: &[(String, usize)], shown: &str) -> Result<()> {
+    let at = |key: &&str| forces.iter().find(|own| own.0 == **key).map(|own| (own.0.as_str(), own.1));
+    let order: Vec<(&str, usize)> = KEYWORDS.iter().filter(|key| **key != "hybrid").filter_map(at).collect();
+    match order.windows(2).find(|pair| pair[1].1 < pair[0].1) {
+        Some(pair) => {
+            let remedy = format!("LAMMPS refuses {} on a level below that of {}", pair[1].0, pair[0].0);
+            Err(Error::input("run_style", shown, remedy))
+        }
+        None => Ok(()),
+    }
 }
 
 /// The levels that are clocks: equal steps are one, a level without a force is none.

@@ -151,7 +151,7 @@ pub(super) fn interval(
         .map_or(Some(default), |word| Some(u64::try_from(word.0.parse::<i64>().ok()?).unwrap_or(default)));
     let steps = own.filter(|n| (1..=MOST_COUNT * MOST_COUNT).contains(n))?;
     let range = given.map_or(end..end, |word| word.1.clone());
-    Some((range, Interval { key: given.is_none().then_some(key), steps, of: 1, or_part: false }))
+    Some((range, Interval { name: key, key: given.is_none().then_some(key), steps, of: 1, or_part: false }))
 }
 
 /// Intervals of which all but the first stay multiples of the first, where they are so.

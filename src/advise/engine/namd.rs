@@ -126,7 +126,27 @@ pub(super) fn read(text: &str) -> Result<Reading> {
         // Both where they are equal: the one is to stay a multiple of the other.
         let outermost = full.filter(|_| m >= n).into_iter().chain(nonbonded.filter(|_| n >= m));
         reading.places = outermost.map(|(_, range)| (range, Place::OuterOverInner)).collect();
-        reading.places.extend(multiples(&keys));
+        let intervals = multiples(&keys);
+        let cycle =
+            |(_, place): &&(_, Place)| matches!(place, Place::Interval(own) if own.name == "stepspercycle");
+        let cycles: Vec<_> = intervals.iter().filter(cycle).cloned().collect();
+        for outer in [n, m].iter().take(if n == m { 1 } else { 2 }) {
+            reading.note_intervals("NAMD", &cycles, *outer);
+        }
+        if is_full {
+            let energies: Vec<_> = intervals
+                .iter()
+                .filter(|(_, place)| matches!(place, Place::Interval(own) if own.or_part))
+                .cloned()
+                .collect();
+            reading.note_intervals("NAMD", &energies, m);
+        }
+        reading.places.extend(intervals);
+        if is_full && m < n {
+            let why = "NAMD refuses this text: fullElectFrequency has to be a multiple of nonbondedFreq";
+            reading.remarks.push(why.into());
+            reading.stays = Some(why.into());
+        }
     } else {
         reading.places = step.map(|(_, range)| (range, Place::Outer(FS))).into_iter().collect();
     }

@@ -92,6 +92,7 @@ impl Loop {
 /// How often something is done, in innermost steps.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Interval {
+    pub name: &'static str,
     /// Where it stands nowhere: the key of its line, to be added unless its default does.
     pub key: Option<&'static str>,
     pub steps: u64,
@@ -102,6 +103,13 @@ pub(super) struct Interval {
 }
 
 impl Interval {
+    /// "nstlist = 10 (the default)", where it is no multiple of so many inner steps as the engine wants.
+    pub fn amiss(&self, outer: u64) -> Option<String> {
+        let is_default = if self.key.is_some() { " (the default)" } else { "" };
+        let is_sound = self.steps % outer == 0 || (self.or_part && outer % self.steps == 0);
+        (!is_sound).then(|| format!("{} = {}{is_default}", self.name, self.steps))
+    }
+
     /// The next one that is a multiple of so many innermost steps; `None` where a default is one.
     fn written(&self, outer: u64) -> Option<u64> {
         let unit = self.of.div_ceil(outer) * outer;
@@ -173,6 +181,20 @@ pub fn nested_beside(scheme: &Scheme) -> Option<String> {
 }
 
 impl Reading {
+    /// Notes intervals that the engine, or a program of its, refuses beside an outermost step of so many innermost ones.
+    pub(super) fn note_intervals(&mut self, by: &str, places: &[(Range<usize>, Place)], outer: u64) {
+        let wrong = places.iter().filter_map(|(_, place)| match place {
+            Place::Interval(own) => own.amiss(outer),
+            _ => None,
+        });
+        let wrong: Vec<String> = wrong.collect();
+        if !wrong.is_empty() {
+            let wrong = wrong.join(", ");
+            self.remarks
+                .push(format!("{by} refuses this text as it stands: no multiple of {outer} is {wrong}"));
+        }
+    }
+
     pub(super) fn new(engine: Engine, text: &str, scheme: Scheme) -> Reading {
         Reading {
             engine,
