@@ -48,89 +48,6 @@ fn the_steps_of_lammps_are_those_that_lammps_shows() {
     }
 }
 
-/// A log: lines with names are followed by the same ones with values, conditions by what was done.
-const LOG: &str = "LAMMPS (22 Jul 2025 - Update 4)
-OMP_NUM_THREADS environment is not set. Defaulting to 1 thread.
-units real
-variable ts equal 2.0
-bond_style harmonic
-pair_style lj/cut 8
-timestep ${ts}
-timestep 2
-if \"1 == 1\" then \"run_style respa 4 2 2 2 bond 1 pair 4\"
-run_style respa 4 2 2 2 bond 1 pair 4
-Respa levels:
-  1 = bond angle dihedral improper
-  2 =
-  3 =
-  4 = pair kspace
-WARNING: One or more respa levels compute no forces (src/src/respa.cpp:239)
-run 2
-Loop time of 4.0696e-05 on 1 procs for 2 steps with 2 atoms
-";
-
-/// What LAMMPS shows where it does not echo commands.
-const SCREEN: &str = "LAMMPS (22 Jul 2025 - Update 4)
-Respa levels:
-  1 = bond angle dihedral improper
-  2 =
-  3 = pair kspace
-Setting up r-RESPA run ...
-  Unit style    : metal
-  Current step  : 0
-  Time steps    : 1:0.00025 2:0.0005 3:0.002
-  r-RESPA fixes : 2:spring/self[s]
-";
-
-/// NAMD's log, as SimParameters.C writes it.
-const NAMD_LOG: &str = "Charm++> Running in non-SMP mode
-Info: NAMD 3.0 for Linux-x86_64-multicore
-Info: SIMULATION PARAMETERS:
-Info: TIMESTEP               2
-Info: NUMBER OF STEPS        500
-Info: STEPS PER CYCLE        20
-Info: PARTICLE MESH EWALD (PME) ACTIVE
-Info: FULL ELECTROSTATIC EVALUATION FREQUENCY      4
-Info: USING VERLET I (r-RESPA) MTS SCHEME.
-Info: RIGID BONDS TO HYDROGEN : ALL
-Info: NONBONDED FORCES EVALUATED EVERY 2 STEPS
-";
-
-/// The part of GROMACS's log, or of `gmx dump`, that says what grompp understood.
-const GROMACS_LOG: &str = "                      :-) GROMACS - gmx mdrun, 2025.1 (-:
-
-Input Parameters:
-   integrator                     = md
-   tinit                          = 0
-   dt                             = 0.002
-   nsteps                         = 5000
-   mts                            = true
-   mts-level2-forces              = longrange-nonbonded nonbonded
-   mts-level2-factor              = 3
-   mass-repartition-factor        = 1
-   comm-mode                      = Linear
-   nstlist                        = 30
-   coulombtype                    = PME
-grpopts:
-   nrdf:          45
-";
-
-#[test]
-fn logs_are_read_and_say_which_input_to_change() {
-    for (text, expected, forces) in
-        [(LOG, "0.25,2", 2), (SCREEN, "0.25,0.5,2", 3), (NAMD_LOG, "2,4,8", 3), (GROMACS_LOG, "2,6", 2)]
-    {
-        let reading = of(text).unwrap_or_else(|error| panic!("{text}: {error}"));
-        assert_eq!((steps(&reading).as_str(), reading.forces.len()), (expected, forces), "{text}");
-        let outer = reading.scheme.last_but_one() * ratio(3, 1);
-        let error = reading.changed_lines(&outer).unwrap_err();
-        assert!(["change", "write"].iter().any(|word| error.remedy().contains(word)), "{error}");
-    }
-    assert_eq!(of(NAMD_LOG).unwrap().constraints, Some(Constraints::HBonds));
-    let empty = &of(LOG).unwrap().remarks;
-    assert!(empty.iter().any(|own| own.contains("no force is on level 2, 3")), "{empty:?}");
-}
-
 /// grompp's rules: `dt` in ps is the inner step, 0.001 by default; two levels, factor 2 by default.
 const GROMACS: [(&str, &str); 12] = [
     ("integrator = md\nnsteps = 10\ndt = 0.002\n", "2"),
@@ -188,8 +105,67 @@ fn the_steps_of_gromacs_and_namd_are_those_of_their_rules() {
     assert!(default(GROMACS[1].0) && default(NAMD[1].0) && !default(NAMD[0].0));
 }
 
+/// Few lines of each kind that was misread, and the right steps in fs.
+const MISREAD: [(&str, &str); 14] = [
+    ("units real\npair_style lj/cut 9\nread_data d\ntimestep 1.0\n", "1"),
+    ("structure a.psf\ncoordinates a.pdb\nPME yes\ntimestep 2.0; # fs\nfullElectFrequency 2;\n", "2,4"),
+    (
+        "structure a.psf\ncoordinates a.pdb\nPME yes\ntimestep 2.0\nrigidBonds all; # held\nfullElectFrequency 2\n",
+        "2,4",
+    ),
+    (
+        "structure a.psf\ncoordinates a.pdb\ntimestep 1.5\nnonbondedFreq 3\nfullElectFrequency 6\nstepspercycle 18\n",
+        "1.5,4.5",
+    ),
+    (
+        "structure a.psf\ncoordinates a.pdb\nPME yes\ntimestep 1.0\nfullElectFrequency 4\nstepspercycle 20\noutputEnergies 100\n",
+        "1,4",
+    ),
+    (
+        "integrator = md\ndt = 0.0005\nmts = yes\nmts-level2-forces = longrange-nonbonded nonbonded\nmts-level2-factor = 10\nnstlist = 20\nnstcalcenergy = 10\n",
+        "0.5,5",
+    ),
+    (
+        "integrator = md\ndt = 0.0005\nmts = yes\nmts-level2-factor = 4\npcoupl = C-rescale\nnstpcouple = 20\n",
+        "0.5,2",
+    ),
+    ("integrator = md\ndt = 0.002\nmts = yes\nmts-level2-factor = 2\n", "2,4"),
+    (
+        "integrator = sd\ndt = 0.0005\nmts = yes\nmts-level2-forces = nonbonded\nmts-level2-factor = 4\ncoulombtype = PME\n",
+        "0.5,2",
+    ),
+    ("integrator = md\ndt = 0.002\nmts = yes\nmts-level2-factor = 2\nmass-repartition-factor = 3\n", "2,4"),
+    ("units electron\npair_style eff/cut 10\nrun_style respa 2 4 bond 1 pair 2\n", "0.00025,0.001"),
+    (
+        "units real\natom_style full\npair_style lj/cut 9\nfix s all shake 1e-6 100 0 b 1 a 1\ntimestep 4.0\nrun_style respa 2 2 bond 1 pair 2\n",
+        "2,4",
+    ),
+    (
+        "units real\npair_style lj/cut 9\nvariable ts equal 2.0\ntimestep ${ts}\nrun_style respa 2 4 bond 1 pair 2\n",
+        "0.5,2",
+    ),
+    ("structure a.psf\ncoordinates a.pdb\nPME on\nset dt 2.0\ntimestep $dt\nfullElectFrequency 2\n", "2,4"),
+];
+
+#[test]
+fn what_was_misread_has_its_right_steps() {
+    for (text, expected) in MISREAD {
+        let reading = of(text).unwrap_or_else(|error| panic!("{text}: {error}"));
+        assert_eq!(steps(&reading), expected, "{text}");
+        // Whatever line is written, the engine reads it: no fraction.
+        let outer = reading.scheme.last_but_one() * ratio(6, 1);
+        if let Ok(lines) = reading.changed_lines(&outer) {
+            assert!(!lines.is_empty() && lines.iter().all(|line| !line.contains('/')), "{lines:?}");
+        }
+    }
+}
+
 /// Texts that are refused, and words of the message.
-const REFUSED: [(&str, &str); 26] = [
+const REFUSED: [(&str, &str); 27] = [
+    (
+        "structure a.psf\nsource pme.conf\ntimestep 1\nfullElectFrequency 4\n",
+        "may be on in a text that is sourced",
+    ),
     // Other engines, by name.
     (
         "[INPUT]\ntopfile = a.psf\n[DYNAMICS]\nintegrator = VRES\ntimestep = 0.0025\nelec_long_period = 2\n",
@@ -386,6 +362,21 @@ const SAID: [(&str, &str); 15] = [
     ("structure a.psf\nPME yes\ntimestep 2\nrigidBonds water\nfullElectFrequency 2\n", "water alone"),
     ("structure a.psf\ntimestep 1\nfullElectFrequency 6\n", "takes fullElectFrequency for 0"),
 ];
+
+#[test]
+fn a_step_that_no_line_has_is_not_rewritten_and_the_line_to_add_is_said() {
+    for text in
+        ["units real\nread_data d\nbond_style harmonic\nrun_style respa 2 4\n", GROMACS[1].0, NAMD[1].0]
+    {
+        let reading = of(text).unwrap();
+        let outer = reading.scheme.last_but_one() * ratio(2, 1);
+        let error = reading.changed_lines(&outer).unwrap_err();
+        assert!(
+            error.remedy().starts_with("the text has no") && error.remedy().contains(": write "),
+            "{error}"
+        );
+    }
+}
 
 #[test]
 fn what_bears_on_the_answer_is_read_or_said() {

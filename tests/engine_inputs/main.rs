@@ -6,6 +6,7 @@
 
 mod ipi;
 mod lines;
+mod logs;
 mod openmm;
 mod serialized;
 mod tinker;

@@ -120,6 +120,10 @@ pub(super) fn read(text: &str) -> Result<Reading> {
     };
     if dt.is_none() {
         reading.default = Some("0.001 ps".into());
+        if reading.places.is_empty() {
+            let why = "the text has no dt, and grompp takes 0.001 ps: write dt = and the step in ps";
+            reading.stays = reading.stays.or(Some(why.into()));
+        }
     }
     let shown = format!("dt = {}", dt.as_ref().map_or("0.001 (the default)", |word| word.0));
     reading.used.insert(0, shown);

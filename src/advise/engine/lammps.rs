@@ -7,6 +7,7 @@ use super::lines::{Line, Names, Notation, Word, last, lines};
 use super::reading::{
     Engine, FS, MOST_LEVELS, PS, Place, Reading, Unit, count, no_gradient, number, scheme, times,
 };
+use super::respa::{BONDED, clocks, on_levels, pair_styles, refuse_order};
 use crate::advise::constraint::Constraints;
 use crate::error::{Error, Result};
 use crate::number::Rational;
@@ -147,9 +148,7 @@ fn of_commands(text: &str, commands: &Commands) -> Result<Reading> {
     let is_default = if value.is_none() { " (the default)" } else { "" };
     reading.used.splice(0..0, [format!("units {named}"), format!("timestep {shown}{is_default}")]);
     match value {
-        Some(word) if style.is_none() || !reading.places.is_empty() => {
-            reading.places.push((word.1.clone(), Place::Outer(unit)))
-        }
+        Some(word) if reading.stays.is_none() => reading.places.push((word.1.clone(), Place::Outer(unit))),
         Some(_) => {}
         // Without a timestep there is no number to change.
         None => {
@@ -160,6 +159,9 @@ fn of_commands(text: &str, commands: &Commands) -> Result<Reading> {
                 return Err(Error::missing("timestep", remedy));
             }
             reading.places.clear();
+            let why =
+                format!("the text has no timestep, and LAMMPS takes {default}: write one before its run");
+            reading.stays = reading.stays.or(Some(why));
             reading.default = Some(format!("{default} in units {named}"));
         }
     }
@@ -195,7 +197,9 @@ fn respa(text: &str, commands: &Commands, words: &[Word], outer: Rational) -> Re
     }
     steps.reverse();
     let styles = pair_styles(&commands.lines);
-    let all = on_levels(&words[2 + levels..], commands, &styles, levels)?;
+    let is_open = commands.is_open();
+    let there = |force: &str| is_open || commands.has(&[&format!("{force}_style")]);
+    let all = on_levels(&words[2 + levels..], &commands.lines, &there, &styles, levels)?;
     let on = |level: usize| {
         let own = all.iter().filter(|(_, at)| *at == level);
         own.map(|(force, _)| force.as_str()).collect::<Vec<_>>().join(", ")
@@ -209,10 +213,6 @@ fn respa(text: &str, commands: &Commands, words: &[Word], outer: Rational) -> Re
     reading.remarks.extend(no_gradient(&direct));
     if reading.scheme.steps().len() == levels {
         reading.places.extend(factors.last().map(|word| (word.1.clone(), Place::LastRatio)));
-        // One level has no factor: the timestep alone is to change.
-        if factors.is_empty() {
-            reading.places.push((text.len()..text.len(), Place::Nothing));
-        }
     } else {
         reading.stays = Some(
             "levels without a force, or of equal steps, are to go first: write one level for each clock"
@@ -220,48 +220,6 @@ fn respa(text: &str, commands: &Commands, words: &[Word], outer: Rational) -> Re
         );
     }
     Ok(reading)
-}
-
-/// LAMMPS wants every force on a level at least as far out as that of the one before.
-fn refuse_order(forces: &[(String, usize)], shown: &str) -> Result<()> {
-    let at = |key: &&str| forces.iter().find(|own| own.0 == **key).map(|own| (own.0.as_str(), own.1));
-    let order: Vec<(&str, usize)> = KEYWORDS.iter().filter(|key| **key != "hybrid").filter_map(at).collect();
-    match order.windows(2).find(|pair| pair[1].1 < pair[0].1) {
-        Some(pair) => {
-            let remedy = format!("LAMMPS refuses {} on a level below that of {}", pair[1].0, pair[0].0);
-            Err(Error::input("run_style", shown, remedy))
-        }
-        None => Ok(()),
-    }
-}
-
-/// The levels that are clocks: equal steps are one, a level without a force is none.
-fn clocks(steps: Vec<Rational>, forces: Vec<String>) -> (Vec<Rational>, Vec<String>, Vec<String>) {
-    let mut found: Vec<(Rational, Vec<String>)> = Vec::new();
-    let (mut empty, mut equal) = (Vec::new(), false);
-    for (level, (step, own)) in steps.into_iter().zip(forces).enumerate() {
-        if own.is_empty() {
-            empty.push((level + 1).to_string());
-            continue;
-        }
-        match found.last_mut().filter(|(last, _)| *last == step) {
-            Some((_, all)) => {
-                all.push(own);
-                equal = true;
-            }
-            None => found.push((step, vec![own])),
-        }
-    }
-    let mut remarks = Vec::new();
-    if !empty.is_empty() {
-        remarks
-            .push(format!("no force is on level {}: it is no clock (LAMMPS warns of it)", empty.join(", ")));
-    }
-    if equal {
-        remarks.push("levels of equal steps are taken as one".into());
-    }
-    let (steps, forces) = found.into_iter().map(|(step, own)| (step, own.join(", "))).unzip();
-    (steps, forces, remarks)
 }
 
 /// What else in the text bears on the answer.
@@ -395,112 +353,4 @@ fn of_screen(text: &str) -> Result<Reading> {
     (reading.forces, reading.remarks) = (forces, remarks);
     reading.stays = Some("this is what LAMMPS showed: change timestep and run_style in its input".into());
     Ok(reading)
-}
-
-/// A part of `pair_style hybrid` or `hybrid/overlay`.
-struct PairStyle<'a> {
-    name: &'a str,
-    /// `non_conservative on`, as metatomic has it: forces that are predicted, not derived.
-    is_direct: bool,
-}
-
-/// The parts of the pair style, each begun by a word that `pair_coeff` names as a style.
-fn pair_styles<'a>(lines: &[Line<'a>]) -> Vec<PairStyle<'a>> {
-    let Some(style) = last(lines, "pair_style") else { return vec![] };
-    if !style.words.get(1).is_some_and(|word| word.0.starts_with("hybrid")) {
-        return vec![];
-    }
-    let coefficients = lines.iter().filter(|line| line.key() == "pair_coeff");
-    let names: HashSet<&str> = coefficients.filter_map(|line| Some(line.words.get(3)?.0)).collect();
-    let words: Vec<&str> = style.words[2..].iter().map(|word| word.0).collect();
-    let begins: Vec<usize> = (0..words.len()).filter(|&k| names.contains(words[k])).collect();
-    let part = |(k, &from): (usize, &usize)| {
-        let own = &words[from..begins.get(k + 1).copied().unwrap_or(words.len())];
-        let is_direct = own.windows(2).any(|pair| pair[0] == "non_conservative" && is_on(pair[1]));
-        PairStyle { name: words[from], is_direct }
-    };
-    begins.iter().enumerate().map(part).collect()
-}
-
-fn is_on(word: &str) -> bool {
-    ["on", "yes", "true"].iter().any(|on| word.eq_ignore_ascii_case(on))
-}
-
-const BONDED: [&str; 4] = ["bond", "angle", "dihedral", "improper"];
-
-/// Each force with its level, as LAMMPS sets them: `hybrid` has a level for each part of the pair style, a word that is given twice its last one.
-///
-/// # Errors
-/// A word that LAMMPS does not know there, or a level that there is not.
-fn named(rest: &[Word], styles: &[PairStyle], levels: usize) -> Result<Vec<(String, usize)>> {
-    let mut found: Vec<(String, usize)> = Vec::new();
-    let mut words = rest.iter().map(|word| word.0).peekable();
-    let mut keys = 0;
-    while let Some(key) = words.next() {
-        keys += 1;
-        if keys > 2 * KEYWORDS.len() || !KEYWORDS.contains(&key) {
-            let remedy =
-                format!("LAMMPS knows no such word behind the factors: there are {}", KEYWORDS.join(", "));
-            return Err(Error::input("run_style", key, remedy));
-        }
-        let mut next = || words.next_if(|word| word.parse::<f64>().is_ok());
-        if key == "hybrid" {
-            let own = std::iter::from_fn(&mut next).map(str::parse::<usize>);
-            let name =
-                |k: usize| styles.get(k).map_or_else(|| format!("pair {}", k + 1), |own| own.name.into());
-            found.extend(own.enumerate().filter_map(|(k, level)| Some((name(k), level.ok()?))));
-        } else {
-            found.retain(|own| own.0 != key);
-            found.extend(next().and_then(|level| level.parse().ok()).map(|level| (key.to_string(), level)));
-            // The distances of `inner`, `middle` and `outer`.
-            std::iter::from_fn(next).for_each(drop);
-        }
-    }
-    match found.iter().find(|own| own.1 < 1 || own.1 > levels) {
-        Some((key, level)) => Err(Error::input(
-            "run_style",
-            format!("{key} {level}"),
-            format!("there are levels 1 to {levels}"),
-        )),
-        None => Ok(found),
-    }
-}
-
-const KEYWORDS: [&str; 10] =
-    ["bond", "angle", "dihedral", "improper", "pair", "inner", "middle", "outer", "hybrid", "kspace"];
-
-/// The same with the defaults: bonded forces on the level of the bonded one before, the first on 1; pairs on the last level, the sum over waves with them.
-/// A force that is not named and has no style is none.
-fn on_levels(
-    rest: &[Word],
-    commands: &Commands,
-    styles: &[PairStyle],
-    levels: usize,
-) -> Result<Vec<(String, usize)>> {
-    let mut found = named(rest, styles, levels)?;
-    let is_open = commands.is_open();
-    let there = |force: &str| is_open || commands.has(&[&format!("{force}_style")]);
-    let at = |found: &[(String, usize)], key: &str| found.iter().find(|own| own.0 == key).map(|own| own.1);
-    // With its outermost part, where pairs are several.
-    let parts = |own: &&(String, usize)| !BONDED.contains(&own.0.as_str()) && own.0 != "kspace";
-    let pairs = found.iter().filter(parts).map(|own| own.1).max();
-    let mut before = 1;
-    for key in BONDED {
-        let given = at(&found, key);
-        before = given.unwrap_or(before);
-        if given.is_none() && there(key) {
-            found.push((key.into(), before));
-        }
-    }
-    if pairs.is_none() {
-        found.push(("pair".into(), levels));
-    }
-    if at(&found, "kspace").is_none() && there("kspace") {
-        found.push(("kspace".into(), pairs.unwrap_or(levels)));
-    }
-    found.extend(commands.lines.iter().filter(|line| line.key() == "fix_modify").filter_map(|line| {
-        let at = line.words.iter().position(|word| word.0 == "respa")?;
-        Some((format!("fix {}", line.words.get(1)?.0), line.words.get(at + 1)?.0.parse().ok()?))
-    }));
-    Ok(found)
 }

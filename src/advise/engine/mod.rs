@@ -37,6 +37,7 @@ mod others;
 mod quantity;
 mod read;
 mod reading;
+mod respa;
 mod script;
 mod serialized;
 mod tinker;

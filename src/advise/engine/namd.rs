@@ -106,6 +106,16 @@ pub(super) fn read(text: &str) -> Result<Reading> {
     let n = each("nonbondedFreq", &nonbonded)?.unwrap_or(1);
     let given = each("fullElectFrequency", &full)?;
     let is_full = keys.is_full()?;
+    if given.is_some()
+        && !is_full
+        && keys.is_open()
+        && !FULL.iter().any(|key| last(&keys.lines, key).is_some_and(|line| line.depth == 0))
+    {
+        let remedy = format!(
+            "PME, without which it is 0, may be on in a text that is sourced, or on a condition: {BETTER}"
+        );
+        return Err(Error::input("fullElectFrequency", full.map_or("", |word| word.0), remedy));
+    }
     let m = if is_full { given.unwrap_or(n) } else { n };
     let mut steps = vec![inner.clone(), times(&inner, n), times(&inner, m)];
     steps.sort();
@@ -148,6 +158,10 @@ pub(super) fn read(text: &str) -> Result<Reading> {
             reading.stays = Some(why.into());
         }
     } else {
+        if step.is_none() {
+            let why = "the text has no timestep, and NAMD takes 1 fs: write timestep and the step in fs";
+            reading.stays = Some(why.into());
+        }
         reading.places = step.map(|(_, range)| (range, Place::Outer(FS))).into_iter().collect();
     }
     bonds(&keys, &mut reading)?;

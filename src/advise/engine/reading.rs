@@ -54,8 +54,6 @@ pub(super) enum Place {
     Inner,
     /// Whether there are two clocks at all, as yes or no.
     Switch,
-    /// No number: a text whose one clock has a place already.
-    Nothing,
     /// The work in one step of the level below the outermost, written out as often as that step is made.
     Loop(Loop),
 }
@@ -263,7 +261,6 @@ impl Reading {
                 // One clock has no ratio: the number stays.
                 Place::LastRatio if is_off => continue,
                 Place::Interval(_) if is_off => continue,
-                Place::Nothing => continue,
                 Place::Switch => if is_off { "no" } else { "yes" }.into(),
                 Place::LastRatio => whole(before)?,
                 Place::OuterOverInner => whole(self.scheme.inner())?,
