@@ -130,6 +130,7 @@ fn what_openmm_refuses_or_cannot_be_read_is_refused() {
         (&script("dt = dt * 2\ni = VerletIntegrator(dt)"), "dt", "names that are set once"),
         (&script("i = VerletIntegrator(float(argv[1])*femtoseconds)"), "dt", "names that are set once"),
         (&script("i = VerletIntegrator(2*femtoseconds**2)"), "dt", "names that are set once"),
+        (&script("i = VerletIntegrator(0.001)\ni.setStepSize(0.004)"), "dt", "setStepSize(0.004)"),
         (&script("i = VerletIntegrator()"), "VerletIntegrator", "write VerletIntegrator(4*femtoseconds)"),
         (
             &script("a = VerletIntegrator(0.001)\nb = VerletIntegrator(0.002)"),
@@ -146,7 +147,9 @@ fn what_openmm_refuses_or_cannot_be_read_is_refused() {
 #[test]
 fn a_listed_group_without_a_force_is_an_error_where_the_forces_are_known() {
     let run = |more: &str| {
-        format!("system = ff.createSystem(top)\n{more}i = MTSIntegrator(4*femtoseconds, [(0,1),(1,8)])\n")
+        format!(
+            "system = ff.createSystem(top, rigidWater=False)\n{more}i = MTSIntegrator(4*femtoseconds, [(0,1),(1,8)])\n"
+        )
     };
     all_are_refused(&[
         (&run(""), "force groups", "group 1 has no force"),
@@ -190,9 +193,17 @@ fn bonds_that_are_held_and_heavy_hydrogens_are_read() {
     assert!(reading.used.contains(&"hydrogenMass=1.5".into()));
     let other = |from: &str, to: &str| of(&setup.replace(from, to)).unwrap();
     assert_eq!(other("HBonds", "app.AllBonds").constraints, Some(Constraints::AllBonds));
-    for (from, to) in [("= HBonds", "= None"), ("constraints=constraints, ", "")] {
-        assert_eq!(other(from, to).constraints, None);
+    for (from, to, words) in
+        [("= HBonds", "= None", "water is rigid"), ("constraints=constraints, ", "", "--constraints")]
+    {
+        let reading = other(from, to);
+        assert!(reading.constraints.is_none() && reading.remarks.iter().any(|remark| remark.contains(words)));
     }
+    let flexible =
+        of(&setup.replace("= HBonds", "= None").replace("rigidWater=True", "rigidWater=False")).unwrap();
+    assert!(!flexible.remarks.iter().any(|remark| remark.contains("rigid")), "{:?}", flexible.remarks);
+    let groups = other("dt = 0", "i.setIntegrationForceGroups({0})\ndt = 0");
+    assert!(groups.remarks.iter().any(|remark| remark.contains("never integrated")), "{:?}", groups.remarks);
     // What was not read is asked for.
     for (from, to, words) in [
         ("constraints=constraints", "**{'constraints': HBonds}", "--constraints"),

@@ -31,6 +31,7 @@ mod gromacs;
 mod ipi;
 mod lammps;
 mod lines;
+mod molecules;
 mod namd;
 mod openmm;
 mod others;

@@ -6,12 +6,10 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
-use super::quantity::{mass, time};
+use super::quantity::time;
 use super::reading::{Engine, Place, Reading, count, scheme, times};
 use super::script::{Argument, Call, Script};
-use super::{serialized, xml};
-use crate::advise::constraint::Constraints;
-use crate::advise::unit::decimal;
+use super::{molecules, serialized, xml};
 use crate::error::{Error, Result};
 use crate::number::Rational;
 
@@ -163,6 +161,13 @@ fn python(text: &str) -> Result<Option<Reading>> {
         let remedy = "give the text of one run";
         return Err(Error::input("integrator", format!("more than {MOST_INTEGRATORS} of them"), remedy));
     }
+    let resets = script.calls(|name| name == "setStepSize").next();
+    if let Some(call) = resets.filter(|_| !calls.is_empty()) {
+        let value = format!("setStepSize({})", &text[call.inside]);
+        let remedy =
+            "sets another step than the integrator was made with: give the steps themselves, by --steps";
+        return Err(Error::input("dt", value, remedy));
+    }
     let mut reading: Option<Reading> = None;
     for call in &calls {
         let own = integrator(text, &script, call)?;
@@ -184,7 +189,7 @@ fn python(text: &str) -> Result<Option<Reading>> {
         }
     }
     if let Some(reading) = &mut reading {
-        system(&script, text, reading);
+        molecules::read(&script, text, reading);
     }
     Ok(reading)
 }
@@ -312,64 +317,3 @@ fn levels(
     reading.places = places.into_iter().collect::<Option<_>>().filter(|_| slowest == 1).unwrap_or_default();
     Ok(())
 }
-
-/// What a script says of bonds that are held and of the masses of hydrogens.
-fn system(script: &Script, text: &str, reading: &mut Reading) {
-    let calls: Vec<Call> = script
-        .calls(|name| ["createSystem", "create_system"].contains(&name))
-        .take(MOST_INTEGRATORS)
-        .collect();
-    let values = |key: &str| {
-        let own = calls.iter().map(|call| {
-            let arguments = script.arguments(call);
-            arguments.into_iter().find(|(name, _)| *name == Some(key)).map(|(_, own)| script.followed(own))
-        });
-        let mut own: Vec<Option<Range<usize>>> = own.collect();
-        own.dedup_by(|a, b| a.clone().map(|a| &text[a]) == b.clone().map(|b| &text[b]));
-        own
-    };
-    let bonds = values("constraints");
-    let word = |range: &Range<usize>| {
-        script.code()[range.clone()].rsplit('.').next().unwrap_or_default().to_string()
-    };
-    let held = match &bonds[..] {
-        [Some(own)] => Some(word(own)),
-        _ => None,
-    };
-    reading.constraints = match held.as_deref() {
-        Some("HBonds") => Some(Constraints::HBonds),
-        Some("AllBonds" | "HAngles") => Some(Constraints::AllBonds),
-        _ => None,
-    };
-    let mentions = |names: &[&str]| script.words().any(|(name, _)| names.contains(&name));
-    match held.as_deref() {
-        Some(own @ ("HBonds" | "AllBonds" | "HAngles")) => reading.used.push(format!("constraints={own}")),
-        Some("None") => {}
-        _ if !bonds.iter().all(Option::is_none)
-            || mentions(&["HBonds", "AllBonds", "HAngles", "addConstraint"]) =>
-        {
-            reading.remarks.push("which bonds are held was not read: say so by --constraints".into());
-        }
-        _ => {}
-    }
-    masses(script, text, &values("hydrogenMass"), reading);
-}
-
-fn masses(script: &Script, text: &str, values: &[Option<Range<usize>>], reading: &mut Reading) {
-    let given = match values {
-        [] | [None] => None,
-        [Some(own)] => Some(own),
-        _ => return reading.remarks.push(UNREAD.into()),
-    };
-    match given.filter(|own| &script.code()[(*own).clone()] != "None").map(|own| mass(script, own.clone())) {
-        Some(Some(size)) => {
-            let shown = decimal(&size);
-            reading.used.push(format!("hydrogenMass={shown}"));
-            reading.hydrogen = Some(size);
-        }
-        None if given.is_some() || !text.contains("hydrogenMass") && !text.contains("setParticleMass") => {}
-        _ => reading.remarks.push(UNREAD.into()),
-    }
-}
-
-const UNREAD: &str = "the masses of hydrogens were not read: say them by --hmr";
