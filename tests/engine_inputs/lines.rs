@@ -75,7 +75,7 @@ const GROMACS: [(&str, &str); 12] = [
 ];
 
 /// NAMD's rules: `timestep` in fs is the inner step, 1 by default; no full electrostatics without a method for them.
-const NAMD: [(&str, &str); 14] = [
+const NAMD: [(&str, &str); 15] = [
     ("structure a.psf\ncoordinates a.pdb\ntimestep 2.0\noutputEnergies 100\n", "2"),
     ("structure a.psf\ncutoff 12.0\noutputname b\n", "1"),
     ("structure a.psf\nPME yes\ntimestep 2.0\nfullElectFrequency 2\nstepspercycle 20\n", "2,4"),
@@ -90,6 +90,7 @@ const NAMD: [(&str, &str); 14] = [
     ("structure a.psf\nrigidBonds none\ntimestep 0.5\nlangevin on\nlangevinDamping 1\n", "0.5"),
     ("structure a.psf\nMSM yes\ntimestep 1\nfullElectFrequency 3\nnonbondedFreq 3\n", "1,3"),
     ("structure a.psf\nLCPO on\nGBISSer on\ntimestep 1 ;\nfullElectFrequency 2 ;\n", "1,2"),
+    ("structure a.psf\nsource pme.conf\ntimestep 1\nfullElectFrequency 1\n", "1"),
 ];
 
 #[test]
@@ -321,7 +322,8 @@ fn lines_that_are_written_are_lines_that_the_engine_takes() {
 }
 
 /// What a text says of bonds, masses and forces, and the answer has to say.
-const SAID: [(&str, &str); 15] = [
+const SAID: [(&str, &str); 16] = [
+    ("structure a.psf\ntimestep 1\nif {$hold} {\n rigidBonds all\n}\n", "rigidBonds stands in a condition"),
     (
         "dt = 0.002\nmts = yes\nmts-level2-factor = 3\ncoulombtype = PME\n",
         "no multiple of 3 is nstcalcenergy = 100 (the default)",

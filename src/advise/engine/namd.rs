@@ -24,7 +24,7 @@ const NOTATION: Notation =
 const FULL: [&str; 9] = ["PME", "FMA", "MSM", "FMM", "FullDirect", "GBIS", "GBISSer", "LCPO", "SASA"];
 
 /// What bears on the steps, and is not read where it stands in a loop or a condition.
-const STEPS: [&str; 5] = ["timestep", "nonbondedFreq", "fullElectFrequency", "MTSAlgorithm", "rigidBonds"];
+const STEPS: [&str; 4] = ["timestep", "nonbondedFreq", "fullElectFrequency", "MTSAlgorithm"];
 
 const BETTER: &str =
     "give the log of NAMD's run instead (`namd3 run.conf > run.log`), which has all steps as NAMD took them";
@@ -106,7 +106,7 @@ pub(super) fn read(text: &str) -> Result<Reading> {
     let n = each("nonbondedFreq", &nonbonded)?.unwrap_or(1);
     let given = each("fullElectFrequency", &full)?;
     let is_full = keys.is_full()?;
-    if given.is_some()
+    if given.is_some_and(|given| given != n)
         && !is_full
         && keys.is_open()
         && !FULL.iter().any(|key| last(&keys.lines, key).is_some_and(|line| line.depth == 0))
@@ -125,7 +125,7 @@ pub(super) fn read(text: &str) -> Result<Reading> {
     for (key, word) in [("nonbondedFreq", &nonbonded), ("fullElectFrequency", &full)] {
         reading.used.extend(word.as_ref().map(|word| format!("{key} {}", word.0)));
     }
-    if given.is_some() && !is_full {
+    if given.is_some_and(|given| given != n) && !is_full {
         let why =
             "NAMD takes fullElectFrequency for 0: none of PME, FMA, MSM, FMM, FullDirect, GBIS, LCPO is on";
         reading.remarks.push(why.into());
@@ -239,6 +239,11 @@ fn bonds(keys: &Keys, reading: &mut Reading) -> Result<()> {
 }
 
 fn notes(keys: &Keys, reading: &mut Reading) {
+    if keys.lines.iter().any(|line| line.depth > 0 && is_key(line.key(), "rigidBonds")) {
+        reading.remarks.push(
+            "rigidBonds stands in a condition: if it holds, name the bonds, as --constraints h-bonds".into(),
+        );
+    }
     if keys.is_open() {
         reading.remarks.push(format!("what `source`, `if` and `proc` do is not followed: {BETTER}"));
     }
