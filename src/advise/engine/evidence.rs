@@ -1,11 +1,9 @@
 //! Which engine a text of lines speaks of: words that this engine alone has, and hardly one that it does not know.
 
 use std::collections::HashSet;
-use std::sync::LazyLock;
 
 use super::lines::{Line, Notation, lines};
 use super::reading::Engine;
-use super::{gromacs, lammps, namd, tinker};
 
 /// The words that begin an engine's lines.
 pub(super) struct Vocabulary {
@@ -23,6 +21,17 @@ pub(super) struct Vocabulary {
     pub is_whole: bool,
 }
 
+/// A vocabulary with its words looked up at once.
+pub(super) struct Known(Vocabulary, [HashSet<&'static str>; 2]);
+
+impl Known {
+    pub fn new(vocabulary: Vocabulary) -> Known {
+        let set = |part: usize| vocabulary.words.split("\n\n").nth(part).unwrap_or_default();
+        let sets = [0, 1].map(|part| set(part).split_whitespace().collect());
+        Known(vocabulary, sets)
+    }
+}
+
 /// What speaks for an engine, and against it.
 #[derive(Debug)]
 pub(super) struct Evidence {
@@ -35,7 +44,7 @@ pub(super) struct Evidence {
 }
 
 impl Evidence {
-    fn of((vocabulary, [own, shared]): &(Vocabulary, [HashSet<&str>; 2]), text: &str) -> Evidence {
+    fn of(Known(vocabulary, [own, shared]): &Known, text: &str) -> Evidence {
         let mut found = Evidence { engine: vocabulary.engine, own: 0, known: 0, unknown: vec![], strange: 0 };
         let mut seen = HashSet::new();
         for line in lines(text, &vocabulary.notation) {
@@ -60,15 +69,8 @@ impl Evidence {
     }
 }
 
-/// The engine that most words speak of.
-pub(super) fn evidence(text: &str) -> Option<Evidence> {
-    static ALL: LazyLock<[(Vocabulary, [HashSet<&str>; 2]); 4]> = LazyLock::new(|| {
-        [lammps::WORDS, gromacs::WORDS, namd::WORDS, tinker::WORDS].map(|own| {
-            let set = |part: usize| own.words.split("\n\n").nth(part).unwrap_or_default();
-            let sets = [0, 1].map(|part| set(part).split_whitespace().collect());
-            (own, sets)
-        })
-    });
-    let speaking = ALL.iter().map(|own| Evidence::of(own, text)).filter(Evidence::speaks);
+/// The engine of these that most words speak of.
+pub(super) fn evidence(text: &str, all: &[Known]) -> Option<Evidence> {
+    let speaking = all.iter().map(|own| Evidence::of(own, text)).filter(Evidence::speaks);
     speaking.max_by_key(|own| (own.own, std::cmp::Reverse(own.strange)))
 }

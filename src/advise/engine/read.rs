@@ -1,6 +1,8 @@
 //! Which engine a text is of, and its reading.
 
-use super::evidence::evidence;
+use std::sync::LazyLock;
+
+use super::evidence::{Known, evidence};
 use super::reading::{Engine, LONGEST, Reading, not_nested};
 use super::{gromacs, ipi, lammps, namd, openmm, others, tinker, xml};
 use crate::error::{Error, Result};
@@ -8,6 +10,9 @@ use crate::number::Rational;
 
 const NONE: &str =
     "is the input of no engine that is known here (OpenMM, LAMMPS, GROMACS, NAMD, Tinker, Tinker-HP, i-PI)";
+
+static KNOWN: LazyLock<[Known; 4]> =
+    LazyLock::new(|| [lammps::WORDS, gromacs::WORDS, namd::WORDS, tinker::WORDS].map(Known::new));
 
 /// Reads an engine's texts, the engine recognized by their content; `outer` is the outermost step where the text does not have it.
 ///
@@ -57,7 +62,7 @@ fn of_log(text: &str) -> Option<Result<Reading>> {
 
 /// A text of lines of keys and values.
 fn of_lines(text: &str, outer: Option<&Rational>) -> Result<Option<Reading>> {
-    let Some(evidence) = evidence(text) else { return Ok(None) };
+    let Some(evidence) = evidence(text, &*KNOWN) else { return Ok(None) };
     let mut reading = match evidence.engine {
         Engine::Lammps => lammps::read(text)?,
         Engine::Gromacs => gromacs::read(text)?,
