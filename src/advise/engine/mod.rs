@@ -28,6 +28,7 @@
 
 mod evidence;
 mod gromacs;
+mod groups;
 mod ipi;
 mod lammps;
 mod lines;

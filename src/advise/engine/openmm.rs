@@ -3,9 +3,9 @@
 //! `MTSIntegrator(dt, [(group, n), ...])` evaluates a force group n times in an outermost step dt, in half kicks nested by n. A group that has
 //! forces and is not listed is never integrated, and OpenMM does not say so: that is an error here. So is a listed group without a force.
 
-use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
+use super::groups::Groups;
 use super::quantity::time;
 use super::reading::{Engine, Place, Reading, count, scheme, times};
 use super::script::{Argument, Call, Script};
@@ -47,109 +47,14 @@ pub(super) fn read(texts: &[&str]) -> Result<Reading> {
         let remedy = "a system alone has no steps: give the integrator too, as Python text or serialized";
         Error::missing("integrator", remedy)
     })?;
-    let mut groups = Groups::default();
-    for text in texts {
-        if xml::is_xml(text) {
-            groups.is_whole |= serialized::groups(text, &mut groups.forces)?;
-            let (held, remark) = serialized::held(text)?;
-            reading.constraints = held.or(reading.constraints);
-            reading.remarks.extend(remark);
-        } else if !groups.is_whole {
-            groups.read(text);
-        }
+    let (serialized, scripts): (Vec<&str>, Vec<&str>) = texts.iter().partition(|text| xml::is_xml(text));
+    for text in &serialized {
+        let (held, remark) = serialized::held(text)?;
+        reading.constraints = held.or(reading.constraints);
+        reading.remarks.extend(remark);
     }
-    groups.check(&mut reading)?;
-    for force in &mut reading.forces {
-        let names = force.strip_prefix("group ").and_then(|n| groups.forces.get(&n.parse().ok()?));
-        if let Some(names) = names.filter(|names| !names.is_empty()) {
-            *force = format!("{force} ({})", names.join(", "));
-        }
-    }
+    Groups::of(&serialized, &scripts)?.name(&mut reading)?;
     Ok(reading)
-}
-
-/// The force groups that the texts give forces to.
-#[derive(Default)]
-struct Groups {
-    /// With the names of their forces, where these are known.
-    forces: BTreeMap<u64, Vec<String>>,
-    /// These are all forces: a serialized system has them.
-    is_whole: bool,
-    /// The forces stand in a text that was read, and none is put into a group in a way that was not.
-    is_read: bool,
-    /// Some groups are no plain numbers.
-    has_names: bool,
-}
-
-impl Groups {
-    fn read(&mut self, text: &str) {
-        let script = Script::new(text);
-        let sets = |name: &str| {
-            let lower = name.to_ascii_lowercase().replace('_', "");
-            lower.contains("forcegroup") && !lower.starts_with("get") && name != "setIntegrationForceGroups"
-        };
-        for call in script.calls(sets) {
-            let known = ["setForceGroup", "setReciprocalSpaceForceGroup"].contains(&call.name);
-            let argument = script.followed(call.inside.clone());
-            match script.code()[argument].parse::<u64>() {
-                Ok(group) if known && group < 32 => drop(self.forces.entry(group).or_default()),
-                _ => self.has_names = true,
-            }
-        }
-        let makes = |name: &str| ["createSystem", "create_system", "addForce"].contains(&name);
-        self.is_read |= script.calls(makes).next().is_some();
-    }
-
-    /// That every group with forces is integrated, and every listed one has forces.
-    fn check(&self, reading: &mut Reading) -> Result<()> {
-        let listed: BTreeSet<u64> = reading
-            .forces
-            .iter()
-            .flat_map(|force| force.split("group ").skip(1))
-            .filter_map(|n| n.trim_end_matches([',', ' ']).parse().ok())
-            .collect();
-        if listed.is_empty() {
-            return Ok(());
-        }
-        let shown = |groups: Vec<&u64>| {
-            let noun = if groups.len() == 1 { "group" } else { "groups" };
-            format!("{noun} {}", groups.iter().map(ToString::to_string).collect::<Vec<_>>().join(", "))
-        };
-        let missing: Vec<&u64> = self.forces.keys().filter(|group| !listed.contains(group)).collect();
-        if !missing.is_empty() {
-            let remedy = format!(
-                "{} would never be integrated, and OpenMM does not say so: list every group that has forces",
-                shown(missing)
-            );
-            return Err(Error::input(
-                "force groups",
-                format!(
-                    "only {} listed",
-                    shown(listed.iter().collect()).trim_start_matches("group").trim_start_matches('s').trim()
-                ),
-                remedy,
-            ));
-        }
-        // Forces that are put into no group are in group 0.
-        let is_known = self.is_whole || self.is_read && !self.has_names;
-        let idle =
-            listed.iter().filter(|group| !self.forces.contains_key(group) && (self.is_whole || **group != 0));
-        let idle: Vec<&u64> = idle.collect();
-        if is_known && !idle.is_empty() {
-            let one = if idle.len() == 1 { "has" } else { "have" };
-            let remedy = "put forces into it by setForceGroup: forces that are put into no group are all in group 0, and take its step";
-            return Err(Error::input("force groups", format!("{} {one} no force", shown(idle)), remedy));
-        }
-        if self.has_names {
-            reading.remarks.push("some force groups are set by variables, which are not followed: make sure that every group with forces is listed".into());
-        } else if !is_known && self.forces.is_empty() {
-            reading.remarks.push("no force is put into a group here: unless it is done elsewhere, all are in group 0, and take its step".into());
-        }
-        if !self.is_whole && !listed.contains(&0) {
-            reading.remarks.push("group 0 is not listed: forces that are put into no group are in it, and would never be integrated".into());
-        }
-        Ok(())
-    }
 }
 
 /// The one integrator of a script, with what it says of bonds and masses; `None` where it has none.
@@ -171,20 +76,19 @@ fn python(text: &str) -> Result<Option<Reading>> {
     let mut reading: Option<Reading> = None;
     for call in &calls {
         let own = integrator(text, &script, call)?;
-        match &mut reading {
-            None => reading = Some(own),
-            Some(first) if first.scheme == own.scheme && first.forces == own.forces => {
-                first.places.extend(
-                    own.places.into_iter().filter(|place| !first.places.contains(place)).collect::<Vec<_>>(),
-                );
-            }
-            Some(first) => {
-                let remedy = "take different steps: give the text with one of them";
-                return Err(Error::input(
-                    "integrator",
-                    format!("{} and {}", first.used[0], own.used[0]),
-                    remedy,
-                ));
+        let Some(first) = &mut reading else {
+            reading = Some(own);
+            continue;
+        };
+        if first.scheme != own.scheme || first.forces != own.forces {
+            let value = format!("{} and {}", first.used[0], own.used[0]);
+            let remedy = "take different steps: give the text with one of them";
+            return Err(Error::input("integrator", value, remedy));
+        }
+        // A number behind a name has one place.
+        for place in own.places {
+            if !first.places.contains(&place) {
+                first.places.push(place);
             }
         }
     }
@@ -266,30 +170,7 @@ fn levels(
             "is not followed: write the list as [(0,1),(1,8)], or give the integrator as XmlSerializer.serialize writes it",
         ));
     }
-    let mut entries: Vec<(u64, Option<Range<usize>>, u64)> = Vec::new();
-    for pair in script.split(list.start + 1..list.end - 1) {
-        let own = &code[pair.clone()];
-        let bad =
-            || Error::input("groups", own, "write each entry as (group, evaluations in an outermost step)");
-        let is_pair = own.starts_with(['(', '[']) && script.is_bracketed(&pair);
-        if !is_pair {
-            return Err(bad());
-        }
-        let parts = script.split(pair.start + 1..pair.end - 1);
-        let [group, n] = <[Range<usize>; 2]>::try_from(parts).map_err(|_| bad())?;
-        let group = code[script.followed(group)].parse::<u64>().ok().filter(|g| *g < 32);
-        let group = group
-            .ok_or_else(|| Error::input("groups", own, "a force group is a whole number from 0 to 31"))?;
-        if entries.iter().any(|(_, _, known)| *known == group) {
-            return Err(Error::input(
-                "groups",
-                shown,
-                format!("group {group} is listed twice, and would kick twice"),
-            ));
-        }
-        let value = script.followed(n.clone());
-        entries.push((count("groups", &code[value.clone()])?, Some(n).filter(|n| *n == value), group));
-    }
+    let mut entries = entries(script, &list)?;
     entries.sort_by_key(|(n, ..)| std::cmp::Reverse(*n));
     let Some((most, ..)) = entries.first() else {
         return Err(Error::input("groups", shown, "list at least one force group, as [(0,1),(1,8)]"));
@@ -316,4 +197,32 @@ fn levels(
     let slowest = entries.last().map_or(1, |(n, ..)| *n);
     reading.places = places.into_iter().collect::<Option<_>>().filter(|_| slowest == 1).unwrap_or_default();
     Ok(())
+}
+
+/// A group's evaluations in an outermost step, where the number stands if it is no name, and the group.
+type Entry = (u64, Option<Range<usize>>, u64);
+
+fn entries(script: &Script, list: &Range<usize>) -> Result<Vec<Entry>> {
+    let code = script.code();
+    let mut entries: Vec<Entry> = Vec::new();
+    for pair in script.split(list.start + 1..list.end - 1) {
+        let own = &code[pair.clone()];
+        let bad =
+            || Error::input("groups", own, "write each entry as (group, evaluations in an outermost step)");
+        if !(own.starts_with(['(', '[']) && script.is_bracketed(&pair)) {
+            return Err(bad());
+        }
+        let parts = script.split(pair.start + 1..pair.end - 1);
+        let [group, n] = <[Range<usize>; 2]>::try_from(parts).map_err(|_| bad())?;
+        let group = code[script.followed(group)].parse::<u64>().ok().filter(|g| *g < 32);
+        let range = || Error::input("groups", own, "a force group is a whole number from 0 to 31");
+        let group = group.ok_or_else(range)?;
+        if entries.iter().any(|(_, _, known)| *known == group) {
+            let remedy = format!("group {group} is listed twice, and would kick twice");
+            return Err(Error::input("groups", own, remedy));
+        }
+        let value = script.followed(n.clone());
+        entries.push((count("groups", &code[value.clone()])?, Some(n).filter(|n| *n == value), group));
+    }
+    Ok(entries)
 }
