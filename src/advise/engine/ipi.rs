@@ -221,7 +221,7 @@ fn direct<'a>(root: Node<'a, 'a>, text: &'a str) -> Vec<&'a str> {
 }
 
 /// hbar/k, in fs K.
-const THERMAL: f64 = 7638.232_6;
+const THERMAL: f64 = 7_638.232_6;
 
 /// What is to be known of a ring polymer: its modes vibrate beside those that are asked about.
 fn beads(root: Node, text: &str) -> Result<Option<String>> {
