@@ -507,7 +507,7 @@ impl Advise {
                 say(
                     "the text holds bonds, the Hessians given do not: add --constraints h-bonds if these are they",
                 );
-            } else if !self.period.is_empty() {
+            } else if self.bond.is_empty() {
                 say(
                     "the text holds bonds, and periods do not say which of them are bonds: leave those out, or name them, as --constraints OH",
                 );
@@ -516,7 +516,7 @@ impl Advise {
         if reading.hydrogen.is_some() && self.hmr.is_none() {
             if of_hessians {
                 say("the text has heavy hydrogens, which the Hessians given do not: add --hmr");
-            } else if !self.period.is_empty() {
+            } else if self.bond.is_empty() {
                 say(
                     "the text has heavy hydrogens, and periods have no masses: give those of the heavier molecule",
                 );

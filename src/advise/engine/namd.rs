@@ -172,7 +172,7 @@ pub(super) fn read(text: &str) -> Result<Reading> {
 fn better(error: Error, given: &str) -> Error {
     if given.starts_with(['$', '[', '{', '"']) {
         return Error::input(
-            &error.field().to_string(),
+            error.field(),
             given,
             format!("is no number, nor a name that the text sets once to one: {BETTER}"),
         );

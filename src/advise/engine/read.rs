@@ -23,12 +23,19 @@ pub fn read(texts: &[&str], outer: Option<&Rational>) -> Result<Reading> {
         let remedy = "give the engine's input, not its output";
         return Err(Error::input("engine", "a text of more than 10 MB", remedy));
     }
-    let texts: Vec<&str> = texts.iter().map(|text| text.strip_prefix('\u{feff}').unwrap_or(text)).collect();
+    let texts: Vec<&str> = texts.iter().map(|text| unmarked(text)).collect();
     let mut reading = of_texts(&texts, outer)?;
     if let Some(remark) = not_nested(&reading.scheme) {
         reading.remarks.push(format!("{} itself refuses this: {remark}", reading.engine.name()));
     }
     Ok(reading)
+}
+
+/// Without a byte order mark, read as UTF-8 or as Latin-1.
+fn unmarked(text: &str) -> &str {
+    let mark =
+        |text: &'_ str| ["\u{feff}", "\u{ef}\u{bb}\u{bf}"].into_iter().find(|mark| text.starts_with(mark));
+    mark(text).map_or(text, |mark| &text[mark.len()..])
 }
 
 fn of_texts(texts: &[&str], outer: Option<&Rational>) -> Result<Reading> {

@@ -104,14 +104,14 @@ impl Interval {
     /// "nstlist = 10 (the default)", where it is no multiple of so many inner steps as the engine wants.
     pub fn amiss(&self, outer: u64) -> Option<String> {
         let is_default = if self.key.is_some() { " (the default)" } else { "" };
-        let is_sound = self.steps % outer == 0 || (self.or_part && outer % self.steps == 0);
+        let is_sound = self.steps.is_multiple_of(outer) || (self.or_part && outer.is_multiple_of(self.steps));
         (!is_sound).then(|| format!("{} = {}{is_default}", self.name, self.steps))
     }
 
     /// The next one that is a multiple of so many innermost steps; `None` where a default is one.
     fn written(&self, outer: u64) -> Option<u64> {
         let unit = self.of.div_ceil(outer) * outer;
-        let is_part = self.or_part && outer % self.steps == 0;
+        let is_part = self.or_part && outer.is_multiple_of(self.steps);
         let steps = if is_part { self.steps } else { self.steps.div_ceil(unit) * unit };
         (self.key.is_none() || steps != self.steps).then_some(steps)
     }
