@@ -3,6 +3,7 @@
 #![cfg(feature = "advise")]
 
 use kickdrift::advise::engine::{Engine, Reading, not_nested, read};
+use kickdrift::advise::unit::TimeUnit;
 use kickdrift::advise::unit::decimal;
 use kickdrift::error::{Error, Kind};
 use kickdrift::number::Rational;
@@ -257,9 +258,9 @@ fn what_an_engine_refuses_is_said_and_what_is_not_symplectic_is_refused() {
             .unwrap();
     assert_eq!(steps(&reading), "1,2,3");
     assert_eq!(reading.remarks, ["NAMD itself refuses this: 3 fs is no multiple of 2 fs"]);
-    assert!(not_nested(&of(TEXTS[4].1).unwrap().scheme).is_none());
+    assert!(not_nested(&of(TEXTS[4].1).unwrap().scheme, TimeUnit::Femtoseconds).is_none());
     for (text, field) in [
-        ("units lj\npair_style lj/cut 2.5\ntimestep 0.005\n", "units"),
+        ("units furlongs\npair_style lj/cut 2.5\ntimestep 0.005\n", "units"),
         ("dt = 0.002\nmts = yes\nmts-levels = 3\n", "mts-levels"),
         ("units real\ntimestep ${dt}\n", "timestep"),
         ("i = MTSIntegrator(dt, [(0,1)])", "dt"),
@@ -422,7 +423,9 @@ fn what_an_engine_wants_to_be_multiples_of_the_factor_is_rewritten_with_it() {
 fn an_outer_step_that_no_engine_runs_is_answered_by_those_beside_it() {
     use kickdrift::advise::Scheme;
     use kickdrift::advise::engine::nested_beside;
-    let beside = |inner: Rational, outer: Rational| nested_beside(&Scheme::new(vec![inner, outer]).unwrap());
+    let beside = |inner: Rational, outer: Rational| {
+        nested_beside(&Scheme::new(vec![inner, outer]).unwrap(), TimeUnit::Femtoseconds)
+    };
     assert_eq!(
         beside(ratio(1, 2), ratio(21, 5)).unwrap(),
         "4.2 fs is no multiple of 0.5 fs, so no engine runs it; 4 fs (8) and 4.5 fs (9) are"

@@ -43,6 +43,7 @@ class Advisable(Protocol):
         constraints: str | None,
         hmr: Exact | None,
         levers: bool,
+        harmonic: bool,
     ) -> Any: ...
 
 
@@ -61,13 +62,14 @@ class Advised(Document):
     def status(self) -> str:
         """The first scheme: ``safe``, ``caution`` (proven stable, beyond a published limit), ``near`` (an unstable
         interval is within the band), ``island`` (stable above an unstable interval), ``unstable``, or of Hessians ``not
-        told`` within their accuracy. Of forces that are no gradient what the steps add to their growth: ``little``,
+        told`` within their accuracy; of periods ``not told`` without the fastest one. Of forces that are no gradient what the steps add to their growth: ``little``,
         ``much``, ``not told``."""
         return str(self.schemes[0]["status"])
 
     @property
     def safe(self) -> Number | None:
-        """The longest outer step of the first scheme, fs, that is proven stable for the whole band and below T/3."""
+        """The longest outer step of the first scheme, fs, that is proven stable for the whole band and below what is
+        published: T/3 of the fastest motion, and of each clock's own forces T/6.28."""
         return _number(self.schemes[0]["safe"])
 
     @property
@@ -269,6 +271,7 @@ def advise(
     hmr: Exact | None = None,
     levers: bool = True,
     all_modes: bool = False,
+    harmonic: bool = False,
 ) -> Advice: ...
 
 
@@ -284,6 +287,7 @@ def advise(
     constraints: str | None = None,
     hmr: Exact | None = None,
     levers: bool = True,
+    harmonic: bool = False,
     **made: Any,
 ) -> SystemAdvice: ...
 
@@ -302,6 +306,7 @@ def advise(
     hmr: Exact | None = None,
     levers: bool = True,
     all_modes: bool = False,
+    harmonic: bool = False,
     **made: Any,
 ) -> Advice | SystemAdvice:
     """Say which steps are safe for these periods, for how long, and why.
@@ -311,7 +316,8 @@ def advise(
     periods : what vibrates
         A mapping of str to Time, or a sequence of Time: the periods of the forces, fs, wavenumbers as ``"3700/cm"``, or
         ``"water"``, ``"protein"`` (in water), ``"peptide"`` (in vacuum) for what nonbonded forces have there; the last
-        ones are on the slower clocks. Or a molecule: a :class:`System`, the path of a system file, OpenMM's
+        ones are on the slower clocks. Of ``"fast"`` a typical one by name, as ``"protein,h-bonds"`` or ``"water,rigid"``.
+        Without the fastest period nothing is called safe. Texts without a unit are plain numbers, where all times are. Or a molecule: a :class:`System`, the path of a system file, OpenMM's
         ``Simulation`` or ``System``, ASE's ``Atoms``, an instance of LAMMPS, which is asked for :meth:`System.advise`.
     steps : sequence of Time, or a sequence of such
         A scheme, from the innermost to the outermost step, fs; or several schemes. Of OpenMM's ``System`` also a
@@ -337,6 +343,8 @@ def advise(
         Whether to say what would let the step grow.
     all_modes : bool
         The periods are the shortest of all motions on their clocks, so that it is known whether a faster one exists.
+    harmonic : bool
+        The bonds are harmonic: nothing published bounds a clock's own step, which else stays below T/6.28.
     **made
         What else makes the system of OpenMM's, ASE's or LAMMPS's: the keywords of :func:`kickdrift.openmm.system`
         (``positions``, ``topology``, ``integrator`` and so on), :func:`kickdrift.ase.system` (``groups``) or
@@ -375,6 +383,7 @@ def advise(
             constraints=constraints,
             hmr=hmr,
             levers=levers,
+            harmonic=harmonic,
         )
         return told
     known(made, advise, elsewhere=_ENGINES)
@@ -388,7 +397,7 @@ def advise(
     given["bond"] = [f"{_name('bonds', name)}:{value}" for name, value in (bonds or {}).items()]
     given["on"] = [f"{_name('on', name)}={clock}" for name, clock in (on or {}).items()]
     scales = (band, length, friction, constraints, hmr)
-    every = asked(given, rest, engine, scales, levers=levers, all_modes=all_modes)
+    every = asked(given, rest, engine, scales, levers=levers, all_modes=all_modes, harmonic=harmonic)
     return Advice(every.render("json"), every.render("text"), every)
 
 
@@ -445,6 +454,7 @@ def asked(
     place: str | Mapping[str, Any] = "",
     levers: bool = True,
     all_modes: bool = False,
+    harmonic: bool = False,
 ) -> Asked:
     """The question about what is given, and what all advice is asked with: the band, the length of the run, friction,
     constraints, the mass of hydrogens."""
@@ -462,6 +472,7 @@ def asked(
         "hmr": hmr if hmr is None or isinstance(hmr, str) else text("hmr", hmr),
         "no_levers": None if levers else "true",
         "all_modes": "true" if all_modes else None,
+        "harmonic": "true" if harmonic else None,
     }
     names = [
         f"engine{n}" if own == fspath(path) else fspath(path)

@@ -333,6 +333,7 @@ class Bands:
         constraints: str | None = None,
         hmr: Exact | None = None,
         levers: bool = False,
+        harmonic: bool = False,
     ) -> Advice:
         """Which outer steps are safe for these bands, as :func:`kickdrift.advise` of periods says.
 
@@ -367,6 +368,7 @@ class Bands:
             length=length,
             friction=friction,
             levers=levers,
+            harmonic=harmonic,
             # All, but for the probability that stands above.
             all_modes=True,
         )

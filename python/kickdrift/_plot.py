@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from itertools import cycle
@@ -189,7 +190,7 @@ def _image(
     return own.imshow(values.T, origin="lower", extent=extent, aspect="auto", interpolation="nearest", **how)
 
 
-_PUBLISHED, _NOT, _PROVEN = "the same, beyond T/3: published drift", "not to be recommended", "unstable, proven"
+_PUBLISHED, _NOT, _PROVEN = "the same, beyond what is published", "not to be recommended", "unstable, proven"
 
 
 def _bars(own: Axes, place: int, parts: Sequence[tuple[float, float, str]]) -> None:
@@ -203,21 +204,23 @@ def _bars(own: Axes, place: int, parts: Sequence[tuple[float, float, str]]) -> N
 
 
 def advice(document: Mapping[str, Any], ax: Axes | None) -> Axes:
-    """Bars over the outer step of the first scheme: proven for the band, the same beyond T/3, not advised, unstable."""
+    """Bars over the outer step of the first scheme: proven for the band, the same beyond what is published, not advised, unstable."""
     own = axes(ax)
     schemes = document["schemes"]
     rows = [row for row in document["rows"] if row["scheme"] == 1]
-    thirds = {mode["name"]: mode["third"]["lo"] for mode in document["modes"]}
+    published = _published(document)
+    is_known = schemes[0]["status"] != "not told" and schemes[0]["needs"] is None
     alone = len(document["input"]["schemes"][0]) == 1
     outer = [float(Fraction(scheme["outer"])) for scheme in schemes]
     known = [row[f"{which}_{end}"] for row in rows for which in _INTERVALS for end in ("lower", "upper")]
     right = 1.12 * max([end["hi"] for end in known if end is not None] + outer)
     for place, row in enumerate(rows):
         edge = (row["first_lower"] or {"lo": 0.0})["lo"] * (1 - float(Fraction(document["input"]["band"])))
-        third = edge if alone else min(edge, thirds[row["mode"]])
+        edge = edge if is_known else 0.0
+        least = min(edge, published)
         unstable = {(row[f"{which}_lower"]["lo"], (row[f"{which}_upper"] or {"hi": right})["hi"])
                     for which in _INTERVALS if row[f"{which}_lower"] and (alone or row[f"{which}_upper"])}  # fmt: skip
-        parts = [(0.0, third, "proven stable, all periods in the band"), (third, edge, _PUBLISHED), (edge, right, _NOT)]
+        parts = [(0.0, least, "proven stable, all periods in the band"), (least, edge, _PUBLISHED), (edge, right, _NOT)]
         _bars(own, place, parts + [(*ends, _PROVEN) for ends in sorted(unstable)])
     for number, step in enumerate(outer):
         own.axvline(step, color=COLOURS["ink"], linewidth=0.9, label="" if number else "the schemes' steps")
@@ -226,9 +229,19 @@ def advice(document: Mapping[str, Any], ax: Axes | None) -> Axes:
         own.axvline(safe, color=COLOURS["ink"], linestyle="--", linewidth=0.9, label="recommended")
     own.set_yticks(range(len(rows)), [row["mode"] for row in rows])
     own.set_xlim(0, right)
-    own.set_xlabel("outer step (fs)")
+    own.set_xlabel("outer step" if "plain_time" in document["input"] else "outer step (fs)")
     own.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, frameon=False)
     return own
+
+
+def _published(document: Mapping[str, Any]) -> float:
+    """What bounds the outermost step beside linear theory: T/6.28 of its own forces, T/3 of the others."""
+    last = len(document["input"]["schemes"][0])
+    shortest = {clock: min(mode["period"]["lo"] for mode in document["modes"] if mode["clock"] == clock)
+                for clock in {mode["clock"] for mode in document["modes"]}}  # fmt: skip
+    is_lifted = last == 1 and "harmonic" in document["input"]
+    turn = [shortest[last] / (2 * math.pi)] if last in shortest and not is_lifted else []
+    return min([period / 3 for clock, period in shortest.items() if clock < last] + turn, default=math.inf)
 
 
 def system_advice(document: Mapping[str, Any], ax: Axes | None) -> Axes:

@@ -497,6 +497,7 @@ class System(Frozen):
         constraints: str | None = None,
         hmr: Exact | None = None,
         levers: bool = True,
+        harmonic: bool = False,
     ) -> SystemAdvice:
         """Say which steps are safe for these Hessians, with a unit of time, for how long, and why.
 
@@ -521,6 +522,8 @@ class System(Frozen):
             Hydrogens of this mass in amu, taken from their heavy atoms.
         levers : bool
             Whether to say what would let the step grow.
+        harmonic : bool
+            The bonds are harmonic: nothing published bounds a clock's own step, which else stays below T/6.28.
 
         Raises
         ------
@@ -544,6 +547,7 @@ class System(Frozen):
             scales,
             place=self._place(),
             levers=levers,
+            harmonic=harmonic,
         )
         warnings = self.decide().warnings
         # What a run does at these steps, where that is known to be about another state; then three sentences: what is

@@ -2,12 +2,15 @@
 
 use num_traits::{One, Zero};
 
+use super::beads::Beads;
+use super::caps::{Bound, Caps};
 use super::edges::Edges;
 use super::interval::{Intervals, Unstable};
-use super::levels::{Found, Levels, Scheme, longest_below, scaled};
+use super::levels::{Found, Levels, Scheme, scaled};
 use super::levers::Levers;
 use super::mode::Mode;
 use super::question::Question;
+use super::unit::TimeUnit;
 use crate::band::unstable_ratios;
 use crate::error::Result;
 use crate::named::named;
@@ -21,7 +24,7 @@ named! {
     /// The judgement of a scheme, the best first.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
     pub enum Status {
-        /// Proven stable for every period in the band, and below all that is published.
+        /// Proven stable for every period in the band, and below all that is published; of a clock without a period as far as [`Answer::needs`] says.
         Safe = "safe",
         /// Proven stable for every period in the band; beyond a published limit.
         Caution = "caution",
@@ -29,7 +32,7 @@ named! {
         Near = "near",
         /// Stable for the periods given, but above an unstable interval.
         Island = "island",
-        /// Within the accuracy of the measured stiffnesses no verdict is proven.
+        /// Within the accuracy of the measured stiffnesses no verdict is proven; or nothing is known of the fastest motion.
         NotTold = "not told",
         /// Unstable.
         Unstable = "unstable",
@@ -52,8 +55,10 @@ pub struct Row {
     pub inside: Option<Unstable>,
     /// Open intervals from the first one on, up to some way beyond the scheme and the first of them; at most 32.
     pub intervals: Vec<Unstable>,
-    /// Where it grows: the friction per fs above which that is masked (BAOAB), enclosed.
+    /// Where it grows: the friction per fs just above which that is masked (BAOAB), no smaller one doing so, enclosed.
     pub masking: Option<(f64, f64)>,
+    /// Whether every larger one is proven to mask it, too.
+    pub masking_stays: Option<bool>,
     /// Whether the friction given keeps it bounded.
     pub is_damped: Option<bool>,
     /// With two clocks, where it grows: with the inner step every ratio of steps from lo to hi, rational or not, is unstable; `None` where
@@ -88,11 +93,13 @@ pub struct Answer {
     /// Every outer step below this, in fs, at this ratio, is proven stable for every period in the band.
     pub band_edge: (f64, f64),
     /// The longest outer step, a multiple of the step before it, that is proven stable for every period in the band; `None`: not even
-    /// that step itself.
+    /// that step itself, or a clock is without a period.
     pub largest: Option<Rational>,
-    /// The longest multiple that is `largest` at most and below T/3 of the fastest mode.
+    /// The longest multiple that is `largest` at most and below what is published ([`Caps`]); `None` also where an inner step is not.
     pub safe: Option<Rational>,
-    /// Where nothing is known to be on the outermost clock: the shortest period there, in fs, for which the scheme is proven stable for
+    /// What bounds `safe`.
+    pub bound: Option<Bound>,
+    /// Where nothing is known to be on other clocks than the innermost: the shortest period there, in fs, for which the scheme is proven stable for
     /// every period in the band; rounded up.
     pub needs: Option<f64>,
     pub pairs: Vec<Pair>,
@@ -111,6 +118,15 @@ pub struct Advice {
     pub schemes: Vec<Answer>,
     /// Whether a clock is without a mode.
     pub silent: bool,
+    /// Whether nothing is known of the fastest clock: then no step is called safe.
+    pub lacks_fast: bool,
+    /// What bounds the steps beside linear theory.
+    pub caps: Caps,
+    /// Whether the bonds are said to be harmonic.
+    pub harmonic: bool,
+    pub beads: Option<Beads>,
+    /// Of all times.
+    pub unit: TimeUnit,
     /// Modes that constraints hold: they are on no clock.
     pub held: Vec<Mode>,
     /// Per fs.
@@ -134,8 +150,25 @@ impl Question {
         let fastest = faster.into_iter().max_by(|i, j| stiffness(i).cmp(stiffness(j))).expect("a mode");
         let silent = self.stiffest().iter().any(Option::is_none);
         let levers = if self.levers { Some(self.levers()?) } else { None };
-        let Question { modes, band, length, held, friction, all_modes, .. } = self;
-        Ok(Advice { fastest, silent, schemes, modes, band, length, held, friction, levers, all_modes })
+        let (lacks_fast, caps) = (self.lacks_fast(), self.caps());
+        let Question { modes, band, length, held, friction, all_modes, harmonic, beads, unit, .. } = self;
+        Ok(Advice {
+            fastest,
+            silent,
+            lacks_fast,
+            caps,
+            harmonic,
+            beads,
+            unit,
+            schemes,
+            modes,
+            band,
+            length,
+            held,
+            friction,
+            levers,
+            all_modes,
+        })
     }
 
     fn of_scheme(&self, scheme: &Scheme) -> Result<Answer> {
@@ -147,14 +180,20 @@ impl Question {
         let edge = ends.fold((f64::INFINITY, f64::INFINITY), |a, b| (a.0.min(b.0), a.1.min(b.1)));
         let shrink =
             |x: f64| from_f64_exact(x).map_or((x, x), |x| enclose_f64(&(x * (Rational::one() - &self.band))));
-        let largest = self.largest(scheme)?;
-        let third = self.third();
-        let safe = largest.as_ref().and_then(|largest| longest_below(scheme, largest, &third));
-        let outer = scheme.outer();
-        let status = if rows.iter().any(|row| !row.found.kind.is_stable()) {
+        let (caps, outer) = (self.caps(), scheme.outer());
+        let is_known = self.stiffest().iter().all(Option::is_some) && !self.lacks_fast();
+        let largest = if is_known { self.largest(scheme)? } else { None };
+        let (safe, bound) = caps.safe(scheme, largest.as_ref()).filter(|_| self.beads.is_none()).unzip();
+        let status = if self.lacks_fast() {
+            Status::NotTold
+        } else if rows.iter().any(|row| !row.found.kind.is_stable()) {
             Status::Unstable
         } else if in_band {
-            if *outer < third { Status::Safe } else { Status::Caution }
+            match () {
+                () if self.beads.is_some() => Status::NotTold,
+                () if caps.hold(scheme) => Status::Safe,
+                () => Status::Caution,
+            }
         } else if rows.iter().all(|row| row.is_before_first(outer)) {
             Status::Near
         } else {
@@ -175,16 +214,11 @@ impl Question {
             band_edge,
             largest,
             safe,
+            bound,
             needs,
             pairs,
             within_run,
         })
-    }
-
-    /// T/3 of the fastest mode, rounded down.
-    pub(super) fn third(&self) -> Rational {
-        let third = self.faster().into_iter().map(|i| self.modes[i].part(3).0).fold(f64::INFINITY, f64::min);
-        from_f64_exact(third).unwrap_or_else(Rational::zero)
     }
 
     /// One mass with the shortest periods of the band: the corner that covers all of it.
@@ -199,10 +233,12 @@ impl Question {
         let levels = Levels { scheme, stiffness: self.with(mode) };
         let found = levels.decide(&Limits::default())?;
         let tenfold_steps = (found.rate.0 > 0.0).then(|| tenfold(found.rate, scheme.outer()));
+        let (masking, masking_stays) = tenfold_steps.and_then(|_| levels.masking()).unzip();
         let mut row = Row {
             mode,
             tenfold_steps,
-            masking: tenfold_steps.and_then(|_| levels.masking()),
+            masking,
+            masking_stays,
             is_damped: self.friction.as_ref().and_then(|rate| levels.is_damped_by(rate)),
             found,
             ratios: None,
@@ -306,12 +342,14 @@ impl Question {
     /// See [`Answer::needs`].
     fn needs(&self, scheme: &Scheme, in_band: bool) -> Option<f64> {
         let mut corner = self.corner(scheme);
-        if !in_band || scheme.steps().len() < 2 || !corner.stiffness.last()?.is_zero() {
+        let silent: Vec<usize> =
+            (1..corner.stiffness.len()).filter(|&k| corner.stiffness[k].is_zero()).collect();
+        if !in_band || self.lacks_fast() || silent.is_empty() {
             return None;
         }
         let mut stable = |slow: f64| {
-            *corner.stiffness.last_mut().expect("at least two clocks") =
-                Laurent::from_rational(from_f64_exact(slow)?);
+            let own = Laurent::from_rational(from_f64_exact(slow)?);
+            silent.iter().for_each(|&k| corner.stiffness[k] = own.clone());
             corner.in_first_region(&Ball::one()).filter(|&holds| holds)
         };
         // From a period of 2 π 10^8 fs down.

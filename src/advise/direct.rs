@@ -8,15 +8,16 @@
 //! The advice rests on points: the multiples of the step before the outermost one, which are the outer steps that can be chosen beside it. Each is decided
 //! with the periods given and with all periods shorter by the band. Nothing is known of the steps between.
 
-use num_traits::{One, ToPrimitive, Zero};
+use num_traits::{One, ToPrimitive};
 
+use super::caps::Caps;
 use super::levels::Scheme;
 use super::names::Names;
 use super::question::{check_band, check_friction, check_length};
 use crate::error::{Error, Result};
 use crate::named::named;
 use crate::number::Rational;
-use crate::number::rational::{from_f64_exact, to_f64};
+use crate::number::rational::to_f64;
 use crate::system::friction::Damping;
 use crate::system::{Jacobians, Limits};
 
@@ -40,6 +41,8 @@ pub struct Direct {
     /// fs in the unit of time of the matrices.
     unit: Rational,
     names: Names,
+    /// Whether the bonds are said to be harmonic.
+    harmonic: bool,
 }
 
 named! {
@@ -94,7 +97,7 @@ pub struct DirectFinding {
     pub within_run: Option<bool>,
     /// The longest multiple up to which all are proven to add little, within the band too.
     pub largest: Option<Rational>,
-    /// The longest multiple that is `largest` at most and below T/3 of the fastest motion.
+    /// The longest multiple that is `largest` at most and below what is published ([`Caps`]); `None` also where an inner step is not.
     pub safe: Option<Rational>,
     /// The longest multiple up to which the friction given is proven to mask all growth.
     pub masked: Option<Rational>,
@@ -116,6 +119,8 @@ pub struct DirectFindings {
     pub length: Option<Rational>,
     /// Per fs.
     pub friction: Option<Rational>,
+    /// Whether the bonds are said to be harmonic.
+    pub harmonic: bool,
     pub schemes: Vec<DirectFinding>,
 }
 
@@ -133,7 +138,13 @@ struct Asked<'a> {
 impl Direct {
     /// From Jacobians whose unit of time is so many fs.
     pub fn new(jacobians: Jacobians, unit: Rational, names: Names) -> Direct {
-        Direct { jacobians, unit, names }
+        Direct { jacobians, unit, names, harmonic: false }
+    }
+
+    /// States whether the bonds are harmonic.
+    #[must_use]
+    pub fn with_harmonic_bonds(self, harmonic: bool) -> Direct {
+        Direct { harmonic, ..self }
     }
 
     /// The products of doubles that advice costs, about.
@@ -184,6 +195,7 @@ impl Direct {
             band: band.clone(),
             length: length.cloned(),
             friction: friction.cloned(),
+            harmonic: self.harmonic,
             schemes: schemes.iter().map(find).collect::<Result<_>>()?,
         })
     }
@@ -245,9 +257,12 @@ impl Direct {
             ladder.iter().take_while(|own| holds(own)).last().map(|own| own.outer.clone())
         };
         let largest = up_to(|own| own.adds == Adds::Little && own.in_band == Adds::Little);
-        let third = from_f64_exact(asked.fastest / 3.0).unwrap_or_else(Rational::zero);
-        let below = |own: &&Rung| own.outer < third && largest.as_ref().is_some_and(|all| own.outer <= *all);
-        let safe = ladder.iter().rfind(below).map(|own| own.outer.clone());
+        // Only the fastest of all motions is known.
+        let mut periods = vec![None; scheme.steps().len()];
+        periods[0] = Some(asked.fastest * (1.0 - 1e-9));
+        let caps = Caps::new(&periods, self.harmonic);
+        let safe =
+            if ladder.is_empty() { None } else { caps.safe(scheme, largest.as_ref()).map(|own| own.0) };
         let [adds, in_band] = self.adds(&at, asked)?;
         let rate = at.growth_rate().map(|own| self.per_fs(own));
         let added = rate.zip(asked.without.map(|own| self.per_fs(own)));

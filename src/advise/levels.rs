@@ -16,6 +16,7 @@
 
 use num_traits::{One, ToPrimitive, Zero};
 
+use super::unit::decimal;
 use crate::error::{Error, Result};
 use crate::number::rational::{enclose_f64, from_f64_exact};
 use crate::number::{Ball, ExactSign, Laurent, Rational, Real, Sign, bisected};
@@ -49,6 +50,15 @@ impl Scheme {
         if steps.iter().any(|step| step.sign() != Sign::Positive) {
             return Err(Error::input("steps", shown(), "a step must be positive"));
         }
+        if steps.windows(2).any(|pair| pair[0] == pair[1]) {
+            let mut once = steps.clone();
+            once.dedup();
+            let once = once.iter().map(|step| format!("{}fs", decimal(step))).collect::<Vec<_>>().join(",");
+            let remedy = format!(
+                "equal steps are one clock: write {once}, and put the modes of both on it, as --on OH=1,angle=1"
+            );
+            return Err(Error::input("steps", shown(), remedy));
+        }
         if steps.windows(2).any(|pair| pair[0] >= pair[1]) {
             return Err(Error::input(
                 "steps",
@@ -79,6 +89,11 @@ impl Scheme {
     /// The step whose multiple the outermost one is, for as many levels as there are; the step itself where it is alone.
     pub fn last_but_one(&self) -> &Rational {
         &self.steps[self.steps.len().saturating_sub(2)]
+    }
+
+    /// This scheme without its outermost step.
+    pub(crate) fn merged(&self) -> Result<Scheme> {
+        Scheme::new(self.steps[..self.steps.len() - 1].to_vec())
     }
 
     /// This scheme with another outermost step.
@@ -157,11 +172,12 @@ impl Levels<'_> {
         (0..self.stiffness.len()).collect()
     }
 
-    /// The friction per fs above which a resonance is masked, enclosed; `None` where nothing grows or the period is too long to decide.
-    pub fn masking(&self) -> Option<(f64, f64)> {
+    /// The friction per fs just above which a resonance is masked, enclosed, and whether all larger ones are proven to mask it; `None` where nothing
+    /// grows or the period is too long to decide.
+    pub fn masking(&self) -> Option<((f64, f64), bool)> {
         let found = masking(&self.clocks(&self.all()).ok()?).ok()??;
         let first = Ball::from_rational(self.scheme.inner(), BITS);
-        Some(found.rate.div(&first, BITS)?.to_f64_enclosure())
+        Some((found.rate.div(&first, BITS)?.to_f64_enclosure(), found.stays))
     }
 
     /// Whether this friction per fs keeps all bounded; `None` where that is not proven either way.

@@ -9,34 +9,19 @@
 use num_bigint::BigInt;
 use num_traits::{One, Zero};
 
+use super::caps::{Bound, Caps};
 use super::constraint::Constraints;
 use super::engine::not_nested;
-use super::levels::{Levels, Scheme, longest_below, scaled};
+use super::levels::{Levels, Scheme, scaled};
 use super::mode::Mode;
 use super::question::Question;
-use super::unit::decimal;
+use super::unit::{TimeUnit, decimal};
 use crate::error::Result;
-use crate::named::named;
 use crate::number::rational::{enclose_f64, from_f64_exact, ratio};
 use crate::number::{Ball, Laurent, Rational, Real};
 use crate::word::Trigonometric;
 
 const BITS: u32 = 96;
-
-named! {
-    /// The kind of bound on a step.
-    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-    pub enum Bound {
-        /// All periods of the band are proven stable below it.
-        Band = "band",
-        /// A third of the fastest period: published of kicks and drifts.
-        Third = "T/3",
-        /// A fifth of the shortest slow period, which is then followed by Verlet's rule.
-        SlowFifth = "slow T/5",
-        /// The friction given masks what grows for the periods given; nothing is proven of the band.
-        Friction = "friction, no band",
-    }
-}
 
 /// One way, and how far it goes; lengths in fs.
 #[derive(Clone, Debug)]
@@ -68,8 +53,9 @@ impl Lever {
     }
 
     /// A lever by friction: this rate per fs masks all growth up to this outer step.
-    pub(super) fn masked(step: Rational, inner: &Rational, rate: &Rational) -> Lever {
-        let name = format!("friction {}/ps", decimal(&(rate * Rational::from_integer(1000.into()))));
+    pub(super) fn masked(step: Rational, inner: &Rational, rate: &Rational, unit: TimeUnit) -> Lever {
+        let rate = decimal(&(rate * Rational::from_integer(unit.in_rates().into())));
+        let name = format!("friction {}", unit.rate(rate));
         Lever {
             step: Some((step, Bound::Friction)),
             inner: Some(inner.clone()),
@@ -77,22 +63,21 @@ impl Lever {
         }
     }
 
-    /// Evaluations a picosecond of what is kicked every `step` fs.
-    fn per_ps(step: &Rational) -> Rational {
-        Rational::from_integer(1000.into()) / step
+    /// Evaluations of the slowest force, a picosecond or a plain unit of time.
+    pub fn slow_per_ps(&self, unit: TimeUnit) -> Option<Rational> {
+        self.step.as_ref().map(|(step, _)| Rational::from_integer(unit.in_rates().into()) / step)
     }
 
-    pub fn slow_per_ps(&self) -> Option<Rational> {
-        self.step.as_ref().map(|(step, _)| Lever::per_ps(step))
-    }
-
-    pub fn fast_per_ps(&self) -> Option<Rational> {
-        self.step.as_ref().and(self.inner.as_ref()).map(Lever::per_ps)
+    pub fn fast_per_ps(&self, unit: TimeUnit) -> Option<Rational> {
+        self.step
+            .as_ref()
+            .and(self.inner.as_ref())
+            .map(|step| Rational::from_integer(unit.in_rates().into()) / step)
     }
 
     /// Linear systems a picosecond.
-    pub fn solves_per_ps(&self) -> Option<Rational> {
-        if self.way == Way::ImplicitExplicit { self.slow_per_ps() } else { None }
+    pub fn solves_per_ps(&self, unit: TimeUnit) -> Option<Rational> {
+        if self.way == Way::ImplicitExplicit { self.slow_per_ps(unit) } else { None }
     }
 }
 
@@ -209,7 +194,7 @@ impl Question {
     pub(super) fn levers(&self) -> Result<Levers> {
         let mut all = Levers::default();
         let scheme = &self.schemes[0];
-        if self.stiffest().iter().any(Option::is_none) {
+        if self.stiffest().iter().any(Option::is_none) || self.lacks_fast() {
             all.left_out
                 .push("a clock has no period, so no levers are computed that would let the step grow".into());
             return Ok(all);
@@ -241,16 +226,21 @@ impl Question {
         Ok(all)
     }
 
-    /// Kicks and drifts at this scheme: the steps are multiples of the one before the outermost one.
+    /// Kicks and drifts with the inner steps of this scheme: the outermost one is a multiple of the one before it, and the edges are those at the
+    /// ratio of the step to take, of the scheme itself where there is none.
     fn respa(&self, name: String, way: Way, scheme: &Scheme) -> Result<Lever> {
-        let (first, band_edge) = self.edges(scheme)?;
-        let third = self.third();
         let largest = self.largest(scheme)?;
         let one_clock = scheme.steps().len() == 1;
-        let step = below_third(scheme, largest.as_ref(), &third);
-        let step = match step {
-            Some((step, bound)) if one_clock => multiple(&step, &least()).map(|step| (step, bound)),
+        let step = match self.caps().safe(scheme, largest.as_ref()) {
+            Some((step, bound)) if one_clock => multiple(&step, &self.least()).map(|step| (step, bound)),
             own => own,
+        };
+        let (first, band_edge) = match &step {
+            Some((step, _)) if !one_clock && step == scheme.last_but_one() => {
+                self.merged()?.edges(&scheme.merged()?)?
+            }
+            Some((step, _)) if !one_clock => self.edges(&scheme.with_outer(step.clone())?)?,
+            _ => self.edges(scheme)?,
         };
         Ok(Lever {
             first: Some(first),
@@ -278,6 +268,29 @@ impl Question {
         let of =
             |x: f64| from_f64_exact(x).map_or((x, x), |x| enclose_f64(&(x * (Rational::one() - &self.band))));
         (of(lo).0, of(hi).1)
+    }
+
+    /// The same modes where the outermost step is the one before it: both are one clock.
+    fn merged(&self) -> Result<Question> {
+        let schemes = self.schemes.iter().map(Scheme::merged).collect::<Result<_>>()?;
+        let last = self.clocks() - 2;
+        let modes = self
+            .modes
+            .iter()
+            .cloned()
+            .map(|mode| Mode { clock: mode.clock.map(|own| own.min(last)), ..mode });
+        Ok(Question { modes: modes.collect(), schemes, ..self.clone() })
+    }
+
+    /// Steps of other ratios are multiples of this: of 0.01 fs, or of about a thousandth of the fastest period of plain times.
+    fn least(&self) -> Rational {
+        if self.unit == TimeUnit::Femtoseconds {
+            return least();
+        }
+        let fastest =
+            self.faster().into_iter().map(|i| self.modes[i].period().0).fold(f64::INFINITY, f64::min);
+        let power = (fastest.log10() - 3.0).round().clamp(-300.0, 300.0) as i32;
+        Rational::from_integer(10.into()).pow(power)
     }
 
     /// This question about other modes.
@@ -363,7 +376,7 @@ impl Question {
         let widest = (Rational::one() + &self.band) / &shorter;
         let rho = softest.and_then(|softest| slow.enclosure(BITS).div(&softest.enclosure(BITS), BITS));
         let rho = rho.map(|rho| rho.upper() * &widest * &widest);
-        let (inner, fifth) = (self.schemes[0].last_but_one(), self.slow(5).1);
+        let (inner, caps, least) = (self.schemes[0].last_but_one(), self.caps(), self.least());
         let beyond_verlet = self.rigid(slow);
         for (words, way) in SOLVED {
             let Way::Molly(method) = way else { continue };
@@ -374,18 +387,18 @@ impl Question {
             let first = self.faster().into_iter().filter_map(of_mode);
             let first = first.reduce(|a, b| (a.0.min(b.0), a.1.min(b.1)));
             let Some(band_edge) = method.coupled_edge(&corner[0], &corner[1]) else { continue };
-            let step = bounded(band_edge.0, fifth);
+            let step = bounded(band_edge.0, &caps, &least);
             all.rows.push(Lever {
                 first: first.filter(|_| !is_free),
                 is_free,
                 band_edge: Some(band_edge),
-                inner: part(&step, inner),
+                inner: caps.part_of(&step, inner),
                 step,
                 ..Lever::new(words.into(), way)
             });
         }
         let (band_edge, exact) = (self.shrunk(beyond_verlet), exact_root(slow));
-        let step = bounded(band_edge.0, fifth);
+        let step = bounded(band_edge.0, &caps, &least);
         let free = |name: &str, way: Way, inner: Option<Rational>| Lever {
             first: Some(beyond_verlet),
             exact: exact.clone(),
@@ -394,7 +407,7 @@ impl Question {
             step: step.clone(),
             ..Lever::new(name.into(), way)
         };
-        all.rows.push(free("MOLLY, equilibrium", Way::Equilibrium, part(&step, inner)));
+        all.rows.push(free("MOLLY, equilibrium", Way::Equilibrium, caps.part_of(&step, inner)));
         all.rows.push(free("implicit-explicit", Way::ImplicitExplicit, None));
     }
 
@@ -404,26 +417,20 @@ impl Question {
         Ball::from_integer(&2.into()).div(&root, BITS).expect("a stiffness is positive").to_f64_enclosure()
     }
 
-    /// The shortest period of the slowest clock over `parts`.
-    fn slow(&self, parts: u64) -> (f64, f64) {
-        let last = self.stiffest().last().copied().flatten().expect("every clock has a mode");
-        self.modes[last].part(parts)
-    }
-
     /// The longest outer steps at every ratio, the innermost step following.
     fn ratios(&self, all: &mut Levers) -> Result<()> {
         let own = &self.schemes[0];
-        if let Some(why) = not_nested(own) {
+        if let Some(why) = not_nested(own, self.unit) {
             all.left_out.push(format!("other ratios: {why}"));
             return Ok(());
         }
-        let third = self.third();
+        let caps = self.caps();
         for p in RATIOS {
             let scheme = own.with_outer(own.last_but_one() * Rational::from_integer(p.into()))?;
             let (first, band_edge) = self.edges(&scheme)?;
             // The unit of the outer step: the innermost one is a multiple of the least.
-            let unit = scheme.outer() / scheme.inner() * least();
-            let step = of_units(band_edge.0, &third, &unit);
+            let unit = scheme.outer() / scheme.inner() * self.least();
+            let step = of_units(band_edge.0, &caps, &scheme, &unit);
             let inner = step.as_ref().map(|(step, _)| step / scheme.outer() * scheme.inner());
             all.rows.push(Lever {
                 first: Some(first),
@@ -446,7 +453,7 @@ impl Question {
         (scheme.steps().len() > 1).then_some(())?;
         let found = (2..=MOST_MASKED).take_while(|&p| holds(p) == Some(true)).last()?;
         let step = scheme.last_but_one() * Rational::from_integer(found.into());
-        Some(Lever::masked(step, scheme.inner(), rate))
+        Some(Lever::masked(step, scheme.inner(), rate, self.unit))
     }
 }
 
@@ -458,22 +465,16 @@ fn exact_root(stiffness: &Laurent) -> Option<Laurent> {
     (power % 2 == 0).then(|| Laurent::monomial(Rational::new(above * 2, below), -power / 2))
 }
 
-/// The longest step of a scheme below a third of the fastest period, of those up to `largest`.
-pub(super) fn below_third(
+/// The longest multiple of `unit` below the band's edge and what is published, where all steps keep the ratios of a scheme.
+pub(super) fn of_units(
+    edge: f64,
+    caps: &Caps,
     scheme: &Scheme,
-    largest: Option<&Rational>,
-    third: &Rational,
+    unit: &Rational,
 ) -> Option<(Rational, Bound)> {
-    let step = longest_below(scheme, largest?, third)?;
-    let bound = if Some(&step) == largest { Bound::Band } else { Bound::Third };
-    Some((step, bound))
-}
-
-/// The longest multiple of `unit` below the band's edge and a third of the fastest period.
-pub(super) fn of_units(edge: f64, third: &Rational, unit: &Rational) -> Option<(Rational, Bound)> {
-    let edge = from_f64_exact(edge).unwrap_or_default();
-    let bound = if *third < edge { Bound::Third } else { Bound::Band };
-    multiple((&edge).min(third), unit).map(|step| (step, bound))
+    let edge = (from_f64_exact(edge).unwrap_or_default(), Bound::Band);
+    let (limit, bound) = caps.at_ratio(scheme).into_iter().chain([edge]).min_by(|a, b| a.0.cmp(&b.0))?;
+    multiple(&limit, unit).map(|step| (step, bound))
 }
 
 /// The longest multiple of `unit` that is shorter than `limit`.
@@ -482,19 +483,12 @@ pub(super) fn multiple(limit: &Rational, unit: &Rational) -> Option<Rational> {
     (count >= Rational::one()).then(|| count * unit)
 }
 
-/// The longest step below the band's edge, and no longer than a fifth of the slow period.
-pub(super) fn bounded(edge: f64, fifth: f64) -> Option<(Rational, Bound)> {
-    let [edge, fifth] = [edge, fifth].map(|x| from_f64_exact(x).unwrap_or_default());
-    let (own, accurate) = (multiple(&edge, &least())?, (fifth / least()).floor() * least());
-    if accurate >= own {
-        return Some((own, Bound::Band));
-    }
-    (accurate > Rational::zero()).then_some((accurate, Bound::SlowFifth))
-}
-
-/// The longest step up to `inner` of which `step` is a multiple.
-pub(super) fn part(step: &Option<(Rational, Bound)>, inner: &Rational) -> Option<Rational> {
-    step.as_ref().map(|(step, _)| step / (step / inner).ceil())
+/// The longest multiple of `unit` below the band's edge and the slow force's own bound.
+pub(super) fn bounded(edge: f64, caps: &Caps, unit: &Rational) -> Option<(Rational, Bound)> {
+    let edge = (from_f64_exact(edge).unwrap_or_default(), Bound::Band);
+    let slow = caps.slow().map(|own| (own.clone(), Bound::SlowTurn));
+    let (limit, bound) = slow.into_iter().chain([edge]).min_by(|a, b| a.0.cmp(&b.0))?;
+    multiple(&limit, unit).map(|step| (step, bound))
 }
 
 impl Levers {

@@ -6,7 +6,8 @@
 //! * **proven** (linear): the verdict at each scheme of steps, the unstable intervals about it, and the first stable region with a band of
 //!   periods: below its end no molecule whose periods are at least as long is unstable, however its modes are coupled (module `levels`,
 //!   proofs/REGION.md, THEORY section 11);
-//! * **published** (nonlinear): outer steps of T/3 and T/4, with their source ([`PUBLISHED`]);
+//! * **published** (nonlinear): the outer one of several steps near T/3 and T/4, a clock's own step beyond T/6.28, with their source
+//!   ([`published`]);
 //! * **unknown**: whether the periods given are the fastest, how anharmonic they are, what another temperature does.
 //!
 //! A stable step *above* the first unstable interval is an island: periods move, intervals can be 0.006 fs wide, so it is never recommended.
@@ -24,7 +25,9 @@
 //! | `source` | what decides about them: two levels, or any number |
 //! | `names` | what the motions of molecules are called |
 //! | `question`, `answer` | what is asked, what is answered |
-//! | `caution` | what is published |
+//! | `caution`, `caps` | what is published, and the steps below it |
+//! | `typical` | periods that are known by name |
+//! | `beads` | ring polymers |
 //! | [`engine`] | the input of simulation engines |
 //!
 //! ```
@@ -43,6 +46,8 @@
 //! ```
 
 mod answer;
+mod beads;
+mod caps;
 mod caution;
 mod constraint;
 mod direct;
@@ -56,17 +61,21 @@ mod molecule;
 mod names;
 mod question;
 mod source;
+mod typical;
 pub mod unit;
 
 pub use answer::{Advice, Answer, Pair, Row, Status};
-pub use caution::{Caution, PUBLISHED, SLOW, Slow};
+pub use beads::Beads;
+pub use caps::{Bound, Caps, shortest_of};
+pub use caution::{Caution, GROMPP, HEEDED, OF_MANY, OF_ONE, PRACTICE, Place, published};
 pub use constraint::Constraints;
 pub use direct::{Adds, Direct, DirectFinding, DirectFindings, Rung, TIMES};
 pub use interval::{Unstable, Worst};
 pub use levels::{Found, Levels, Scheme};
-pub use levers::{Bound, Engine, Lever, Levers, RATIOS, SOLVED, Way, heavy};
+pub use levers::{Engine, Lever, Levers, RATIOS, SOLVED, Way, heavy};
 pub use mode::{Bond, Mode, Origin};
 pub use molecule::{Finding, Findings, Group, MOST_PRODUCTS, Molecule};
 pub use names::{Names, Told};
-pub use question::Question;
+pub use question::{Question, place};
 pub use source::{Decided, Source};
+pub use typical::{FAST, SLOW, Typical};

@@ -13,7 +13,8 @@
 //! # Ok::<(), kickdrift::error::Error>(())
 //! ```
 
-use super::caution::{SLOW, Slow};
+use super::caution::Place;
+use super::typical::Typical;
 use super::unit::{self, Dimension};
 use crate::error::{Error, Result};
 use crate::number::{Ball, Laurent, Rational, Real};
@@ -24,7 +25,7 @@ pub enum Origin {
     Period,
     Wavenumber,
     /// A period that is known by name.
-    Slow(&'static Slow),
+    Typical(&'static Typical),
     /// E = k x²/2, as GROMACS and OpenMM write it.
     Half,
     /// E = K x², as Amber and CHARMM write it: k = 2 K.
@@ -37,7 +38,7 @@ impl Origin {
         match self {
             Origin::Period => "period",
             Origin::Wavenumber => "wavenumber",
-            Origin::Slow(own) => own.origin,
+            Origin::Typical(own) => own.origin,
             Origin::Half => "k of E = k x^2/2",
             Origin::Whole => "K of E = K x^2",
         }
@@ -95,7 +96,8 @@ impl Mode {
         Mode { name: name.trim().into(), origin, stiffness, clock: None, bond: None }
     }
 
-    /// `NAME=10fs`, `10fs`, `NAME=3700/cm`, `NAME=water`: a period, a wavenumber, or what one of [`SLOW`](super::SLOW) is called.
+    /// `NAME=10fs`, `10fs`, `NAME=3700/cm`, `slow=water`, `fast=water`: a period, a wavenumber, or what one of [`SLOW`](super::SLOW) or
+    /// [`FAST`](super::FAST) is called.
     ///
     /// # Errors
     /// Names the period, with a unit that is missing or unknown.
@@ -105,10 +107,13 @@ impl Mode {
         let (origin, period) = if unit::dimension(value) == Some(Dimension::Wavenumber) {
             let wavenumber = unit::measured("period", value, Dimension::Wavenumber)?;
             (Origin::Wavenumber, unit::period_of_wavenumber(&wavenumber).ok_or_else(power)?)
-        } else if let Some(slow) = Slow::of(value) {
-            (Origin::Slow(slow), unit::measured("period", &format!("{}fs", slow.period), Dimension::Time)?)
-        } else if value.trim().chars().all(|c| c.is_ascii_alphabetic()) && !value.trim().starts_with("pi") {
-            let known = SLOW.each_ref().map(|own| own.name).join(", ");
+        } else if let Some(known) = Typical::of(name, value) {
+            let period = format!("{}fs", known.period);
+            (Origin::Typical(known), unit::measured("period", &period, Dimension::Time)?)
+        } else if value.trim().starts_with(|c: char| c.is_ascii_alphabetic())
+            && !value.trim().starts_with("pi")
+        {
+            let known = Typical::all().map(Typical::asked).collect::<Vec<_>>().join(", ");
             let remedy =
                 format!("write a period and its unit, as 10fs, a wavenumber, as 3700/cm, or {known}");
             return Err(Error::input("period", value.trim(), remedy));
@@ -118,6 +123,19 @@ impl Mode {
         let turn = Laurent::monomial(Rational::from_integer(2.into()), 1);
         let frequency = turn.checked_div(&period).ok_or_else(power)?;
         Ok(Mode::new(name, origin, &frequency * &frequency))
+    }
+
+    /// `NAME=0.2`: a period that is a plain number, for times without a unit.
+    ///
+    /// # Errors
+    /// Names the period, where it has a unit, is no number, or is not positive.
+    pub fn from_plain_period(text: &str) -> Result<Mode> {
+        let (name, value) = text.split_once('=').unwrap_or((text, text));
+        let period = unit::plain("period", value)?;
+        let turn = Laurent::monomial(Rational::from_integer(2.into()), 1);
+        let power = || Error::input("period", text.trim(), "must be a rational times a power of pi");
+        let frequency = turn.checked_div(&period).ok_or_else(power)?;
+        Ok(Mode::new(name, Origin::Period, &frequency * &frequency))
     }
 
     /// `NAME:k=1106kcal/mol/A^2,15.999,1.008`: a force constant (k of E = k x²/2, K of E = K x²) and two masses in amu, behind them the
@@ -173,6 +191,18 @@ impl Mode {
         Ok(Mode { stiffness: &self.stiffness * &Laurent::from_rational(after), bond, ..self.clone() })
     }
 
+    /// Whether it is called slow, or known as a period of slow forces: then it is on no fast clock unless it is put there.
+    pub fn is_called_slow(&self) -> bool {
+        let by_origin = matches!(self.origin, Origin::Typical(own) if !own.is_fast);
+        by_origin || self.name.to_lowercase().starts_with("slow")
+    }
+
+    /// The same of the fastest clock.
+    pub fn is_called_fast(&self) -> bool {
+        let by_origin = matches!(self.origin, Origin::Typical(own) if own.is_fast);
+        by_origin || self.name.to_lowercase().starts_with("fast")
+    }
+
     /// Whether one of the two atoms of a bond is a hydrogen; `None` where this is no bond.
     pub fn is_bond_with_hydrogen(&self) -> Option<bool> {
         self.bond.as_ref().map(Bond::has_hydrogen)
@@ -200,6 +230,19 @@ impl Mode {
     pub fn part(&self, parts: u64) -> (f64, f64) {
         let parts = Ball::from_integer(&parts.into());
         self.period_ball().div(&parts, BITS).expect("at least one part").to_f64_enclosure()
+    }
+
+    /// The step that a published statement is about, enclosed.
+    pub fn at(&self, place: Place) -> (f64, f64) {
+        match place {
+            Place::Part(parts) => self.part(parts),
+            Place::Turn(k) => {
+                let pi = Ball::pi(BITS);
+                let angle = pi.div(&Ball::from_integer(&k.into()), BITS).expect("at least one step");
+                let over_pi = self.period_ball().div(&pi, BITS).expect("pi > 0");
+                over_pi.mul(&angle.sin(BITS), BITS).to_f64_enclosure()
+            }
+        }
     }
 
     /// T/π, velocity Verlet's own limit, enclosed.

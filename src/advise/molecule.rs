@@ -8,16 +8,16 @@ use std::sync::Arc;
 use num_traits::{ToPrimitive, Zero};
 
 use super::answer::Status;
-use super::levels::{Scheme, longest_below};
-use super::levers::{
-    Bound, Lever, Levers, MOST_MASKED, RATIOS, Way, below_third, bounded, least, of_units, part,
-};
+use super::caps::{Bound, Caps};
+use super::levels::Scheme;
+use super::levers::{Lever, Levers, MOST_MASKED, RATIOS, Way, bounded, least, of_units};
 use super::names::Names;
 use super::question::{check_band, check_friction, check_length};
 use super::source::Source;
+use super::unit::TimeUnit;
 use crate::error::{Error, Result};
 use crate::number::Rational;
-use crate::number::rational::{from_f64_exact, to_f64};
+use crate::number::rational::to_f64;
 use crate::system::friction::Damping;
 use crate::system::levels::{Growing, Method};
 use crate::system::{Holds, Removed};
@@ -31,6 +31,8 @@ pub struct Molecule {
     names: Names,
     /// How well the matrices are known, relative to their norms.
     accuracy: f64,
+    /// Whether the bonds are said to be harmonic.
+    harmonic: bool,
 }
 
 /// Fast modes of nearly one period.
@@ -74,8 +76,10 @@ pub struct Finding {
     pub band_edge: Option<f64>,
     /// The longest multiple of the inner step that is proven so, all shorter ones too.
     pub largest: Option<Rational>,
-    /// The longest multiple that is `largest` at most and below T/3 of the fastest mode.
+    /// The longest multiple that is `largest` at most and below what is published ([`Caps`]); `None` also where an inner step is not.
     pub safe: Option<Rational>,
+    /// What bounds `safe`.
+    pub bound: Option<Bound>,
     pub within_run: Option<bool>,
 }
 
@@ -98,6 +102,10 @@ pub struct Findings {
     pub between: Vec<f64>,
     pub removed: Option<Removed>,
     pub accuracy: f64,
+    /// What bounds the steps beside linear theory.
+    pub caps: Caps,
+    /// Whether the bonds are said to be harmonic.
+    pub harmonic: bool,
     pub band: Rational,
     pub length: Option<Rational>,
     /// Per fs.
@@ -134,7 +142,13 @@ const LEAST_SAMPLE: f64 = 1e-5;
 impl Molecule {
     /// From what decides, whose unit of time is so many fs.
     pub fn new(source: Arc<dyn Source>, unit: Rational, names: Names, accuracy: f64) -> Molecule {
-        Molecule { source, unit, names, accuracy }
+        Molecule { source, unit, names, accuracy, harmonic: false }
+    }
+
+    /// States whether the bonds are harmonic.
+    #[must_use]
+    pub fn with_harmonic_bonds(self, harmonic: bool) -> Molecule {
+        Molecule { harmonic, ..self }
     }
 
     /// The products that advice on so many degrees of freedom at these schemes costs, about: factorizations that bisect to edges and
@@ -184,14 +198,14 @@ impl Molecule {
         if schemes.is_empty() {
             return Err(Error::missing("steps", "give the inner and the outer step, as 0.5fs,4fs"));
         }
-        let groups = self.groups();
-        let Some(fastest) = groups.first().map(|group| group.period.0) else {
+        let (groups, caps) = (self.groups(), self.caps());
+        if groups.is_empty() {
             return Err(Error::input(
                 "fast stiffness",
                 "0",
                 "no force of the shorter step acts on what is free: give it the bonds, or leave it out and ask `kickdrift system FILE`",
             ));
-        };
+        }
         friction.map_or(Ok(()), check_friction)?;
         length.map_or(Ok(()), check_length)?;
         let mut known: Vec<(Vec<Rational>, AtRatio)> = Vec::new();
@@ -203,7 +217,7 @@ impl Molecule {
                 known.push((ratios.clone(), self.at_ratio(scheme, to_f64(band))?));
             }
             let (_, at) = known.iter().find(|(own, _)| *own == ratios).expect("just put there");
-            found.push(self.find(scheme, fastest, band, (length, friction), at)?);
+            found.push(self.find(scheme, &caps, band, (length, friction), at)?);
         }
         let mut slower: Vec<f64> =
             self.source.slower_frequencies().into_iter().map(|own| self.period(own * own)).collect();
@@ -212,6 +226,8 @@ impl Molecule {
             between: slower,
             removed: self.source.removed().cloned(),
             accuracy: self.accuracy,
+            caps,
+            harmonic: self.harmonic,
             band: band.clone(),
             length: length.cloned(),
             friction: friction.cloned(),
@@ -272,19 +288,18 @@ impl Molecule {
     fn find(
         &self,
         scheme: &Scheme,
-        fastest: f64,
+        caps: &Caps,
         band: &Rational,
         (length, friction): (Option<&Rational>, Option<&Rational>),
         at: &AtRatio,
     ) -> Result<Finding> {
         let (steps, part, unit) = (self.steps(scheme), to_f64(band), to_f64(&self.unit));
         let decided = self.source.decide(&steps, self.accuracy)?;
-        let third = from_f64_exact(fastest / 3.0).unwrap_or_else(Rational::zero);
         let is_in_band = self.source.covers_band(&steps, part, self.accuracy)?;
         let status = match decided.holds {
             Holds::Unstable => Status::Unstable,
             Holds::NotTold => Status::NotTold,
-            Holds::Stable if is_in_band && *scheme.outer() < third => Status::Safe,
+            Holds::Stable if is_in_band && caps.hold(scheme) => Status::Safe,
             Holds::Stable if is_in_band => Status::Caution,
             Holds::Stable if decided.is_in_first_region => Status::Near,
             Holds::Stable => Status::Island,
@@ -293,6 +308,7 @@ impl Molecule {
         let grows = rate.is_some_and(|rate| rate > 0.0);
         let time = rate.map(|rate| std::f64::consts::LN_10 / rate);
         let largest = self.largest(scheme, part, at.band_edge)?;
+        let (safe, bound) = caps.safe(scheme, largest.as_ref()).unzip();
         let damping = |rate: &Rational| self.source.damping(&steps, to_f64(rate) * unit);
         let masking = |_| self.source.masking_friction(&steps);
         let AtRatio { first, first_upper, growing, band_edge } = at.clone();
@@ -310,7 +326,8 @@ impl Molecule {
             name: decided.growing.as_ref().and_then(|[re, im]| self.names.motion(&[vec![re, im]])),
             atoms: decided.growing.as_ref().map(|own| self.names.atoms(&amplitudes(own))),
             band_edge,
-            safe: largest.as_ref().and_then(|largest| longest_below(scheme, largest, &third)),
+            safe,
+            bound,
             largest,
             within_run: length.filter(|_| grows).zip(time).map(|(length, time)| time <= to_f64(length)),
         })
@@ -324,8 +341,13 @@ impl Molecule {
         let (steps, part) = (self.steps(scheme), to_f64(band));
         let edge = self.source.band_edge(&steps, part, self.accuracy)?;
         let largest = self.largest(scheme, part, edge.map(|edge| edge * to_f64(&self.unit)))?;
-        let step = below_third(scheme, largest.as_ref(), &self.third());
-        self.lever_at(name, way, scheme, band, step)
+        let step = self.caps().safe(scheme, largest.as_ref());
+        // The edges are those at the ratio of the step to take.
+        let mut steps = scheme.steps().to_vec();
+        if let (Some((step, _)), [_, .., last]) = (&step, &mut steps[..]) {
+            last.clone_from(step);
+        }
+        self.lever_at((name, way), &steps, band, step)
     }
 
     /// The longest outer steps at every ratio, the inner step following; none but of two levels.
@@ -336,11 +358,12 @@ impl Molecule {
         if scheme.steps().len() != 2 {
             return Ok(Vec::new());
         }
+        let caps = self.caps();
         let at = |p: u64| {
             let unit = Rational::from_integer(p.into()) * least();
             let scheme = scheme.with_outer(scheme.inner() * Rational::from_integer(p.into()))?;
-            let mut lever = self.lever_at(format!("ratio {p}"), Way::Respa, &scheme, band, None)?;
-            lever.step = of_units(lever.band_edge.map_or(0.0, |edge| edge.0), &self.third(), &unit);
+            let mut lever = self.lever_at((format!("ratio {p}"), Way::Respa), scheme.steps(), band, None)?;
+            lever.step = of_units(lever.band_edge.map_or(0.0, |edge| edge.0), &caps, &scheme, &unit);
             lever.inner = lever.step.as_ref().map(|(step, _)| step / Rational::from_integer(p.into()));
             Ok(lever)
         };
@@ -349,19 +372,20 @@ impl Molecule {
 
     fn lever_at(
         &self,
-        name: String,
-        way: Way,
-        scheme: &Scheme,
+        (name, way): (String, Way),
+        steps: &[Rational],
         band: &Rational,
         step: Option<(Rational, Bound)>,
     ) -> Result<Lever> {
-        let (steps, unit) = (self.steps(scheme), to_f64(&self.unit));
-        let edge = self.source.band_edge(&steps, to_f64(band), self.accuracy)?;
+        let (in_units, unit) = (self.in_units(steps), to_f64(&self.unit));
+        let edge = self.source.band_edge(&in_units, to_f64(band), self.accuracy)?;
+        // The edge is found to a millionth; the step itself, and all that are smaller, are proven.
+        let proven = step.as_ref().map_or(0.0, |(step, _)| to_f64(step));
         Ok(Lever {
-            first: self.outward(self.source.first_unstable(&steps)?),
-            band_edge: edge.map(|edge| rounded_edge(edge * unit)),
+            first: self.outward(self.source.first_unstable(&in_units)?),
+            band_edge: edge.map(|edge| rounded_edge((edge * unit).max(proven.next_up()))),
             step,
-            inner: Some(scheme.inner().clone()),
+            inner: steps.first().cloned(),
             ..Lever::new(name, way)
         })
     }
@@ -382,13 +406,13 @@ impl Molecule {
         };
         let kernel = self.source.kernel()?.clone().with_method(method);
         let edge = rounded_edge(kernel.band_edge(1, to_f64(band), self.accuracy)? * to_f64(&self.unit));
-        let frequency = kernel.highest_slow_frequency();
-        let step = bounded(edge.0, self.period(frequency * frequency) / 5.0);
+        let (caps, unit) = (self.caps(), least());
+        let step = bounded(edge.0, &caps, &unit);
         let follows = method != Method::ImplicitExplicit;
         Some(Lever {
             first: self.outward(kernel.first_unstable(1)),
             band_edge: Some(edge),
-            inner: part(&step, scheme.inner()).filter(|_| follows),
+            inner: caps.part_of(&step, scheme.inner()).filter(|_| follows),
             step,
             ..Lever::new(name.into(), way)
         })
@@ -408,13 +432,16 @@ impl Molecule {
             }
             longest = Some(step);
         }
-        Ok(longest.map(|step| Lever::masked(step, scheme.inner(), rate)))
+        Ok(longest.map(|step| Lever::masked(step, scheme.inner(), rate, TimeUnit::Femtoseconds)))
     }
 
-    /// T/3 of the fastest mode.
-    fn third(&self) -> Rational {
-        let third = self.groups().first().and_then(|fastest| from_f64_exact(fastest.period.0 / 3.0));
-        third.unwrap_or_else(Rational::zero)
+    /// What bounds the steps beside linear theory: periods are rounded, so they are taken a little shorter.
+    fn caps(&self) -> Caps {
+        let shorter = |square: f64| (square > 0.0).then(|| self.period(square) * (1.0 - 1e-9));
+        let slower = self.source.slower_frequencies().into_iter().map(|own| shorter(own * own));
+        let fastest = self.source.fast_squares().last().copied().and_then(shorter);
+        let levels: Vec<Option<f64>> = [fastest].into_iter().chain(slower).collect();
+        Caps::new(&levels, self.harmonic)
     }
 
     /// The results that belong to the ratios of a scheme's steps.

@@ -2,8 +2,11 @@
 
 use num_traits::{One, Zero};
 
+use super::beads::Beads;
+use super::caps::Caps;
 use super::levels::Scheme;
 use super::mode::Mode;
+use super::unit::TimeUnit;
 use crate::error::{Error, Result};
 use crate::number::{Laurent, Rational};
 use crate::schedule::Schedule;
@@ -28,6 +31,12 @@ pub struct Question {
     pub(super) levers: bool,
     /// Whether the periods are the shortest of all motions on their clocks.
     pub(super) all_modes: bool,
+    /// Whether bonds are said to be harmonic: then a clock's own step has no bound but the proven one.
+    pub(super) harmonic: bool,
+    /// Ring polymers in place of atoms.
+    pub(super) beads: Option<Beads>,
+    /// The unit of all times.
+    pub(super) unit: TimeUnit,
     /// The highest cost of the advice.
     pub(super) limits: Limits,
 }
@@ -35,13 +44,35 @@ pub struct Question {
 /// Periods that are followed for a scheme: verdicts, edges of intervals, multiples of the inner step.
 const PERIODS: u64 = 1000;
 
+/// The same where edges are found by balls, of three clocks and more: 8 ms for each kick of a period, measured, at 5,000 kicks a ms.
+const PERIODS_OF_MANY: u64 = 40_000;
+
 /// Schemes and modes beyond these numbers are a slip of the keyboard.
 const MOST_SCHEMES: usize = 1000;
 const MOST_MODES: usize = 1000;
 
+/// Gives each mode without a clock one by its place: with K steps the last K − 1 modes are on the slower clocks, in order, and all before them on the
+/// fastest; with fewer modes than steps, each on the clock of its place. What is called fast comes before all others and is on the fastest clock, what is
+/// called slow comes last and is never there.
+pub fn place(modes: &mut [Mode], clocks: usize) {
+    let count = modes.len();
+    let rank = |mode: &Mode| u8::from(mode.is_called_slow()) + u8::from(!mode.is_called_fast());
+    let mut order: Vec<usize> = (0..count).collect();
+    order.sort_by_key(|&i| rank(&modes[i]));
+    for (i, at) in order.into_iter().enumerate() {
+        let mode = &mut modes[at];
+        let by_order = if count < clocks { i } else { (i + clocks).saturating_sub(count) };
+        let place = match () {
+            () if mode.is_called_fast() => 0,
+            () if mode.is_called_slow() && (count < clocks || by_order == 0) => clocks - 1,
+            () => by_order,
+        };
+        mode.clock.get_or_insert(place);
+    }
+}
+
 impl Question {
-    /// The question, if it makes sense. A mode without a clock gets one by its place: with K steps the last K − 1 modes are on the slower
-    /// clocks, in order, and all before them on the fastest; with fewer modes than steps, each on the clock of its place.
+    /// The question, if it makes sense; a mode without a clock gets one ([`place`]).
     ///
     /// # Errors
     /// No mode, no scheme, schemes with different numbers of steps, a clock that there is not, two modes of one name, a band outside [0, 1).
@@ -63,10 +94,9 @@ impl Question {
             return Err(Error::input("steps", given, "give every scheme as many steps"));
         }
         check_band(&band)?;
-        let count = modes.len();
-        for (i, mode) in modes.iter_mut().enumerate() {
-            let place = if count < clocks { i } else { (i + clocks).saturating_sub(count) };
-            let clock = *mode.clock.get_or_insert(place);
+        place(&mut modes, clocks);
+        for mode in &modes {
+            let clock = mode.clock.expect("just placed");
             if clock >= clocks {
                 let remedy =
                     format!("there are {clocks} steps: choose a clock from 1 to {clocks}, 1 the fastest");
@@ -91,6 +121,9 @@ impl Question {
             friction: None,
             levers: false,
             all_modes: false,
+            harmonic: false,
+            beads: None,
+            unit: TimeUnit::default(),
             limits: Limits::default(),
         })
     }
@@ -107,7 +140,11 @@ impl Question {
             Schedule::new(scheme.steps(), &vec![Rational::zero(); scheme.steps().len()])
                 .map_or(u64::MAX, |all| all.strikes())
         };
-        self.schemes.iter().map(|scheme| strikes(scheme).saturating_mul(PERIODS)).max().unwrap_or(0)
+        let is_many = self.clocks() > 2 || self.stiffest()[0].is_none();
+        let periods = if is_many { PERIODS_OF_MANY } else { PERIODS };
+        // Where balls find the edges, scheme by scheme.
+        let costs = self.schemes.iter().map(|scheme| strikes(scheme).saturating_mul(periods));
+        if is_many { costs.fold(0, u64::saturating_add) } else { costs.max().unwrap_or(0) }
     }
 
     /// # Errors
@@ -158,6 +195,36 @@ impl Question {
     #[must_use]
     pub fn knowing_all_modes(self, all_modes: bool) -> Question {
         Question { all_modes, ..self }
+    }
+
+    /// States whether the bonds are harmonic.
+    #[must_use]
+    pub fn with_harmonic_bonds(self, harmonic: bool) -> Question {
+        Question { harmonic, ..self }
+    }
+
+    /// Asks about ring polymers of so many beads.
+    #[must_use]
+    pub fn with_beads(self, beads: Option<Beads>) -> Question {
+        Question { beads: beads.filter(|own| own.count > 1), ..self }
+    }
+
+    /// States the unit of all times.
+    #[must_use]
+    pub fn in_units_of(self, unit: TimeUnit) -> Question {
+        Question { unit, ..self }
+    }
+
+    /// Whether nothing is known of the fastest clock: no mode is on it, or all are called slow where there is but one.
+    pub(super) fn lacks_fast(&self) -> bool {
+        let fast = |mode: &Mode| mode.clock == Some(0) && (self.clocks() > 1 || !mode.is_called_slow());
+        !self.modes.iter().any(fast)
+    }
+
+    /// What bounds the steps beside linear theory.
+    pub(super) fn caps(&self) -> Caps {
+        let period = |i: Option<usize>| i.map(|i| self.modes[i].period().0);
+        Caps::new(&self.stiffest().into_iter().map(period).collect::<Vec<_>>(), self.harmonic)
     }
 
     /// The number of clocks.

@@ -11,7 +11,7 @@
 //! assert_eq!(period.to_string(), "10"); // fs
 //! assert_eq!(stiffness.to_string(), "289219/625000"); // amu/fs²
 //! let error = measured("period", "10", Dimension::Time).unwrap_err();
-//! assert_eq!(error.to_string(), "period = 10: has no unit: write 10fs (of time there are fs, ps, ns, s)");
+//! assert_eq!(error.to_string(), "period = 10: has no unit: write 10fs (of time there are fs, ps, ns, s, au)");
 //! # Ok::<(), kickdrift::error::Error>(())
 //! ```
 
@@ -20,6 +20,54 @@ use num_bigint::BigInt;
 use crate::error::{Error, Result};
 use crate::number::parse::{parse, parse_rational};
 use crate::number::{ExactSign, Laurent, Rational, Sign};
+
+/// The unit that all times of a question have.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum TimeUnit {
+    #[default]
+    Femtoseconds,
+    /// None: times are plain numbers, as in Lennard-Jones units.
+    Plain,
+}
+
+impl TimeUnit {
+    /// A length of time, as written.
+    pub fn of(self, number: impl std::fmt::Display) -> String {
+        match self {
+            TimeUnit::Femtoseconds => format!("{number} fs"),
+            TimeUnit::Plain => number.to_string(),
+        }
+    }
+
+    /// A rate, as written.
+    pub fn rate(self, number: impl std::fmt::Display) -> String {
+        match self {
+            TimeUnit::Femtoseconds => format!("{number}/ps"),
+            TimeUnit::Plain => format!("{number} per unit of time"),
+        }
+    }
+
+    /// Of lengths and of rates, in the heads of tables.
+    pub fn names(self) -> [&'static str; 2] {
+        match self {
+            TimeUnit::Femtoseconds => ["fs", "1/ps"],
+            TimeUnit::Plain => ["time", "1/time"],
+        }
+    }
+
+    /// Units of time in that of rates.
+    pub fn in_rates(self) -> u32 {
+        match self {
+            TimeUnit::Femtoseconds => 1000,
+            TimeUnit::Plain => 1,
+        }
+    }
+}
+
+/// Whether a text is a number without a unit.
+pub fn is_plain(text: &str) -> bool {
+    dimension(text).is_none() && parse("number", text).is_ok()
+}
 
 /// The dimension of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,7 +98,9 @@ const fn unit(dimension: Dimension, names: &'static [&'static str], size: &'stat
 use Dimension::{Mass, Rate, Stiffness, Time, Wavenumber};
 
 /// Longer names stand before the shorter ones that they end in.
-const UNITS: [Unit; 14] = [
+const UNITS: [Unit; 15] = [
+    // ħ/E_h, measured (CODATA 2022); before the mass that its name ends in.
+    unit(Time, &["atomic_unit", "a.u.", "au"], "2.4188843265864e-2"),
     unit(Time, &["fs"], "1"),
     unit(Time, &["ps"], "1000"),
     unit(Time, &["ns"], "1000000"),
@@ -73,7 +123,7 @@ const UNITS: [Unit; 14] = [
 impl Dimension {
     fn words(self) -> &'static str {
         match self {
-            Time => "of time there are fs, ps, ns, s",
+            Time => "of time there are fs, ps, ns, s, au",
             Wavenumber => "of wavenumbers there is 1/cm",
             Mass => "of mass there is amu",
             Stiffness => "of force constants there are kcal/mol/A^2, kJ/mol/nm^2, eV/A^2, N/m",
@@ -136,6 +186,23 @@ pub fn measured(field: &str, text: &str, dimension: Dimension) -> Result<Laurent
     }
     let size = parse_rational("unit", unit.size).expect("the table of units is sound");
     Ok(&number * &Laurent::from_rational(size))
+}
+
+/// A positive number without a unit.
+///
+/// # Errors
+/// A unit, no number, a number that is not positive, named by `field`.
+pub fn plain(field: &str, text: &str) -> Result<Laurent> {
+    if dimension(text).is_some() {
+        let remedy = "has a unit, and other times have none: write all times as plain numbers, or all with their units";
+        return Err(Error::input(field, text.trim(), remedy));
+    }
+    let number = parse(field, text)?;
+    if number.sign() == Sign::Positive {
+        Ok(number)
+    } else {
+        Err(Error::input(field, text.trim(), "must be positive"))
+    }
 }
 
 /// As [`measured`], for numbers without π.

@@ -2,29 +2,28 @@
 
 #[cfg(feature = "figure")]
 use plot::Figure;
-use serde_json::{Map, Value, json};
 
 use super::asking::{Fields, Question, Work, question};
-use super::field::{Field, notation, read};
 use crate::advise::engine::{self, Reading};
-use crate::advise::unit::{self, Dimension, decimal};
+use crate::advise::unit::{self, Dimension, TimeUnit, decimal};
 use crate::advise::{
-    self, Advice, Bond, Constraints, DirectFindings, Findings, Levers, MOST_PRODUCTS, Mode, Molecule, Origin,
-    SLOW, SOLVED, Scheme, Way,
+    self, Advice, Beads, Constraints, DirectFindings, Findings, Levers, MOST_PRODUCTS, Mode, Molecule,
+    SOLVED, Scheme, Way,
 };
 use crate::error::{Error, Result};
+use crate::number::Rational;
 use crate::number::parse::parse_rational;
-use crate::number::{ExactSign, Rational, Sign};
 use crate::report::advise as report;
 use crate::report::document::Document;
 use crate::scene::{SystemFile, SystemScene, of_archive};
 use crate::system::Limits;
-use num_traits::Zero;
 
 question! {
     /// Which steps are safe, in the words of those who ask.
     args struct Advise {
-        /// A period or wavenumber of a force, as OH=10fs, 3700/cm or slow=water; the last ones are on the slower clocks
+        /// A period or wavenumber of a force, as OH=10fs, 3700/cm, slow=water or fast=protein,h-bonds; the last ones are on the slower clocks
+        ///
+        /// Where no time has a unit all are plain numbers, as --period bond=0.2 --steps 0.005,0.02 in Lennard-Jones units.
         #[arg(long, value_name = "[NAME=]T")]
         period: Vec<String>,
         /// A bond: k of E = k x^2/2 or K of E = K x^2, two masses in amu, the heavy atom's hydrogens if not 1
@@ -62,6 +61,9 @@ question! {
         /// The periods given are the shortest of all motions on their clocks: no faster one is left unknown.
         #[arg(long)]
         all_modes: bool,
+        /// The bonds are harmonic: a clock's own step may be longer than T/6.28.
+        #[arg(long)]
+        harmonic: bool,
         /// The file of Hessians in place of periods: one of a system, or FILE.npz.
         #[arg(skip)]
         file: Option<String>,
@@ -94,126 +96,12 @@ question! {
         no_levers: bool,
         /// Whether the periods are the shortest of all motions on their clocks.
         all_modes: bool,
-    }
-}
-
-/// One of several that make a field.
-trait Item: Sized {
-    fn of(name: &str, value: &Value) -> Result<Self>;
-    fn shown(&self) -> Value;
-}
-
-impl<T: Item> Field for Vec<T> {
-    fn of(given: Option<&Value>, name: &str) -> Option<Result<Self>> {
-        let one = |(k, value): (usize, &Value)| T::of(&format!("{name}[{k}]"), value);
-        Some(match given {
-            None => Ok(Vec::new()),
-            Some(Value::Array(all)) => all.iter().enumerate().map(one).collect(),
-            Some(other) => Err(Error::input(name, other, "write a list")),
-        })
-    }
-
-    fn shown(&self) -> Option<Value> {
-        (!self.is_empty()).then(|| self.iter().map(T::shown).collect())
-    }
-}
-
-impl Item for String {
-    fn of(name: &str, value: &Value) -> Result<Self> {
-        let text = value.as_str().map(Into::into);
-        text.ok_or_else(|| Error::input(name, value, "write a text"))
-    }
-
-    fn shown(&self) -> Value {
-        self.as_str().into()
-    }
-}
-
-impl Item for Scheme {
-    fn of(name: &str, value: &Value) -> Result<Self> {
-        let steps = Vec::<String>::of(Some(value), name).transpose()?.unwrap_or_default();
-        Scheme::new(steps.iter().map(|step| parse_rational(name, step)).collect::<Result<_>>()?)
-    }
-
-    fn shown(&self) -> Value {
-        self.steps().iter().map(ToString::to_string).collect()
-    }
-}
-
-notation! {
-    Origin: origin, |own: &Origin| own.name();
-}
-
-fn origin(field: &str, text: &str) -> Result<Origin> {
-    let plain = [Origin::Period, Origin::Wavenumber, Origin::Half, Origin::Whole];
-    let all: Vec<Origin> = plain.into_iter().chain(SLOW.iter().map(Origin::Slow)).collect();
-    let names = all.iter().map(|own| own.name()).collect::<Vec<_>>().join(", ");
-    let found = all.into_iter().find(|own| own.name() == text);
-    found.ok_or_else(|| Error::input(field, text, format!("is none of {names}")))
-}
-
-impl Item for Mode {
-    fn of(name: &str, value: &Value) -> Result<Self> {
-        let given = value.as_object().ok_or_else(|| Error::input(name, value, "write an object"))?;
-        let at = |error: Error| {
-            let field = format!("{name}.{}", error.field());
-            error.at(field)
-        };
-        Mode::of_fields(given).map_err(at)
-    }
-
-    fn shown(&self) -> Value {
-        let mut shown = json!({"name": self.name, "from": self.origin.name(), "clock": self.clock.map(|k| k + 1), "stiffness": self.stiffness.to_string()});
-        if let Some(bond) = &self.bond {
-            shown["bond"] = json!({"masses": bond.masses.each_ref().map(ToString::to_string), "hydrogens": bond.hydrogens});
-            if let Some(heavy) = &bond.heavy {
-                shown["bond"]["heavy"] = heavy.to_string().into();
-            }
-        }
-        shown
-    }
-}
-
-fn bond(given: &Value) -> Result<Bond> {
-    let form = || {
-        Error::input("bond", given, "write {\"masses\": [M1, M2], \"hydrogens\": 1 to 4}, positive, in amu")
-    };
-    let own = given.as_object().ok_or_else(form)?;
-    super::field::known(own, &["masses", "hydrogens", "heavy"])?;
-    let positive = |value: &Value| {
-        super::field::parsed::<Rational>("bond", value).ok().filter(|mass| *mass > Rational::zero())
-    };
-    let masses: Vec<Rational> =
-        own.get("masses").and_then(Value::as_array).into_iter().flatten().filter_map(positive).collect();
-    let hydrogens =
-        own.get("hydrogens").and_then(Value::as_u64).filter(|n| (1..=4).contains(n)).ok_or_else(form)?;
-    let heavy = own.get("heavy").map(|mass| positive(mass).ok_or_else(form)).transpose()?;
-    let masses: [Rational; 2] = masses.try_into().map_err(|_| form())?;
-    Ok(Bond::new(masses, hydrogens as u8, heavy))
-}
-
-impl Mode {
-    fn of_fields(given: &Map<String, Value>) -> Result<Mode> {
-        super::field::known(given, &["name", "from", "clock", "stiffness", "bond"])?;
-        let clock = match given.get("clock") {
-            None | Some(Value::Null) => None,
-            Some(own) => {
-                let place = own.as_u64().and_then(|own| usize::try_from(own).ok()?.checked_sub(1));
-                let counted = || Error::input("clock", own, "clocks are counted from 1");
-                Some(place.ok_or_else(counted)?)
-            }
-        };
-        let mode = Mode {
-            name: read("name", given, None)?,
-            origin: read("from", given, None)?,
-            stiffness: read("stiffness", given, None)?,
-            clock,
-            bond: given.get("bond").map(bond).transpose()?,
-        };
-        match mode.stiffness.sign() {
-            Sign::Positive => Ok(mode),
-            _ => Err(Error::input("stiffness", &mode.stiffness, "a mode vibrates: it must be positive")),
-        }
+        /// Whether the bonds are harmonic.
+        harmonic: bool,
+        /// Ring polymers in place of atoms.
+        beads: Option<Beads>,
+        /// Whether all times are plain numbers, and not in fs.
+        plain_time: bool,
     }
 }
 
@@ -257,7 +145,8 @@ impl Question for Advised {
             let held = self.constrained.clone().unwrap_or_default();
             let question = advise::Question::new(modes, self.schemes.clone(), self.band.clone())?;
             let question = question.holding(held).within(work.limits()).with_levers(!self.no_levers);
-            let mut question = question.knowing_all_modes(self.all_modes);
+            let question = question.knowing_all_modes(self.all_modes).with_harmonic_bonds(self.harmonic);
+            let mut question = question.with_beads(self.beads.clone()).in_units_of(self.unit());
             if let Some(length) = &self.length {
                 question = question.of_length(length.clone())?;
             }
@@ -270,7 +159,7 @@ impl Question for Advised {
         let scene = work.read(file)?;
         let (length, friction) = (self.length.as_ref(), self.friction.as_ref());
         let size = scene.model().size();
-        if let Some(direct) = scene.direct()? {
+        if let Some(direct) = scene.direct()?.map(|own| own.with_harmonic_bonds(self.harmonic)) {
             let limits = Limits { products: work.budget.unwrap_or(MOST_PRODUCTS), ..Limits::default() };
             let seconds = direct.cost(&self.schemes)? as f64 / PRODUCTS_A_SECOND;
             work.announce(&format!("advice on {size} degrees of freedom"), seconds);
@@ -284,7 +173,8 @@ impl Question for Advised {
         let cost = Molecule::allow(size, &schemes, friction.is_some(), work.budget)?;
         let seconds = cost as f64 / PRODUCTS_A_SECOND;
         work.announce(&format!("advice on {size} degrees of freedom"), seconds);
-        let mut findings = scene.molecule()?.0.advise(&self.schemes, &self.band, length, friction)?;
+        let molecule = scene.molecule()?.0.with_harmonic_bonds(self.harmonic);
+        let mut findings = molecule.advise(&self.schemes, &self.band, length, friction)?;
         if levers {
             findings.levers = Some(self.of_hessians(file, &scene, work)?);
         }
@@ -323,9 +213,14 @@ impl Safe {
 }
 
 impl Advised {
+    fn unit(&self) -> TimeUnit {
+        if self.plain_time { TimeUnit::Plain } else { TimeUnit::Femtoseconds }
+    }
+
     /// The levers that would let the outer step of a molecule grow.
     fn of_hessians(&self, file: &SystemFile, scene: &SystemScene, work: &Work) -> Result<Levers> {
-        let (molecule, scheme) = (scene.molecule()?.0, &self.schemes[0]);
+        let molecule = scene.molecule()?.0.with_harmonic_bonds(self.harmonic);
+        let scheme = &self.schemes[0];
         let mut all = Levers::default();
         all.rows.push(molecule.lever("as given".into(), Way::Respa, scheme, &self.band)?);
         let given = |field: &str| !file.source()[field].is_null();
@@ -343,7 +238,7 @@ impl Advised {
             }
             let file = file.with([("hydrogen_mass", mass), ("constraints", constraints)]);
             let lever = work.read(&file).and_then(|other| {
-                let moved = other.molecule()?.0;
+                let moved = other.molecule()?.0.with_harmonic_bonds(self.harmonic);
                 moved.lever(name.clone(), way, scheme, &self.band)
             });
             match lever {
@@ -443,7 +338,7 @@ impl Advise {
     #[cfg(feature = "figure")]
     pub fn levers_figure(&self, answer: &Answer) -> Option<Figure> {
         let levers = answer.safe.levers().filter(|own| !own.rows.is_empty())?;
-        Some(report::levers_figure(levers, "What would let the outer step grow"))
+        Some(report::levers_figure(levers, "What would let the outer step grow", answer.asked.unit()))
     }
 
     /// Reads the engine's texts.
@@ -451,14 +346,34 @@ impl Advise {
         if self.engine.is_empty() {
             return Ok(None);
         }
-        let outer = self.steps.first().map(|steps| scheme(steps)).transpose()?;
+        let outer = self.steps.first().map(|steps| scheme(steps, TimeUnit::Femtoseconds)).transpose()?;
         let texts: Vec<&str> = self.engine.iter().map(String::as_str).collect();
         engine::read(&texts, outer.as_ref().map(Scheme::outer)).map(Some)
     }
 
+    /// The unit of all times: an engine's, else none where no period and no step has one.
+    fn unit(&self, reading: Option<&Reading>) -> TimeUnit {
+        if let Some(reading) = reading {
+            return reading.unit;
+        }
+        let values =
+            self.period.iter().map(|text| text.split_once('=').map_or(text.as_str(), |(_, value)| value));
+        let steps = self.steps.iter().flat_map(|steps| steps.split(','));
+        let is_asked = !self.period.is_empty()
+            && !self.steps.is_empty()
+            && self.bond.is_empty()
+            && self.system.is_none();
+        if is_asked && values.chain(steps).all(unit::is_plain) {
+            TimeUnit::Plain
+        } else {
+            TimeUnit::Femtoseconds
+        }
+    }
+
     /// The schemes that are given; beside an engine's a step alone is the outer one that its text lacks.
     fn given(&self, reading: Option<&Reading>) -> Result<Vec<Scheme>> {
-        let given = self.steps.iter().map(|steps| scheme(steps)).collect::<Result<Vec<_>>>()?;
+        let unit = self.unit(reading);
+        let given = self.steps.iter().map(|steps| scheme(steps, unit)).collect::<Result<Vec<_>>>()?;
         Ok(given.into_iter().filter(|scheme| reading.is_none() || scheme.steps().len() > 1).collect())
     }
 
@@ -467,7 +382,7 @@ impl Advise {
     }
 
     /// The question about these schemes, still of nothing.
-    fn of_schemes(&self, asked: Vec<Scheme>) -> Result<Advised> {
+    fn of_schemes(&self, asked: Vec<Scheme>, reading: Option<&Reading>) -> Result<Advised> {
         // Steps that are given twice, or that the file has already, are answered once.
         let mut schemes: Vec<Scheme> = Vec::new();
         asked.into_iter().for_each(|scheme| {
@@ -475,25 +390,24 @@ impl Advise {
                 schemes.push(scheme);
             }
         });
+        let unit = self.unit(reading);
         let rational = |field: &str, text: &Option<String>, dimension| {
-            text.as_deref().map(|text| unit::rational(field, text, dimension)).transpose()
+            text.as_deref().map(|text| measured(field, text, dimension, unit)).transpose()
         };
-        let (modes, constrained, file, system) = (None, None, None, None);
-        let band = part("band", &self.band)?;
-        let length = rational("length", &self.length, Dimension::Time)?;
-        let friction = rational("friction", &self.friction, Dimension::Rate)?;
-        let (no_levers, all_modes) = (self.no_levers, self.all_modes);
         Ok(Advised {
-            band,
-            modes,
+            band: part("band", &self.band)?,
+            modes: None,
             schemes,
-            length,
-            friction,
-            constrained,
-            file,
-            system,
-            no_levers,
-            all_modes,
+            length: rational("length", &self.length, Dimension::Time)?,
+            friction: rational("friction", &self.friction, Dimension::Rate)?,
+            constrained: None,
+            file: None,
+            system: None,
+            no_levers: self.no_levers,
+            all_modes: self.all_modes,
+            harmonic: self.harmonic,
+            beads: reading.and_then(|own| own.beads.clone()).filter(|own| own.count > 1),
+            plain_time: unit == TimeUnit::Plain,
         })
     }
 
@@ -536,19 +450,30 @@ impl Advise {
         }
         let hydrogen = asked.or_else(|| reading.and_then(|own| own.hydrogen.clone()));
         let bonds = self.bond.iter().map(|text| Mode::from_bond(text, hydrogen.as_ref()));
-        let periods = self.period.iter().map(|text| Mode::from_period(text));
-        let mut modes = bonds.chain(periods).collect::<Result<Vec<_>>>()?;
+        let unit = self.unit(reading);
+        if unit == TimeUnit::Plain && !self.bond.is_empty() {
+            let remedy =
+                "has units, and the times have none: give its period as a plain number, as --period bond=0.2";
+            return Err(Error::input("bond", self.bond.join(" "), remedy));
+        }
+        let period = |text: &String| match unit {
+            TimeUnit::Femtoseconds => Mode::from_period(text),
+            TimeUnit::Plain => Mode::from_plain_period(text),
+        };
+        let mut modes = bonds.chain(self.period.iter().map(period)).collect::<Result<Vec<_>>>()?;
         self.on.iter().try_for_each(|entry| place(&mut modes, entry))?;
         // The engine's own scheme first.
         let own = reading.map(|reading| reading.scheme.clone());
-        let schemes = own.into_iter().chain(self.given(reading)?).collect();
+        let schemes: Vec<Scheme> = own.into_iter().chain(self.given(reading)?).collect();
+        // Each on its clock before any is held: what is left of a slow clock stays there.
+        schemes.first().into_iter().for_each(|first| advise::place(&mut modes, first.steps().len()));
         let constraints = self.constraints.as_deref().map(Constraints::parse);
         let (modes, held) = match constraints.or_else(|| reading.and_then(|own| own.constraints.clone())) {
             Some(constraints) => constraints.split(modes)?,
             None => (modes, Vec::new()),
         };
         let constrained = (!held.is_empty()).then_some(held);
-        Ok(Advised { modes: Some(modes), constrained, ..self.of_schemes(schemes)? })
+        Ok(Advised { modes: Some(modes), constrained, ..self.of_schemes(schemes, reading)? })
     }
 
     /// Of the system's own steps first, or the engine's; with the hydrogens and the constraints asked for.
@@ -564,7 +489,7 @@ impl Advise {
             Some(reading) => reading.scheme.clone(),
             None => work.read(&file)?.scheme()?,
         };
-        let asked = self.of_schemes([own].into_iter().chain(self.given(reading)?).collect())?;
+        let asked = self.of_schemes([own].into_iter().chain(self.given(reading)?).collect(), reading)?;
         Ok(Advised { file: self.file.clone(), system: Some(file), ..asked })
     }
 
@@ -598,10 +523,19 @@ fn place(modes: &mut [Mode], entry: &str) -> Result<()> {
     Ok(())
 }
 
-fn scheme(text: &str) -> Result<Scheme> {
+fn scheme(text: &str, unit: TimeUnit) -> Result<Scheme> {
     Scheme::new(
-        text.split(',').map(|step| unit::rational("steps", step, Dimension::Time)).collect::<Result<_>>()?,
+        text.split(',').map(|step| measured("steps", step, Dimension::Time, unit)).collect::<Result<_>>()?,
     )
+}
+
+/// A time or a rate with its unit, or a plain number where times have none.
+fn measured(field: &str, text: &str, dimension: Dimension, unit: TimeUnit) -> Result<Rational> {
+    if unit == TimeUnit::Femtoseconds {
+        return unit::rational(field, text, dimension);
+    }
+    let without_pi = || Error::input(field, text.trim(), "must be rational; write it without pi");
+    unit::plain(field, text)?.as_rational().ok_or_else(without_pi)
 }
 
 /// `5%` or `1/20`.

@@ -18,6 +18,7 @@
 
 #[cfg(feature = "advise")]
 mod advise;
+mod advised;
 mod asking;
 mod field;
 

@@ -270,3 +270,223 @@ fn a_molecule_is_drawn_and_its_advice_verified() {
     assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
     assert!(ended.stdout.contains("the action as one matrix over the paths"), "{}", ended.stdout);
 }
+
+/// Periods that are left when bonds are held, or that are called slow, say nothing of the fastest motion.
+#[test]
+fn without_a_fast_period_the_answer_asks_for_one_and_offers_typical_ones() {
+    for line in [
+        "advise --period slow=water --steps 0.5fs,4fs",
+        "advise --period OH=10fs --period slow=40fs --constraints OH --steps 2fs,12fs",
+        "advise --period OH=10fs --period 40fs --constraints OH --steps 2fs,12fs",
+        "advise --period slow=40fs --steps 4fs",
+    ] {
+        let text = stdout(&words(line, &[]));
+        let first = text.lines().next().unwrap();
+        assert!(
+            first.contains("not told: the fastest period is not given, so nothing is called safe"),
+            "{line}: {text}"
+        );
+        assert!(
+            !text.contains("    safe") && text.contains("advice: none: give the fastest period that is left"),
+            "{text}"
+        );
+        for offered in [
+            "fast=protein,h-bonds 17.7 fs",
+            "fast=water,rigid",
+            "fast=protein,h-bonds,hmr3",
+            "measured on villin",
+        ] {
+            assert!(text.contains(offered), "{offered}: {text}");
+        }
+        let document = json(&words(line, &[]));
+        assert_eq!(document["schemes"][0]["status"], "not told");
+    }
+    // What it offers works, wherever it stands.
+    let text =
+        stdout(&words("advise --period slow=water --period fast=protein,h-bonds --steps 2fs,4fs", &[]));
+    assert!(text.starts_with("4 fs    safe") && text.contains("fast=protein,h-bonds is 17.7 fs"), "{text}");
+    let text = stdout(&words(
+        "advise --period OH=10fs --period angle=19.45fs --constraints OH --on angle=1 --steps 2fs,4fs",
+        &[],
+    ));
+    assert!(
+        text.starts_with("4 fs    safe where the forces of the clock without a period have periods above 25"),
+        "{text}"
+    );
+}
+
+#[test]
+fn a_single_clock_is_advised_below_its_own_turn_unless_its_bonds_are_harmonic() {
+    let line = "advise --period OH=8.5836fs --steps 1fs --steps 2fs";
+    let text = stdout(&words(line, &[]));
+    for said in [
+        "1 fs    safe",
+        "2 fs    stable; unstable from 2.7322 fs on, margin 0.732 fs; caution: not below T/6.28 = 1.36 fs",
+        "advice: keep the step below 1.36 fs = T/6.28 of OH (T = 8.584 fs), that is h w <= 1",
+        "1 fs with flexible O-H, 2 fs with them held, 4 fs with heavy hydrogens besides",
+        "T/3.63 = 2.366 fs, T/4.44 = 1.932 fs, T/5.34 = 1.606 fs, T/6.28 = 1.366 fs",
+    ] {
+        assert!(text.contains(said), "{said}: {text}");
+    }
+    assert!(!text.contains("T/3 =") && !text.contains("grompp"), "{text}");
+    let text = stdout(&words(line, &["--harmonic"]));
+    assert!(text.contains("\nadvice: keep the step below 2.59 fs (proven for all periods within 5 %, bonds said to be harmonic)"), "{text}");
+    let desk = Desk::new();
+    for more in [&["--output", "d.json"][..], &["--harmonic", "--output", "d.json"]] {
+        assert_eq!(desk.run(&words(line, more)).code, Some(0));
+        assert_eq!(desk.run(&["verify", "d.json"]).code, Some(0), "{more:?}");
+    }
+    assert_eq!(json(&words(line, &["--harmonic"]))["input"]["harmonic"], "true");
+}
+
+#[test]
+fn an_inner_step_that_is_too_long_is_named_and_no_line_is_written() {
+    let text = stdout(&words("advise --period OH=10fs --period 100fs --steps 1.65fs,3.3fs", &[]));
+    assert!(
+        text.contains("caution: the step of 1.65 fs is not below T/6.28 = 1.59 fs of its own forces"),
+        "{text}"
+    );
+    assert!(text.contains("advice: none with a step of 1.65 fs inside"), "{text}");
+    let desk = Desk::new();
+    desk.write(
+        "in.lmp",
+        "units real\npair_style lj/cut 10\ntimestep 6.6\nrun_style respa 2 4 bond 1 pair 2\n",
+    );
+    let ended = desk.run(&words("advise --engine in.lmp --period OH=10fs --period 100fs", &[]));
+    assert!(ended.code == Some(0) && !ended.stdout.contains("  write "), "{}{}", ended.stdout, ended.stderr);
+}
+
+#[test]
+fn times_without_a_unit_are_plain_numbers() {
+    let line = "advise --period bond=0.2 --period slow=0.8 --steps 0.01,0.09 --friction 3 --length 50";
+    let text = stdout(&words(line, &[]));
+    assert!(
+        text.starts_with("0.09    ")
+            && text.contains("\nadvice: outer step 0.06 (6 of 0.01): below T/3 = 0.0667"),
+        "{text}"
+    );
+    assert!(!text.contains(" fs") && !text.contains("/ps") && text.contains("per unit of time"), "{text}");
+    let desk = Desk::new();
+    desk.run(&words(line, &["--output", "d.json"]));
+    assert_eq!(desk.run(&["verify", "d.json"]).code, Some(0));
+    // So are those of LAMMPS's lj units.
+    desk.write("in.lj", "units lj\npair_style lj/cut 2.5\nbond_style fene\ntimestep 0.04\nrun_style respa 2 4 bond 1 pair 2\n");
+    let ended = desk.run(&words("advise --engine in.lj --period bond=0.2 --period slow=0.8", &[]));
+    assert!(
+        ended.code == Some(0) && ended.stdout.starts_with("0.04    safe"),
+        "{}{}",
+        ended.stdout,
+        ended.stderr
+    );
+    for (line, expected) in [
+        ("advise --period bond=0.2 --period slow=0.8fs --steps 0.01,0.08", "has no unit"),
+        (
+            "advise --period bond=0.2 --period slow=0.8 --steps 0.01,0.08 --length 5ns",
+            "write all times as plain numbers",
+        ),
+    ] {
+        let ended = run(&words(line, &[]));
+        assert!(ended.code == Some(2) && ended.stderr.contains(expected), "{line}: {}", ended.stderr);
+    }
+    let ended = desk.run(&words("advise --engine in.lj --period bond=10fs --period slow=40fs", &[]));
+    assert!(
+        ended.code == Some(2) && ended.stderr.contains("write all times as plain numbers"),
+        "{}",
+        ended.stderr
+    );
+}
+
+#[test]
+fn equal_steps_are_told_to_be_one_clock() {
+    let line = "advise --period a=20fs --period b=30fs --period c=60fs --steps 2fs,2fs,4fs";
+    let ended = run(&words(line, &[]));
+    let remedy =
+        "equal steps are one clock: write 2fs,4fs, and put the modes of both on it, as --on OH=1,angle=1";
+    assert!(ended.code == Some(2) && ended.stderr.contains(remedy), "{}", ended.stderr);
+    let text = stdout(&words(&line.replace("2fs,2fs,4fs", "2fs,4fs --on a=1,b=1"), &[]));
+    assert!(text.starts_with("4 fs    safe"), "{text}");
+}
+
+#[test]
+fn a_system_in_atomic_units_is_advised_as_in_femtoseconds() {
+    let desk = Desk::new();
+    // Frequencies of 10 and 40 fs; 1 au of time is 0.0241888... fs.
+    let au = 0.024_188_843_265_864;
+    let square = |period: f64, unit: f64| (2.0 * std::f64::consts::PI * unit / period).powi(2);
+    for (name, unit) in [("au", au), ("fs", 1.0)] {
+        let (fast, slow) = (square(10.0, unit), square(40.0, unit));
+        let (inner, outer) = (0.5 / unit, 3.0 / unit);
+        let text = format!(
+            "{{\"schema\": \"kickdrift/system/1\", \"title\": \"t\", \"mass_weighted\": true, \"accuracy\": 1e-9, \"time_unit\": \"{name}\", \"potentials\": \
+             [{{\"name\": \"f\", \"step\": {inner}, \"stiffness\": [[{fast:e}]]}}, {{\"name\": \"s\", \"step\": {outer}, \"stiffness\": [[{slow:e}]]}}]}}"
+        );
+        desk.write(&format!("{name}.json"), &text);
+    }
+    let first = |name: &str| {
+        let ended = desk.run(&["advise", name, "--steps", "0.5fs,4fs", "--no-levers"]);
+        assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""), "{name}");
+        ended.stdout.lines().find(|line| line.starts_with("4 fs")).unwrap().to_string()
+    };
+    assert_eq!(first("au.json"), first("fs.json"));
+}
+
+#[test]
+fn what_grompp_warns_of_is_told_of_gromacs_alone() {
+    let desk = Desk::new();
+    desk.write("md.mdp", "integrator = md\ndt = 0.0005\nmts = yes\nmts-levels = 2\nmts-level2-factor = 6\n");
+    desk.write(
+        "in.lmp",
+        "units real\npair_style lj/cut 10\ntimestep 3.0\nrun_style respa 2 6 bond 1 pair 2\n",
+    );
+    let of = |engine: &str| {
+        desk.run(&["advise", "--engine", engine, "--period", "OH=10fs", "--period", "40fs"]).stdout
+    };
+    assert!(
+        of("md.mdp").contains(
+            "grompp warns where dt is longer than T/5 = 2 fs, notes where dt is longer than T/10 = 1 fs"
+        ),
+        "{}",
+        of("md.mdp")
+    );
+    assert!(!of("in.lmp").contains("grompp") && !stdout(&words(WATER, &[])).contains("grompp"));
+}
+
+/// i-PI's rings of 32 beads have modes of their own, and a kick every 1.25 fs meets the fastest.
+#[test]
+fn ring_modes_are_named_and_nothing_is_called_safe_of_ring_polymers() {
+    let desk = Desk::new();
+    let input = |beads: u32| {
+        format!(
+            "<simulation><system><initialize nbeads='{beads}'/><ensemble><temperature units='kelvin'> 300 </temperature></ensemble><motion mode='dynamics'>\
+             <dynamics mode='nvt'><timestep units='femtosecond'> 1 </timestep></dynamics></motion></system></simulation>"
+        )
+    };
+    for beads in [1, 32] {
+        desk.write("input.xml", &input(beads));
+        let ended = desk.run(&words("advise --engine input.xml --period OH=10fs", &[]));
+        let text = &ended.stdout;
+        assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
+        assert_eq!(text.starts_with("1 fs    safe"), beads == 1, "{text}");
+        assert_eq!(
+            text.contains("32 at 300 K: ring modes 1 to 16 have periods of 25.5 down to 2.5 fs"),
+            beads == 32,
+            "{text}"
+        );
+        assert_eq!(text.contains("advice: none: 32 beads"), beads == 32, "{text}");
+        desk.run(&words("advise --engine input.xml --period OH=10fs --output d.json", &[]));
+        assert_eq!(desk.run(&["verify", "d.json"]).code, Some(0));
+    }
+}
+
+/// A friction of 0.05/ps masks it, one of 3/ps does not: "above" is said only where all larger ones are proven.
+#[test]
+fn a_friction_that_masks_is_no_bound_unless_all_larger_ones_do() {
+    let line = "advise --period bead=1ps --period other=1.0733ps --steps 310fs,2480fs --no-levers --friction";
+    let text = stdout(&words(line, &["3/ps"]));
+    assert!(
+        text.contains("one just above does, not proven of larger ones, the one given does not"),
+        "{text}"
+    );
+    assert!(!text.contains("only a friction above"), "{text}");
+    assert!(stdout(&words(line, &["1/20/ps"])).contains("masked by the friction given"));
+}

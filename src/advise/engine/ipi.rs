@@ -6,6 +6,8 @@ use super::reading::{
     Engine, FS, MOST_LEVELS, PS, Place, Reading, Unit, count, no_gradient, number, scheme, times,
 };
 use super::xml::{child, named, parse, words};
+use crate::advise::beads::Beads;
+use crate::advise::unit::decimal;
 use crate::error::{Error, Result};
 use crate::number::Rational;
 
@@ -43,7 +45,9 @@ pub(super) fn ipi(text: &str) -> Result<Reading> {
     }
     reading.remarks.extend(other_motions(root));
     reading.remarks.extend(no_gradient(&direct(root, text)));
-    reading.remarks.extend(beads(root, text)?);
+    let (rings, remark) = beads(root, text)?.unzip();
+    reading.beads = rings;
+    reading.remarks.extend(remark);
     Ok(reading)
 }
 
@@ -220,15 +224,13 @@ fn direct<'a>(root: Node<'a, 'a>, text: &'a str) -> Vec<&'a str> {
     fields.filter(is_direct).filter_map(|node| Some(node.attribute("name")?.trim())).collect()
 }
 
-/// hbar/k, in fs K.
-const THERMAL: f64 = 7_638.232_6;
-
 /// What is to be known of a ring polymer: its modes vibrate beside those that are asked about.
-fn beads(root: Node, text: &str) -> Result<Option<String>> {
+fn beads(root: Node, text: &str) -> Result<Option<(Beads, String)>> {
     let given =
         root.descendants().filter(|node| node.has_tag_name("initialize") || node.has_tag_name("beads"));
     let given: Vec<&str> = given.filter_map(|node| node.attribute("nbeads")).collect();
     let count = given.iter().filter_map(|own| own.trim().parse::<u32>().ok()).max().unwrap_or(1);
+    let beads = Beads { count: count.into(), kelvin: kelvin(root, text) };
     if count < 2 {
         return Ok(None);
     }
@@ -242,24 +244,21 @@ fn beads(root: Node, text: &str) -> Result<Option<String>> {
         }
         _ => "propagator exact resonates where an outer step is near a multiple of half their period".into(),
     };
-    Ok(Some(format!(
-        "{count} beads: the modes of their rings{} vibrate beside yours: ask about them as periods too; {how}",
-        fastest(root, text, count)
-    )))
+    let ends = beads.ends().map_or_else(String::new, |[fastest, _]| {
+        let kelvin = beads.kelvin.as_ref().map(decimal).unwrap_or_default();
+        format!(", of periods down to {fastest:.3} fs at {kelvin} K,")
+    });
+    let remark = format!("{count} beads: the modes of their rings{ends} vibrate beside yours; {how}");
+    Ok(Some((beads, remark)))
 }
 
-/// The period of the fastest mode of a free ring, where its frequencies are those of RPMD and the temperature is given.
-fn fastest(root: Node, text: &str, beads: u32) -> String {
+/// The temperature of the rings in kelvin, where their frequencies are those of RPMD and it is given.
+fn kelvin(root: Node, text: &str) -> Option<Rational> {
     let modes = named(root, "normal_modes").and_then(|modes| child(modes, "frequencies"));
     let is_physical = modes.is_none_or(|own| own.attribute("style").is_none_or(|style| style == "rpmd"));
-    let kelvin = root.descendants().find(|node| {
+    let given = root.descendants().find(|node| {
         node.has_tag_name("temperature") && node.attribute("units").map(str::trim) == Some("kelvin")
     });
-    let kelvin = kelvin.and_then(|node| words(node, text).ok()).and_then(|(own, _)| own.parse::<f64>().ok());
-    let Some(kelvin) = kelvin.filter(|kelvin| is_physical && *kelvin > 0.0) else { return String::new() };
-    // The fastest of n modes is 2 n k T/hbar sin(pi floor(n/2)/n).
-    let n = f64::from(beads);
-    let sine = (std::f64::consts::PI * f64::from(beads / 2) / n).sin();
-    let period = std::f64::consts::PI * THERMAL / (n * kelvin * sine);
-    format!(", of periods down to {period:.3} fs at {kelvin} K,")
+    let (own, _) = given.filter(|_| is_physical).and_then(|node| words(node, text).ok())?;
+    number("temperature", own).ok()
 }

@@ -9,6 +9,7 @@ use super::reading::{
 };
 use super::respa::{BONDED, clocks, on_levels, pair_styles, refuse_order};
 use crate::advise::constraint::Constraints;
+use crate::advise::unit::TimeUnit;
 use crate::error::{Error, Result};
 use crate::number::Rational;
 
@@ -98,13 +99,16 @@ impl<'a> Commands<'a> {
 fn units(units: &str) -> Result<(Unit, &'static str)> {
     Ok(match units {
         "real" => (FS, "1.0"),
+        // Plain numbers: no length in seconds.
+        "lj" => (FS, "0.005"),
         "electron" => (FS, "0.001"),
         "metal" => (PS, "0.001"),
         "si" | "cgs" => (Unit("1e15"), "1e-8"),
         "micro" => (Unit("1e9"), "2.0"),
         "nano" => (Unit("1e6"), "0.00045"),
         _ => {
-            let remedy = "its time has no length in seconds: choose real or metal units";
+            let remedy =
+                "is no style of units that is known here: lj, real, metal, si, cgs, electron, micro, nano";
             return Err(Error::input("units", units, remedy));
         }
     })
@@ -145,6 +149,9 @@ fn of_commands(text: &str, commands: &Commands) -> Result<Reading> {
             reading
         }
     };
+    if named == "lj" {
+        reading.unit = TimeUnit::Plain;
+    }
     let is_default = if value.is_none() { " (the default)" } else { "" };
     reading.used.splice(0..0, [format!("units {named}"), format!("timestep {shown}{is_default}")]);
     match value {

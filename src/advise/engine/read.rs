@@ -25,7 +25,7 @@ pub fn read(texts: &[&str], outer: Option<&Rational>) -> Result<Reading> {
     }
     let texts: Vec<&str> = texts.iter().map(|text| unmarked(text)).collect();
     let mut reading = of_texts(&texts, outer)?;
-    if let Some(remark) = not_nested(&reading.scheme) {
+    if let Some(remark) = not_nested(&reading.scheme, reading.unit) {
         reading.remarks.push(format!("{} itself refuses this: {remark}", reading.engine.name()));
     }
     Ok(reading)

@@ -2,9 +2,10 @@
 
 use std::ops::Range;
 
+use crate::advise::beads::Beads;
 use crate::advise::constraint::Constraints;
 use crate::advise::levels::Scheme;
-use crate::advise::unit::decimal;
+use crate::advise::unit::{TimeUnit, decimal};
 use crate::error::{Error, Result};
 use crate::named::named;
 use crate::number::Rational;
@@ -149,6 +150,10 @@ pub struct Reading {
     pub(super) default: Option<String>,
     /// Why no line of it is to be written anew.
     pub(super) stays: Option<String>,
+    /// Ring polymers, where it moves such.
+    pub beads: Option<Beads>,
+    /// The unit of its times: plain where they have no length in seconds, as in Lennard-Jones units.
+    pub unit: TimeUnit,
     text: String,
     pub(super) places: Vec<(Range<usize>, Place)>,
 }
@@ -164,17 +169,17 @@ pub(super) const MOST_COUNT: u64 = 1_000_000;
 const MOST_TURNS: u64 = 1000;
 
 /// Why engines refuse a scheme, where steps are not multiples of each other.
-pub fn not_nested(scheme: &Scheme) -> Option<String> {
+pub fn not_nested(scheme: &Scheme, unit: TimeUnit) -> Option<String> {
     let pair = scheme.steps().windows(2).find(|pair| !(&pair[1] / &pair[0]).is_integer())?;
-    Some(format!("{} fs is no multiple of {} fs", decimal(&pair[1]), decimal(&pair[0])))
+    Some(format!("{} is no multiple of {}", unit.of(decimal(&pair[1])), unit.of(decimal(&pair[0]))))
 }
 
 /// For two steps that are no multiples of each other: the steps, and the outer steps beside that are multiples.
-pub fn nested_beside(scheme: &Scheme) -> Option<String> {
-    let ([inner, outer], Some(why)) = (scheme.steps(), not_nested(scheme)) else { return None };
+pub fn nested_beside(scheme: &Scheme, unit: TimeUnit) -> Option<String> {
+    let ([inner, outer], Some(why)) = (scheme.steps(), not_nested(scheme, unit)) else { return None };
     let one = Rational::from_integer(1.into());
     let [below, above] = [(outer / inner).floor(), (outer / inner).floor() + one]
-        .map(|n| format!("{} fs ({n})", decimal(&(inner * &n))));
+        .map(|n| format!("{} ({n})", unit.of(decimal(&(inner * &n)))));
     Some(format!("{why}, so no engine runs it; {below} and {above} are"))
 }
 
@@ -204,6 +209,8 @@ impl Reading {
             hydrogen: None,
             default: None,
             stays: None,
+            beads: None,
+            unit: TimeUnit::default(),
             text: text.into(),
             places: vec![],
         }

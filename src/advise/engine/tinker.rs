@@ -8,6 +8,7 @@ use std::ops::Range;
 use super::evidence::Vocabulary;
 use super::lines::{Line, PLAIN as NOTATION, last, lines};
 use super::reading::{Engine, MOST_COUNT, Place, Reading, count, fortran, scheme, times};
+use crate::advise::beads::Beads;
 use crate::advise::constraint::Constraints;
 use crate::error::{Error, Result};
 use crate::number::Rational;
@@ -231,9 +232,8 @@ impl Key<'_> {
             reading.remarks.push(format!("HEAVY-HYDROGEN was not read: hydrogens have up to {shown} amu, and no more than the equal share of a group: say so by --hmr"));
         }
         if let Some((beads, _)) = self.value("nbeads").ok().flatten().filter(|(beads, _)| *beads != "1") {
-            reading.remarks.push(format!(
-                "{beads} beads: the modes of their rings vibrate beside yours: ask about them as periods too"
-            ));
+            reading.beads = beads.parse().ok().map(|count| Beads { count, kelvin: None });
+            reading.remarks.push(format!("{beads} beads: the modes of their rings vibrate beside yours"));
         }
     }
 }

@@ -49,6 +49,7 @@ rows! {
         pub band_edge: Ends,
         pub largest: Written<Rational> | null,
         pub safe: Written<Rational> | null,
+        pub bound: String | null,
         pub needs: f64 | null,
         pub within_run: bool | null,
     }
@@ -62,6 +63,7 @@ rows! {
         pub growth_rate: Ends,
         pub tenfold_steps: Ends | null,
         pub masked_above: Ends | null,
+        pub masked_stays: bool | null,
         pub damped: bool | null,
         pub ratios_lower: Written<Rational> | null,
         pub ratios_upper: Written<Rational> | null,
@@ -125,6 +127,35 @@ impl Recheck for Claim {
 }
 
 impl Claim {
+    /// The unit of rates over that of lengths.
+    pub fn per(&self) -> u32 {
+        if self.input.plain_time { 1 } else { 1000 }
+    }
+
+    /// Whether nothing is known of the innermost clock.
+    pub fn lacks_fast(&self) -> bool {
+        let is_alone = self.input.schemes.first().is_none_or(|own| own.steps().len() == 1);
+        let slow = |mode: &Mode| {
+            mode.origin.name().starts_with("slow period") || mode.name.to_lowercase().starts_with("slow")
+        };
+        !self.modes_asked().any(|mode| mode.clock == Some(0) && !(is_alone && slow(mode)))
+    }
+
+    /// Whether h w ≤ 1 of the stiffest mode on a clock, for a step of its own; lifted of harmonic bonds, but not of the slowest force beside others.
+    pub fn is_below_turn(&self, mass: &Mass, clock: usize, step: &Rational) -> bool {
+        let last = mass.steps.len() - 1;
+        if self.input.harmonic && (clock < last || last == 0) {
+            return true;
+        }
+        let square = Ball::from_rational(step, BITS).square(BITS).mul(&mass.stiffness[clock], BITS);
+        // Bounds are rounded down a little.
+        let most = Ball::from_rational(
+            &(Rational::one() - Rational::new(1.into(), 1_000_000_000_000_000_i64.into())),
+            BITS,
+        );
+        square.sub(&most, BITS).sign() == Some(Sign::Negative)
+    }
+
     /// The stiffest mode on each clock, or this one on its own.
     pub fn mass(&self, scheme: usize, mode: Option<&Mode>) -> Checked<Mass> {
         let missing = || Fault::Wrong(format!("there is no scheme {}", scheme.wrapping_add(1)));

@@ -18,10 +18,8 @@ impl Claim {
             "kicks and drifts with friction" => self.masked(own),
             _ => self.other_method(own),
         }?;
-        // Kicks and drifts at the scheme's inner step have an edge at its ratio, and take a step at another, seen above.
-        let is_at_edge = own.method != "kicks and drifts" || own.lever.starts_with("ratio ");
         let below = own.step.as_ref().zip(own.band_edge).is_none_or(|(step, edge)| step.0 < exact(edge.hi));
-        holds(below || !is_at_edge, || format!("the step of {} is beyond its edge", own.lever))
+        holds(below, || format!("the step of {} is beyond its edge", own.lever))
     }
 
     /// The modes that a lever leaves or changes: a bond's k is its stiffness times the reduced mass.
@@ -60,13 +58,19 @@ impl Claim {
             holds(count > 1, || "one clock has no ratio".into())?;
             steps[count - 1] = &steps[count - 2] * parse_rational("lever", p)?;
         }
-        let outer = steps.last().cloned().unwrap_or_default();
+        // The inner steps are those of the scheme, and all columns belong to the ratio of the step that is taken.
+        let is_at_ratio = own.lever.starts_with("ratio ");
+        let outer = match &own.step {
+            Some(step) if !is_at_ratio && steps.len() > 1 => step.0.clone(),
+            _ => steps.last().cloned().unwrap_or_default(),
+        };
         let stiffest = |clock: usize| {
             let on = modes.iter().filter(move |mode| mode.clock == Some(clock));
             on.max_by(|a, b| a.stiffness.cmp(&b.stiffness))
                 .map_or_else(Ball::zero, |mode| mode.stiffness.enclosure(BITS))
         };
         let mass = Mass { stiffness: (0..steps.len()).map(stiffest).collect(), steps };
+        let mass = if mass.steps.len() > 1 { mass.with_outer(&outer) } else { mass };
         let (Some(first), Some(edge)) = (own.first, own.band_edge) else {
             return holds(false, || format!("{} lacks its edges", own.lever));
         };
@@ -81,9 +85,7 @@ impl Claim {
             })?;
         }
         let Some(step) = &own.step else { return Ok(()) };
-        // The inner step follows at a ratio of its own, else it is that of the scheme.
-        let is_at_ratio = own.lever.starts_with("ratio ");
-        let taken = if is_at_ratio { mass.scaled(&(&step.0 / &outer)) } else { mass.with_outer(&step.0) };
+        let taken = mass.scaled(&(&step.0 / &outer));
         holds(taken.scaled(&shorter.recip()).in_first_region()? == Some(true), || {
             format!("the step of {} is not proven for the band", own.lever)
         })

@@ -35,7 +35,7 @@ impl Claim {
         };
         holds(right, || format!("is not {}", row.kind.name()))?;
         if *row.kind == Kind::Hyperbolic {
-            row.growth(&trace, &period, &outer)?;
+            row.growth(&trace, &period, &outer, self.per())?;
         } else {
             let none = row.tenfold_steps.is_none() && (row.growth_rate.lo, row.growth_rate.hi) == (0.0, 0.0);
             holds(none, || "grows though it is not hyperbolic".into())?;
@@ -74,7 +74,8 @@ impl Claim {
 
     /// Damped just above the friction that masks, not just below it.
     fn friction(&self, row: &Row, own: &Mass) -> Checked {
-        let per_fs = |per_ps: f64, by: Rational| exact(per_ps) * by / Rational::from_integer(1000.into());
+        let per_fs =
+            |per_ps: f64, by: Rational| exact(per_ps) * by / Rational::from_integer(self.per().into());
         let beside = |n: i64| Rational::new((1_000_000 + n).into(), 1_000_000.into());
         if let Some(masked) = row.masked_above {
             let grows = *row.kind == Kind::Hyperbolic && masked.lo > 0.0;
@@ -82,7 +83,15 @@ impl Claim {
                 && own.is_damped(&per_fs(masked.hi, beside(1)))? != Some(false)
                 && own.is_damped(&per_fs(masked.lo, beside(-1)))? != Some(true);
             holds(right, || "masked_above is not the friction that masks it".into())?;
+            // One of all the larger ones that are said to mask it too.
+            let larger = row.masked_stays == Some(true);
+            holds(!larger || own.is_damped(&per_fs(10.0 * masked.hi, beside(0)))? != Some(false), || {
+                "a larger friction does not mask it".into()
+            })?;
         }
+        holds(row.masked_stays.is_some() == row.masked_above.is_some(), || {
+            "masked_stays is of the friction that masks".into()
+        })?;
         match (row.damped, &self.input.friction) {
             (Some(said), Some(friction)) => {
                 let truth = own.is_damped(friction)?;
@@ -120,12 +129,12 @@ impl Row {
     }
 
     /// acosh(|Tr|/2) by logarithms.
-    fn growth(&self, trace: &Ball, period: &Rational, outer: &Rational) -> Checked {
+    fn growth(&self, trace: &Ball, period: &Rational, outer: &Rational, per: u32) -> Checked {
         let half = trace.abs().scale2(-1);
         let root = half.square(BITS).sub(&Ball::one(), BITS).sqrt_clipped(BITS).unwrap_or_else(Ball::zero);
         let ln = half.add(&root, BITS).ln(BITS).unwrap_or_else(Ball::zero);
         let rate = ln.div(&Ball::from_rational(period, BITS), BITS).unwrap_or_else(Ball::zero);
-        let per_ps = rate.mul(&Ball::from_integer(&1000.into()), BITS);
+        let per_ps = rate.mul(&Ball::from_integer(&per.into()), BITS);
         holds(self.growth_rate.holds(&per_ps), || format!("the growth rate is {}", per_ps.mid_f64()))?;
         let ten = Ball::from_integer(&10.into()).ln(BITS).expect("10 > 0");
         let steps = ten.div(&rate.mul(&Ball::from_rational(outer, BITS), BITS), BITS);

@@ -5,16 +5,16 @@ use std::f64::consts::PI;
 use plot::palette::{CAUTION, INK, PARABOLIC, SAFE, SAMPLED, UNSTABLE, WHITE};
 use plot::{Anchor, Axis, Figure, Foot, Hatch, Layer, Note, Panel, Place, Shape, Stroke, Tick};
 
-use crate::advise::unit::decimal;
+use crate::advise::unit::{TimeUnit, decimal};
 use crate::advise::{
-    Advice, Answer, Bound, Finding, Findings, Group, Lever, Levers, Pair, Row, Scheme, Status, Unstable,
+    Advice, Answer, Bound, Caps, Finding, Findings, Group, Lever, Levers, Pair, Row, Scheme, Status, Unstable,
 };
 use crate::number::Rational;
 use crate::number::rational::to_f64;
 use crate::system::levels::Growing;
 
 use super::molecule::called;
-use super::words::{named, nearest, percent};
+use super::words::{length, named, nearest, percent};
 
 /// A row's share of the height, in mm, and half the height of its bars in rows.
 const ROW: f64 = 8.5;
@@ -46,8 +46,8 @@ impl Band {
 #[derive(Default)]
 struct Line {
     label: String,
-    /// T/3, and how far all periods of the band are proven stable.
-    third: f64,
+    /// How far nothing is published against it, and how far all periods of the band are proven stable.
+    published: f64,
     band: f64,
     /// Proven unstable.
     unstable: Vec<[f64; 2]>,
@@ -69,14 +69,14 @@ struct Block {
 /// Blocks of one ratio each.
 fn blocks<'a, T>(
     all: &'a [T],
-    scheme: impl Fn(&T) -> &Scheme,
+    (scheme, unit): (impl Fn(&T) -> &Scheme, TimeUnit),
     of: impl Fn(&'a T) -> (Vec<Line>, Status, &'a Option<Rational>),
 ) -> Vec<Block> {
     let mut found: Vec<Block> = Vec::new();
     for own in all {
         let (ratio, outer) = (ratio(scheme(own)), scheme(own).outer());
         let (lines, status, safe) = of(own);
-        let chosen = (to_f64(outer), format!("{} fs: {}", decimal(outer), status.name()));
+        let chosen = (to_f64(outer), format!("{}: {}", length(outer, unit), status.name()));
         match found.iter_mut().find(|block| block.ratio == ratio) {
             Some(block) => block.chosen.push(chosen),
             None => {
@@ -97,27 +97,31 @@ pub(super) fn of_periods(advice: &Advice, title: &str) -> Figure {
     let ends = advice.schemes.iter().flat_map(|answer| &answer.rows).filter_map(|row| row.first.as_ref());
     let right = ends.map(|of| of.upper.unwrap_or(of.lower).1).fold(0.0, f64::max);
     let near = "two modes may resonate (first order)";
-    let foot = advice.modes.iter().fold(Foot::default(), |foot, mode| foot.words(&named(mode)));
-    let foot = within(foot, &advice.band, advice.friction.as_ref());
-    draw(&blocks(&advice.schemes, |answer| &answer.scheme, of), right, (title, near)).footed(&foot)
+    let foot = advice.modes.iter().fold(Foot::default(), |foot, mode| foot.words(&named(mode, advice.unit)));
+    let foot = within(foot, &advice.band, advice.friction.as_ref(), advice.unit);
+    let blocks = blocks(&advice.schemes, (|answer: &Answer| &answer.scheme, advice.unit), of);
+    draw(&blocks, right, (title, near), advice.unit).footed(&foot)
 }
 
 /// How far all periods may be off, and the friction.
-pub(super) fn within(foot: Foot, band: &Rational, friction: Option<&Rational>) -> Foot {
+pub(super) fn within(foot: Foot, band: &Rational, friction: Option<&Rational>, unit: TimeUnit) -> Foot {
     let foot = foot.words(&format!("all periods within {}", percent(band)));
-    let per_ps = |rate: &Rational| decimal(&(rate * Rational::from_integer(1000.into())));
-    friction.map_or(foot.clone(), |rate| foot.words(&format!("friction {}/ps", per_ps(rate))))
+    let rate = |rate: &Rational| unit.rate(decimal(&(rate * Rational::from_integer(unit.in_rates().into()))));
+    friction.map_or(foot.clone(), |own| foot.words(&format!("friction {}", rate(own))))
 }
 
-/// Safe up to T/3, caution up to the band's edge, the unstable intervals over what is not advised.
+/// Safe up to what is published, caution up to the band's edge, the unstable intervals over what is not advised; no step is called stable where a clock
+/// has no period.
 fn mode(advice: &Advice, answer: &Answer, own: &Row) -> Line {
     let alone = answer.scheme.steps().len() == 1;
-    let band = own.first.as_ref().map_or(0.0, |first| first.lower.0) * (1.0 - to_f64(&advice.band));
+    let known = !advice.silent && !advice.lacks_fast && advice.beads.is_none();
+    let band = own.first.as_ref().filter(|_| known).map_or(0.0, |first| first.lower.0)
+        * (1.0 - to_f64(&advice.band));
     let first = own.first.iter().filter(|of| alone || of.upper.is_some());
     let ends = |of: &Unstable| [of.lower.0, of.upper.map_or(f64::INFINITY, |upper| upper.1)];
     Line {
         label: advice.modes[own.mode].name.clone(),
-        third: if alone { band } else { advice.modes[own.mode].part(3).0 },
+        published: cap(&advice.caps, band),
         band,
         unstable: first.chain(&own.inside).chain(&own.intervals).map(ends).collect(),
         ..Line::default()
@@ -128,7 +132,7 @@ fn mode(advice: &Advice, answer: &Answer, own: &Row) -> Line {
 fn pair(advice: &Advice, answer: &Answer, own: &Pair) -> Line {
     Line {
         label: own.modes.map(|i| advice.modes[i].name.as_str()).join(" + "),
-        third: advice.modes[advice.fastest].part(3).0,
+        published: cap(&advice.caps, answer.band_edge.0),
         band: answer.band_edge.0,
         near: Some(own.near),
         ..Line::default()
@@ -142,18 +146,26 @@ pub(super) fn of_molecule(findings: &Findings, title: &str) -> Figure {
         |own: &Finding| own.growing.last().and_then(|last| last.upper).or(own.first.map(|first| first.1));
     let right = findings.schemes.iter().filter_map(far).fold(0.0, f64::max);
     let near = "half a turn of these modes alone";
-    let foot = within(Foot::default(), &findings.band, findings.friction.as_ref());
-    draw(&blocks(&findings.schemes, |own| &own.scheme, of), right, (title, near)).footed(&foot)
+    let unit = TimeUnit::Femtoseconds;
+    let foot = within(Foot::default(), &findings.band, findings.friction.as_ref(), unit);
+    draw(&blocks(&findings.schemes, (|own: &Finding| &own.scheme, unit), of), right, (title, near), unit)
+        .footed(&foot)
+}
+
+/// The published bound on the outermost step, `band` where there is none.
+fn cap(caps: &Caps, band: f64) -> f64 {
+    caps.outer().map_or(band, |(own, _)| to_f64(own))
 }
 
 /// The whole first; below it where each group alone has turned half way round in an outer step.
 fn molecule(findings: &Findings, own: &Finding) -> Vec<Line> {
-    let (third, band) = (findings.groups[0].period.0 / 3.0, own.band_edge.unwrap_or(0.0));
+    let band = own.band_edge.unwrap_or(0.0);
+    let published = cap(&findings.caps, band);
     let proven = own.first.zip(own.first_upper).map(|(first, upper)| [first.1, upper]);
     let ends = |growing: &Growing| [growing.lower, growing.upper.unwrap_or(f64::INFINITY)];
     let whole = Line {
         label: "all, coupled".into(),
-        third,
+        published,
         band,
         unstable: proven.into_iter().collect(),
         sampled: own.growing.iter().map(ends).collect(),
@@ -163,7 +175,7 @@ fn molecule(findings: &Findings, own: &Finding) -> Vec<Line> {
     let half = |period: f64| parts * period / PI * (PI / (2.0 * parts)).sin();
     let group = |own: &Group| Line {
         label: format!("{}, {} fs", called(own), nearest(own.period, 4)),
-        third: own.period.0 / 3.0,
+        published,
         band,
         near: Some(half(own.period.0)),
         ..Line::default()
@@ -172,7 +184,7 @@ fn molecule(findings: &Findings, own: &Finding) -> Vec<Line> {
 }
 
 /// All rows, from the top down; in words what is near.
-fn draw(blocks: &[Block], right: f64, (title, near): (&str, &str)) -> Figure {
+fn draw(blocks: &[Block], right: f64, (title, near): (&str, &str), unit: TimeUnit) -> Figure {
     let rows: usize = blocks.iter().map(|block| block.lines.len()).sum();
     let outers = blocks.iter().flat_map(|block| &block.chosen).map(|(outer, _)| *outer);
     let right = 1.12 * outers.fold(right, f64::max);
@@ -202,15 +214,20 @@ fn draw(blocks: &[Block], right: f64, (title, near): (&str, &str)) -> Figure {
         }
     }
     let only = if let [block] = blocks { format!(", steps {}", block.ratio) } else { String::new() };
-    let x = Axis::linear(&format!("outer step (fs){only}"), 0.0, right);
+    let x = Axis::linear(&format!("{}{only}", axis(unit)), 0.0, right);
     let (low, high) = (-FOOT, rows as f64 - 1.0 + HEAD);
     let panel = Panel::new(x, Axis::linear("", low, high).ticks(ticks));
     let panel = notes.into_iter().fold(layers.on(panel, &Names::of_schemes(near)), Panel::note);
     Figure::of_rows(150.0, ROW * (high - low)).named(title).with(panel.legend(Place::Above))
 }
 
+/// The name of the horizontal axis.
+fn axis(unit: TimeUnit) -> &'static str {
+    if unit == TimeUnit::Plain { "outer step" } else { "outer step (fs)" }
+}
+
 /// Levers that would let the step grow: a row each, the steps to take and those that are proven for the band.
-pub fn levers(levers: &Levers, title: &str) -> Figure {
+pub fn levers(levers: &Levers, title: &str, unit: TimeUnit) -> Figure {
     let (rows, mut layers) = (levers.rows.len(), Layers::default());
     let ends = |own: &Lever| {
         let step = own.step.as_ref().map(|(step, _)| to_f64(step));
@@ -223,7 +240,7 @@ pub fn levers(levers: &Levers, title: &str) -> Figure {
         let step = own.step.as_ref().map_or(0.0, |(step, _)| to_f64(step));
         let masked = matches!(own.step, Some((_, Bound::Friction)));
         let line = Line {
-            third: if masked { 0.0 } else { step },
+            published: if masked { 0.0 } else { step },
             band: own.band_edge.map_or(0.0, |edge| edge.0),
             sampled: masked.then_some([0.0, step]).into_iter().collect(),
             near: own.first.map(|first| first.0),
@@ -235,8 +252,7 @@ pub fn levers(levers: &Levers, title: &str) -> Figure {
     }
     layers.beyond.clear();
     let (low, high) = (-FOOT, rows as f64 - 1.0 + FOOT);
-    let panel =
-        Panel::new(Axis::linear("outer step (fs)", 0.0, right), Axis::linear("", low, high).ticks(ticks));
+    let panel = Panel::new(Axis::linear(axis(unit), 0.0, right), Axis::linear("", low, high).ticks(ticks));
     let names = Names {
         safe: "to be taken",
         caution: "proven, all periods in the band",
@@ -263,7 +279,7 @@ impl<'a> Names<'a> {
     fn of_schemes(near: &'a str) -> Names<'a> {
         Names {
             safe: "proven stable, all periods in the band",
-            caution: "the same, beyond *T*/3: published drift",
+            caution: "the same, beyond what is published",
             sampled: "growing at every step sampled",
             near,
         }
@@ -299,8 +315,8 @@ impl Layers {
                 list.push(Band { at: [lo, hi.min(right)], row });
             }
         };
-        push(&mut self.safe, 0.0, line.third.min(line.band));
-        push(&mut self.caution, line.third, line.band);
+        push(&mut self.safe, 0.0, line.published.min(line.band));
+        push(&mut self.caution, line.published, line.band);
         push(&mut self.beyond, line.band, right);
         line.unstable.iter().for_each(|&[lo, hi]| push(&mut self.unstable, lo, hi));
         line.sampled.iter().for_each(|&[lo, hi]| push(&mut self.sampled, lo, hi));

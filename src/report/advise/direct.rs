@@ -4,8 +4,9 @@ use super::lines::{self, advised, read_from};
 use super::tables::{self, enclosed, for_people, published};
 use super::words::{fs, nearest, percent, within};
 use crate::advise::engine::Reading;
+use crate::advise::unit::TimeUnit;
 use crate::advise::unit::decimal;
-use crate::advise::{Adds, DirectFinding, DirectFindings, Rung, TIMES};
+use crate::advise::{Adds, Caution, DirectFinding, DirectFindings, HEEDED, Place, Rung, TIMES};
 use crate::number::Rational;
 use crate::report::document::{Document, enclosure};
 use crate::report::record::Record;
@@ -21,7 +22,7 @@ const UNKNOWN: [&str; 2] = [
 pub(super) fn document(findings: &DirectFindings, reading: Option<&Reading>, notes: &[String]) -> Document {
     let (rows, ladder) = (rows(findings), ladder(findings));
     let best = &findings.schemes[0];
-    let step = advised(&best.scheme, &best.safe, &best.largest);
+    let step = advised(&best.scheme, &best.safe);
     let document = Document::new("advise-direct")
         .entry("asymmetries", findings.asymmetries.clone())
         .entry("accuracy", findings.accuracy)
@@ -30,7 +31,12 @@ pub(super) fn document(findings: &DirectFindings, reading: Option<&Reading>, not
         .entry("fastest_period", findings.fastest)
         .entry("rows", rows.to_json_rows())
         .entry("ladder", ladder.to_json_rows())
-        .entry("published", published(FASTEST, |parts| (findings.fastest / parts as f64).into()))
+        .entry(
+            "published",
+            published(best.scheme.steps().len(), [FASTEST; 2], |of: &Caution| {
+                (findings.fastest / of.place.parts()).into()
+            }),
+        )
         .entry("unknown", UNKNOWN.to_vec())
         .entries(reading.map(|own| ("engine", tables::engine(step, own))));
     let has_friction = findings.friction.is_some();
@@ -68,7 +74,10 @@ fn summary(findings: &DirectFindings, reading: Option<&Reading>, notes: &[String
     let mut lines = vec![choice(findings, best)];
     lines.extend(findings.schemes.iter().map(|own| line(findings, own)));
     if let Some(reading) = reading {
-        lines.extend(read_from(advised(&best.scheme, &best.safe, &best.largest), reading));
+        lines.extend(read_from(advised(&best.scheme, &best.safe), reading));
+        lines.extend(lines::grompp(reading, FASTEST, |n| {
+            nearest((findings.fastest / n as f64, findings.fastest / n as f64), 3)
+        }));
     }
     let asymmetries: Vec<String> = findings.asymmetries.iter().map(|x| nearest((*x, *x), 3)).collect();
     lines.push(format!(
@@ -77,7 +86,12 @@ fn summary(findings: &DirectFindings, reading: Option<&Reading>, notes: &[String
         rate(findings.without_steps)
     ));
     lines.extend(looked_at(best));
-    lines.push(lines::published(FASTEST, |n| nearest((findings.fastest / n, findings.fastest / n), 4)));
+    let part = |place: Place| {
+        let step = findings.fastest / place.parts();
+        format!("{} fs", nearest((step, step), 4))
+    };
+    let inner = (!findings.harmonic).then(|| part(Place::Turn(HEEDED)));
+    lines.push(lines::published(FASTEST, best.scheme.steps().len(), inner, part));
     lines.push(format!("  unknown    {}", UNKNOWN[0]));
     lines.extend(notes.iter().map(|note| format!("  read       {note}")));
     if let Some(friction) = &findings.friction {
@@ -95,7 +109,7 @@ fn choice(findings: &DirectFindings, best: &DirectFinding) -> String {
     let times = |outer: &Rational| format!("{} ({} of {})", fs(outer), decimal(&(outer / step)), fs(step));
     let third = nearest((findings.fastest / 3.0, findings.fastest / 3.0), 3);
     let proven = format!(
-        "up to it every multiple of {} is proven to add no more growth than the forces have by themselves, with all periods {} shorter too",
+        "up to it every multiple of {} is proven to grow at most twice as fast as the forces do by themselves, with all periods {} shorter too",
         fs(step),
         percent(&findings.band)
     );
@@ -110,12 +124,21 @@ fn choice(findings: &DirectFindings, best: &DirectFinding) -> String {
         ),
         (None, Some(largest)) => {
             format!(
-                "advice: outer step {} is the longest: {proven}; T/3 = {third} fs is below the inner step",
+                "advice: none: the step of {} is not below T/6.28 = {} fs of {FASTEST} or T/3 = {third} fs: take a shorter one. {} is the longest \
+                 multiple of small oscillations: {proven}",
+                fs(step),
+                nearest(
+                    (
+                        findings.fastest / Place::Turn(HEEDED).parts(),
+                        findings.fastest / Place::Turn(HEEDED).parts()
+                    ),
+                    3
+                ),
                 times(largest)
             )
         }
         _ => format!(
-            "advice: no multiple of {} is proven to add as little growth as the forces have by themselves, with all periods {} shorter too",
+            "advice: no multiple of {} is proven to grow at most twice as fast as the forces do by themselves, with all periods {} shorter too",
             fs(step),
             percent(&findings.band)
         ),
@@ -131,6 +154,9 @@ fn line(findings: &DirectFindings, own: &DirectFinding) -> String {
         _ => ": do not use".into(),
     };
     let adds = match own.adds {
+        Adds::Little if own.rate == Some((0.0, 0.0)) && findings.accuracy.is_some() => {
+            "stable (proven of the Jacobians given)".into()
+        }
         Adds::Little if own.rate == Some((0.0, 0.0)) => "stable (proven)".into(),
         Adds::Little => format!(
             "grows as the forces do by themselves or up to twice as fast (proven), {}",
@@ -165,7 +191,7 @@ fn line(findings: &DirectFindings, own: &DirectFinding) -> String {
         }
         _ => String::new(),
     };
-    let run = within(own.within_run, &findings.length);
+    let run = within(own.within_run, &findings.length, TimeUnit::Femtoseconds);
     format!("{:7} {adds}{of_steps}{tenfold}{masks}{run}{band}", fs(own.scheme.outer()))
 }
 

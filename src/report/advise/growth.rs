@@ -5,6 +5,7 @@ use plot::{Anchor, Axis, Figure, Layer, Note, Panel, Place, Shape, Stroke};
 
 use super::chart::within;
 use super::words::fs;
+use crate::advise::unit::TimeUnit;
 use crate::advise::{Adds, DirectFinding, DirectFindings, Rung};
 use crate::number::Rational;
 use crate::number::rational::to_f64;
@@ -29,7 +30,12 @@ pub(super) fn figure(findings: &DirectFindings, title: &str) -> Option<Figure> {
     let figure = Figure::double_column(HEIGHT * inner.len() as f64).columns(1).named(title);
     let panels = inner.iter().map(|(step, schemes)| panel(findings, step, schemes));
     let drawn = (!inner.is_empty()).then(|| panels.fold(figure, Figure::with))?;
-    Some(drawn.footed(&within(plot::Foot::default(), &findings.band, findings.friction.as_ref())))
+    Some(drawn.footed(&within(
+        plot::Foot::default(),
+        &findings.band,
+        findings.friction.as_ref(),
+        TimeUnit::Femtoseconds,
+    )))
 }
 
 /// Per ps, in the middle of its enclosure; no lower than what is known where it is not bounded.

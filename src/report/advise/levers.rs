@@ -4,7 +4,7 @@ use serde_json::Value;
 
 use super::tables::{enclosed, for_people};
 use super::words::nearest;
-use crate::advise::unit::decimal;
+use crate::advise::unit::{TimeUnit, decimal};
 use crate::advise::{Bound, Engine, Lever, Levers, Way};
 use crate::number::Rational;
 use crate::number::rational::to_f64;
@@ -28,25 +28,26 @@ fn joined(engines: &[Engine], each: impl Fn(&Engine) -> String) -> Cell {
     if all.is_empty() { Cell::Missing } else { Cell::Text(all.join("; ")) }
 }
 
-fn record() -> Record<'static, Lever> {
+fn record(unit: TimeUnit) -> Record<'static, Lever> {
+    let [time, _] = unit.names();
     let column = |key: &str, title: &str| Column::new(key).in_words(title);
     let rounded = |x: Option<Rational>| Cell::from(x.as_ref().map(to_f64));
     let step = |of: &Lever| of.step.as_ref().map(|(step, _)| step.clone());
     Record::new()
         .field(Column::new("lever").left(), |of: &Lever| of.name.as_str().into())
         .field(Column::new("method").left(), |of| method(of.way).into())
-        .field(enclosed("first", "first unstable").in_unit("fs"), |of| of.first.into())
-        .field(column("first_exact", "exactly").in_unit("fs"), |of| of.exact.as_ref().map(Cell::exact).into())
+        .field(enclosed("first", "first unstable").in_unit(time), |of| of.first.into())
+        .field(column("first_exact", "exactly").in_unit(time), |of| of.exact.as_ref().map(Cell::exact).into())
         .field(Column::new("free"), |of| of.is_free.into())
-        .field(enclosed("band_edge", "proven below").in_unit("fs"), |of| of.band_edge.into())
-        .field(column("step", "take").in_unit("fs"), move |of| step(of).as_ref().map(Cell::exact).into())
+        .field(enclosed("band_edge", "proven below").in_unit(time), |of| of.band_edge.into())
+        .field(column("step", "take").in_unit(time), move |of| step(of).as_ref().map(Cell::exact).into())
         .field(column("bound", "bounded by").left(), |of| {
             of.step.as_ref().map(|(_, bound)| bound.name()).into()
         })
-        .field(Column::new("inner").in_unit("fs"), |of| of.inner.as_ref().map(Cell::exact).into())
-        .field(column("slow_per_ps", "slow/ps"), move |of| rounded(of.slow_per_ps()))
-        .field(column("fast_per_ps", "fast/ps"), move |of| rounded(of.fast_per_ps()))
-        .field(column("solves_per_ps", "solves/ps"), move |of| rounded(of.solves_per_ps()))
+        .field(Column::new("inner").in_unit(time), |of| of.inner.as_ref().map(Cell::exact).into())
+        .field(column("slow_per_ps", "slow/ps"), move |of| rounded(of.slow_per_ps(unit)))
+        .field(column("fast_per_ps", "fast/ps"), move |of| rounded(of.fast_per_ps(unit)))
+        .field(column("solves_per_ps", "solves/ps"), move |of| rounded(of.solves_per_ps(unit)))
         .field(Column::new("gain"), move |of| rounded(of.gain.clone()))
         .field(column("engines", "who has it").left(), |of| {
             joined(of.way.engines(), |own| format!("{} {}", own.name, own.keyword))
@@ -55,7 +56,7 @@ fn record() -> Record<'static, Lever> {
 }
 
 /// For people: three digits; who has it stands in lines.
-fn shown(levers: &Levers, full: &Table) -> Table {
+fn shown(levers: &Levers, full: &Table, unit: TimeUnit) -> Table {
     let columns: Vec<String> =
         ["lever", "first", "band_edge", "step", "bound", "slow_per_ps", "fast_per_ps", "gain"]
             .map(Into::into)
@@ -69,10 +70,10 @@ fn shown(levers: &Levers, full: &Table) -> Table {
             row[1] = Cell::Text("none".into());
         }
         row[3] = own.step.as_ref().map(|(step, _)| Cell::Exact(decimal(step))).into();
-        row[5] = own.slow_per_ps().as_ref().map(text).into();
-        row[6] = match own.solves_per_ps() {
+        row[5] = own.slow_per_ps(unit).as_ref().map(text).into();
+        row[6] = match own.solves_per_ps(unit) {
             Some(solves) => Cell::Text(format!("{} solves", nearest((to_f64(&solves), to_f64(&solves)), 3))),
-            None => own.fast_per_ps().as_ref().map(text).into(),
+            None => own.fast_per_ps(unit).as_ref().map(text).into(),
         };
         row[7] = own.gain.as_ref().map(text).into();
         table.push(row);
@@ -81,14 +82,14 @@ fn shown(levers: &Levers, full: &Table) -> Table {
 }
 
 /// Adds the table and what was left out, where they were asked for.
-pub(super) fn add(document: Document, levers: Option<&Levers>) -> Document {
+pub(super) fn add(document: Document, levers: Option<&Levers>, unit: TimeUnit) -> Document {
     let Some(levers) = levers else { return document };
     let caption = "What would let the outer step grow: proven below for all periods in the band";
-    let table = record().table("levers", caption, &levers.rows);
+    let table = record(unit).table("levers", caption, &levers.rows);
     let document = document
         .entry("levers", table.to_json_rows())
         .entry("levers_left_out", Value::from(levers.left_out.clone()));
-    if levers.rows.is_empty() { document } else { document.and_rows(shown(levers, &table)) }
+    if levers.rows.is_empty() { document } else { document.and_rows(shown(levers, &table, unit)) }
 }
 
 /// The three levers that let the outer step grow most, longer than kicks and drifts as they are.
@@ -116,7 +117,7 @@ fn gained(own: &Lever) -> Option<(&Lever, &Rational, &Rational)> {
 }
 
 /// The lines beside the table.
-pub(super) fn lines(levers: &Levers) -> Vec<String> {
+pub(super) fn lines(levers: &Levers, unit: TimeUnit) -> Vec<String> {
     let mut lines = Vec::new();
     let best = levers.rows.iter().filter(|own| own.gain.is_some() && own.way != Way::Friction);
     let best = best.max_by(|a, b| a.gain.cmp(&b.gain).then(std::cmp::Ordering::Greater));
@@ -131,8 +132,8 @@ pub(super) fn lines(levers: &Levers) -> Vec<String> {
             String::new()
         };
         lines.push(format!(
-            "  levers     the longest step: {} fs by {} (bounded by {}){word}",
-            decimal(step),
+            "  levers     the longest step: {} by {} (bounded by {}){word}",
+            unit.of(decimal(step)),
             own.name,
             bound.name()
         ));

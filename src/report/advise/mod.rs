@@ -14,9 +14,11 @@ mod words;
 use super::document::Document;
 use super::record::Record;
 use super::table::{Cell, Column, Table};
+use serde_json::Value;
+
 use crate::advise::engine::Reading;
-use crate::advise::unit::decimal;
-use crate::advise::{Advice, Answer, DirectFindings, Findings, Mode, Pair, Row, Unstable};
+use crate::advise::unit::{TimeUnit, decimal};
+use crate::advise::{Advice, Answer, Caution, DirectFindings, Findings, Mode, Pair, Row, Unstable};
 use crate::number::Rational;
 
 #[cfg(feature = "figure")]
@@ -58,7 +60,14 @@ pub fn figure(of: View, title: &str) -> Option<plot::Figure> {
 
 /// JSON and CSV have all columns of the rows, people those that fit paper.
 fn of_periods(advice: &Advice, reading: Option<&Reading>) -> Document {
-    let (modes, pairs, fastest) = (mode_table(advice), pair_table(advice), &advice.modes[advice.fastest]);
+    let (modes, pairs) = (mode_table(advice), pair_table(advice));
+    // The fastest on any clock but the outermost, and on the innermost one.
+    let fastest = &advice.modes[advice.fastest];
+    let on_first = advice.modes.iter().filter(|mode| mode.clock == Some(0));
+    let inner = on_first.max_by(|a, b| a.stiffness.cmp(&b.stiffness)).unwrap_or(fastest);
+    let whose = [fastest, inner];
+    let limit = |of: &Caution| whose[usize::from(of.inner)].at(of.place).into();
+    let steps = advice.schemes[0].scheme.steps().len();
     let rows = row_table(advice, true);
     let document = Document::new("advise")
         .entry("modes", modes.to_json_rows())
@@ -66,12 +75,19 @@ fn of_periods(advice: &Advice, reading: Option<&Reading>) -> Document {
         .entry("rows", rows.to_json_rows())
         .entry("intervals", interval_table(advice).to_json_rows())
         .entry("pairs", pairs.to_json_rows())
-        .entry("published", published(&fastest.name, |parts| fastest.part(parts).into()))
+        .entry(
+            "published",
+            if advice.lacks_fast {
+                Vec::<Value>::new().into()
+            } else {
+                published(steps, whose.map(|own| own.name.as_str()), limit)
+            },
+        )
         .entry("unknown", lines::unknown(advice).to_vec());
     let changed = advice.modes.iter().any(|mode| mode.before().is_some());
     let modes = for_people(&modes, |key| key != "stiffness" && (key != "before" || changed));
     let document = document.long_rows(rows).for_people(row_table(advice, false));
-    let document = levers::add(document, advice.levers.as_ref()).and_rows(modes);
+    let document = levers::add(document, advice.levers.as_ref(), advice.unit).and_rows(modes);
     let document = if pairs.rows().is_empty() { document } else { document.and_rows(pairs) };
     let step = lines::of_answer(&advice.schemes[0]);
     let document = document.entries(reading.map(|own| ("engine", engine(step, own))));
@@ -79,21 +95,32 @@ fn of_periods(advice: &Advice, reading: Option<&Reading>) -> Document {
 }
 
 fn mode_table(advice: &Advice) -> Table {
+    let caption = format!(
+        "Periods{}, and the steps that they limit",
+        if advice.unit == TimeUnit::Plain { "" } else { " in fs" }
+    );
     let mut record = Record::new()
         .field(Column::new("name").in_words("mode").left(), |mode: &Mode| mode.name.as_str().into())
         .field(Column::new("from").left(), |mode| mode.origin.name().into())
         .field(Column::new("clock"), |mode| mode.clock.map(|k| k as u64 + 1).into())
-        .field(Column::new("stiffness").in_unit("1/fs^2"), |mode| Cell::exact(&mode.stiffness))
-        .field(enclosed("period", "T").in_unit("fs"), |mode| mode.period().into())
+        .field(
+            Column::new("stiffness").in_unit(if advice.unit == TimeUnit::Plain {
+                "1/time^2"
+            } else {
+                "1/fs^2"
+            }),
+            |mode| Cell::exact(&mode.stiffness),
+        )
+        .field(enclosed("period", "T").in_unit(advice.unit.names()[0]), |mode| mode.period().into())
         .field(enclosed("verlet", "T/pi"), |mode| mode.verlet().into());
     for (parts, key) in [(2, "half"), (3, "third"), (4, "quarter"), (5, "fifth"), (10, "tenth")] {
         record = record.field(enclosed(key, &format!("T/{parts}")), move |mode| mode.part(parts).into());
     }
-    record.field(Column::new("before").in_words("T before").in_unit("fs"), |mode| mode.before().into()).table(
-        "modes",
-        "Periods in fs, and the steps that they limit",
-        &advice.modes,
-    )
+    record
+        .field(Column::new("before").in_words("T before").in_unit(advice.unit.names()[0]), |mode| {
+            mode.before().into()
+        })
+        .table("modes", &caption, &advice.modes)
 }
 
 fn scheme_table(advice: &Advice) -> Table {
@@ -103,6 +130,7 @@ fn scheme_table(advice: &Advice) -> Table {
         .field(Column::new("band_edge").enclosure(), |answer| answer.band_edge.into())
         .field(Column::new("largest"), |answer| answer.largest.as_ref().map(Cell::exact).into())
         .field(Column::new("safe"), |answer| answer.safe.as_ref().map(Cell::exact).into())
+        .field(Column::new("bound"), |answer| answer.bound.map(|own| own.name()).into())
         .field(Column::new("needs"), |answer| answer.needs.into())
         .field(Column::new("within_run"), |answer| answer.within_run.into())
         .table("schemes", "", &advice.schemes)
@@ -121,6 +149,7 @@ type Which = fn(&Row) -> Option<&Unstable>;
 type Ratio = fn(&(Rational, Rational)) -> &Rational;
 
 fn row_table(advice: &Advice, all: bool) -> Table {
+    let (unit, [time, rate]) = (advice.unit, advice.unit.names());
     let named = advice.schemes.iter().enumerate().flat_map(|(n, answer)| {
         let one = move |row| Named { scheme: n + 1, answer, mode: "", row };
         answer.rows.iter().map(one)
@@ -128,17 +157,20 @@ fn row_table(advice: &Advice, all: bool) -> Table {
     let named: Vec<Named> = named.map(|of| Named { mode: &advice.modes[of.row.mode].name, ..of }).collect();
     let mut record = Record::new()
         .field(Column::new("scheme"), |of: &Named| (of.scheme as u64).into())
-        .field(Column::new("outer").in_words("outer step").in_unit("fs"), move |of| {
+        .field(Column::new("outer").in_words("outer step").in_unit(time), move |of| {
             let outer = of.answer.scheme.outer();
             if all { Cell::exact(outer) } else { Cell::Exact(decimal(outer)) }
         })
         .field(Column::new("mode").left(), |of| of.mode.into())
         .field(Column::new("kind").left(), |of| of.row.found.kind.name().into())
         .field(enclosed("trace", "Tr"), |of| of.row.found.trace.into())
-        .field(enclosed("growth_rate", "growth").in_unit("1/ps"), |of| per_ps(of.row.found.rate).into())
+        .field(enclosed("growth_rate", "growth").in_unit(rate), move |of| per(unit, of.row.found.rate).into())
         .field(enclosed("tenfold_steps", "tenfold in steps"), |of| of.row.tenfold_steps.into())
-        .field(enclosed("masked_above", "masked above a friction").in_unit("1/ps"), |of| {
-            of.row.masking.map(per_ps).into()
+        .field(enclosed("masked_above", "masked above a friction").in_unit(rate), move |of| {
+            of.row.masking.map(|own| per(unit, own)).into()
+        })
+        .field(Column::new("masked_stays").in_words("and above any larger one"), |of| {
+            of.row.masking_stays.into()
         })
         .field(Column::new("damped"), |of| of.row.is_damped.into());
     let ratios: [(&str, Ratio); 2] = [("ratios_lower", |(lo, _)| lo), ("ratios_upper", |(_, hi)| hi)];
@@ -157,7 +189,7 @@ fn row_table(advice: &Advice, all: bool) -> Table {
         [("lower", "from", |of| Some(of.lower)), ("upper", "to", |of| of.upper)];
     for (key, title, which) in places.into_iter().take(shown) {
         for (end, word, find) in ends {
-            let column = enclosed(&format!("{key}_{end}"), &format!("{title} {word}")).in_unit("fs");
+            let column = enclosed(&format!("{key}_{end}"), &format!("{title} {word}")).in_unit(time);
             record = record.field(column, move |of| which(of.row).and_then(find).into());
         }
         let worst = Column::new(&format!("{key}_tenfold_steps")).in_words("worst: tenfold in steps");
@@ -173,7 +205,7 @@ fn row_table(advice: &Advice, all: bool) -> Table {
     }
     let masked = named.iter().any(|of| of.row.masking.is_some());
     for_people(&table, |key| match key {
-        "masked_above" => masked,
+        "masked_above" | "masked_stays" => masked,
         "damped" => advice.friction.is_some(),
         _ => true,
     })
@@ -195,8 +227,9 @@ fn interval_table(advice: &Advice) -> Table {
 }
 
 /// A rate per fs as one per ps, rounded outward.
-fn per_ps((lo, hi): (f64, f64)) -> (f64, f64) {
-    if (lo, hi) == (0.0, 0.0) { (lo, hi) } else { ((1000.0 * lo).next_down(), (1000.0 * hi).next_up()) }
+fn per(unit: TimeUnit, (lo, hi): (f64, f64)) -> (f64, f64) {
+    let times = f64::from(unit.in_rates());
+    if (lo, hi) == (0.0, 0.0) { (lo, hi) } else { ((times * lo).next_down(), (times * hi).next_up()) }
 }
 
 fn pair_table(advice: &Advice) -> Table {
@@ -208,8 +241,9 @@ fn pair_table(advice: &Advice) -> Table {
         .field(Column::new("scheme"), |of: &(usize, &Pair)| (of.0 as u64).into())
         .field(Column::new("first").left(), move |of: &(usize, &Pair)| name(of.1.modes[0]))
         .field(Column::new("second").left(), move |of: &(usize, &Pair)| name(of.1.modes[1]))
-        .field(Column::new("near").in_words("outer step near").in_unit("fs"), |of: &(usize, &Pair)| {
-            super::decimal::rounded(of.1.near, 4).into()
-        });
+        .field(
+            Column::new("near").in_words("outer step near").in_unit(advice.unit.names()[0]),
+            |of: &(usize, &Pair)| super::decimal::rounded(of.1.near, 4).into(),
+        );
     record.table("pairs", "Where two modes may resonate with each other (first order, not proven)", &pairs)
 }

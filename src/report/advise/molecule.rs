@@ -2,10 +2,10 @@
 
 use super::lines::{self, advised, read_from};
 use super::tables::{self, enclosed, for_people, published};
-use super::words::{choice, down, fs, nearest, percent, within};
+use super::words::{Choice, cap, down, fs, nearest, percent, within};
 use crate::advise::engine::Reading;
-use crate::advise::unit::decimal;
-use crate::advise::{Finding, Findings, Group, Scheme, Status};
+use crate::advise::unit::{TimeUnit, decimal};
+use crate::advise::{Bound, Caution, Finding, Findings, Group, Scheme, Status};
 use crate::number::Rational;
 use crate::number::rational::to_f64;
 use crate::report::document::Document;
@@ -28,7 +28,12 @@ pub(super) fn document(findings: &Findings, reading: Option<&Reading>, notes: &[
         .entry("groups", groups.to_json_rows())
         .entry("rows", rows.to_json_rows())
         .entry("intervals", intervals.to_json_rows())
-        .entry("published", published(called(fastest), |parts| (fastest.period.0 / parts as f64).into()))
+        .entry(
+            "published",
+            published(best.scheme.steps().len(), [called(fastest); 2], |of: &Caution| {
+                (fastest.period.0 / of.place.parts()).into()
+            }),
+        )
         .entry("unknown", UNKNOWN.to_vec())
         .entries(reading.map(|own| ("engine", tables::engine(advised_step(best), own))))
         .long_rows(for_people(&rows, |key| match key {
@@ -36,7 +41,7 @@ pub(super) fn document(findings: &Findings, reading: Option<&Reading>, notes: &[
             "masked_above" | "damped" => findings.friction.is_some(),
             _ => true,
         }));
-    super::levers::add(document, findings.levers.as_ref())
+    super::levers::add(document, findings.levers.as_ref(), TimeUnit::Femtoseconds)
         .and_rows(for_people(&intervals, |_| true))
         .and_rows(for_people(&groups, |_| true))
         .summary(&summary(findings, reading, notes))
@@ -49,7 +54,7 @@ const UNKNOWN: [&str; 2] = [
 ];
 
 fn advised_step(finding: &Finding) -> Option<&Rational> {
-    advised(&finding.scheme, &finding.safe, &finding.largest)
+    advised(&finding.scheme, &finding.safe)
 }
 
 fn summary(findings: &Findings, reading: Option<&Reading>, notes: &[String]) -> Vec<String> {
@@ -58,11 +63,18 @@ fn summary(findings: &Findings, reading: Option<&Reading>, notes: &[String]) -> 
     let name = named(fastest);
     let band = percent(&findings.band);
     // The safe step, its limit, the levers; then the steps that were asked for.
-    let safe = choice(&best.scheme, [&best.safe, &best.largest], &band, (&name, (period, period)));
-    let mut lines = vec![safe, limit(&name, period, best), super::levers::longer(findings.levers.as_ref())];
+    let unit = TimeUnit::Femtoseconds;
+    let fastest = (name.as_str(), (period, period));
+    let (scheme, caps) = (&best.scheme, &findings.caps);
+    let (edge, harmonic) = (best.band_edge.unwrap_or(0.0), findings.harmonic);
+    let (safe, bound, largest) = (&best.safe, best.bound, &best.largest);
+    let choice = Choice { scheme, safe, bound, largest, caps, band: &band, fastest, edge, harmonic, unit };
+    let mut lines =
+        vec![choice.words(), limit(&name, findings, best), super::levers::longer(findings.levers.as_ref())];
     lines.extend(findings.schemes.iter().map(|own| line(findings, own)));
     if let Some(reading) = reading {
         lines.extend(read_from(advised_step(best), reading));
+        lines.extend(lines::grompp(reading, &name, |n| rounded(period / n as f64, 3)));
     }
     let (ratio, slow_ones) = ratios(&best.scheme);
     if let Some(edge) = best.band_edge {
@@ -73,18 +85,21 @@ fn summary(findings: &Findings, reading: Option<&Reading>, notes: &[String]) -> 
             findings.accuracy
         ));
     }
-    lines.push(lines::published(&name, |n| rounded(period / n, 4)));
+    let inner = findings.caps.inner().map(|own| cap(own, unit));
+    lines.push(lines::published(&name, best.scheme.steps().len(), inner, |place| {
+        unit.of(rounded(period / place.parts(), 4))
+    }));
     lines.extend((2..).zip(&findings.between).map(|(level, own)| between(level, *own)));
     lines.extend((best.scheme.steps().len() > 1).then(|| slow(findings.slow)));
     lines.push(format!("  unknown    {}", UNKNOWN[0]));
     lines.extend(notes.iter().map(|note| format!("  read       {note}")));
     if let Some(friction) = &findings.friction {
-        lines.push(lines::friction(friction));
+        lines.push(lines::friction(friction, unit));
     }
     if let Some(removed) = &findings.removed {
         lines.push(format!("  rigid      {} motions projected out, by {}", removed.count, removed.found_by));
     }
-    lines.extend(findings.levers.iter().flat_map(super::levers::lines));
+    lines.extend(findings.levers.iter().flat_map(|own| super::levers::lines(own, unit)));
     lines
 }
 
@@ -108,11 +123,21 @@ fn rounded(x: f64, digits: usize) -> String {
 }
 
 /// The bound of the outer step.
-fn limit(name: &str, period: f64, own: &Finding) -> String {
+fn limit(name: &str, findings: &Findings, own: &Finding) -> String {
     let first = own.first.map_or_else(String::new, |(lo, hi)| {
         format!("; the first unstable outer step is {} fs (proven)", nearest((lo, hi), 4))
     });
-    format!("limit: {name}: outer steps near T/3 = {} fs drift (published){first}", rounded(period / 3.0, 3))
+    let period = findings.groups[0].period.0;
+    match findings.caps.outer().map(|(cap, bound)| (self::cap(cap, TimeUnit::Femtoseconds), bound)) {
+        Some((_, Bound::Third)) => {
+            format!(
+                "limit: {name}: outer steps near T/3 = {} fs drift (published){first}",
+                rounded(period / 3.0, 3)
+            )
+        }
+        Some((cap, bound)) => format!("limit: {name}: {} = {cap}, h w <= 1 (published){first}", bound.name()),
+        None => format!("limit: {name}{first}"),
+    }
 }
 
 /// " at the ratio 8", " at the ratios 1:2:8", and which periods beside the fast ones may be off.
@@ -158,7 +183,6 @@ fn interval(own: &Finding) -> Option<String> {
 
 fn line(findings: &Findings, own: &Finding) -> String {
     let outer = to_f64(own.scheme.outer());
-    let third = findings.groups[0].period.0 / 3.0;
     let next = || {
         let margin = own.first.map_or_else(String::new, |(lo, hi)| {
             format!(", margin {} fs", nearest((lo - outer, hi - outer), 3))
@@ -167,7 +191,7 @@ fn line(findings: &Findings, own: &Finding) -> String {
     };
     let what = match own.status {
         Status::Safe => format!("safe{}", next()),
-        Status::Caution => format!("stable{}; caution: not below T/3 = {} fs", next(), rounded(third, 3)),
+        Status::Caution => format!("stable{}; caution: {}", next(), not_below(findings, own)),
         Status::Near => {
             format!("stable{}: less than the band of {}: do not use", next(), percent(&findings.band))
         }
@@ -183,8 +207,26 @@ fn line(findings: &Findings, own: &Finding) -> String {
         }
         Status::Unstable => format!("unstable{}: do not use", grows(own)),
     };
-    let within = within(own.within_run, &findings.length);
+    let within = within(own.within_run, &findings.length, TimeUnit::Femtoseconds);
     format!("{:7} {what}{within}", fs(own.scheme.outer()))
+}
+
+/// What a step is not below.
+fn not_below(findings: &Findings, own: &Finding) -> String {
+    let unit = TimeUnit::Femtoseconds;
+    if let Some((clock, cap)) = findings.caps.too_long(&own.scheme) {
+        return format!(
+            "the step of {} is not below T/6.28 = {} of its own forces",
+            fs(&own.scheme.steps()[clock]),
+            self::cap(cap, unit)
+        );
+    }
+    let third = || unit.of(rounded(findings.groups[0].period.0 / 3.0, 3));
+    match findings.caps.outer() {
+        Some((_, Bound::Third)) => format!("not below T/3 = {}", third()),
+        Some((cap, bound)) => format!("not below {} = {}", bound.name(), self::cap(cap, unit)),
+        None => "not below what is published".into(),
+    }
 }
 
 /// ": tenfold in ...".
@@ -195,7 +237,10 @@ fn grows(own: &Finding) -> String {
     let friction = match (own.is_damped, own.masking) {
         (Some(true), _) => "masked by the friction given, which hides it and does not cure it".into(),
         (Some(false), Some(mask)) => {
-            format!("only a friction above {}/ps masks it, the one given does not", rounded(1000.0 * mask, 3))
+            format!(
+                "a friction of {}/ps masks it (proven), the one given does not",
+                rounded(1000.0 * mask, 3)
+            )
         }
         (None, Some(mask)) => {
             format!(
@@ -267,6 +312,7 @@ fn rows(findings: &Findings) -> Table {
         .field(column("band_edge", "stable below").in_unit("fs"), |own| own.band_edge.into())
         .field(Column::new("largest").in_unit("fs"), move |own| exact(&own.largest))
         .field(Column::new("safe").in_unit("fs"), move |own| exact(&own.safe))
+        .field(Column::new("bound").left(), |own| own.bound.map(|own| own.name()).into())
         .field(Column::new("within_run"), |own| own.within_run.into())
         .table("rows", "The molecule at each scheme of steps", &findings.schemes)
 }

@@ -3,8 +3,8 @@
 use serde_json::{Value, json};
 
 use super::words::nearest;
+use crate::advise::Caution;
 use crate::advise::engine::Reading;
-use crate::advise::{Caution, PUBLISHED};
 use crate::number::Rational;
 use crate::report::record::Record;
 use crate::report::table::{Cell, Column, Table};
@@ -15,16 +15,17 @@ pub fn engine(advised: Option<&Rational>, reading: &Reading) -> Value {
     json!({"name": reading.engine.name(), "dt": reading.engine.dt(), "forces": reading.forces, "used": reading.used, "remarks": reading.remarks, "rewritten": rewritten})
 }
 
-/// The published statements for the fastest mode, with their limits in fs: `part` of its period.
-pub fn published(mode: &str, part: impl Fn(u64) -> Cell + Send + Sync) -> Value {
+/// What is published about a scheme of so many steps, for the fastest mode on any clock but the outermost and for that on the innermost one: each with
+/// its limit in fs.
+pub fn published(steps: usize, modes: [&str; 2], limit: impl Fn(&Caution) -> Cell + Send + Sync) -> Value {
     let record = Record::new()
-        .field(Column::new("mode"), |_: &Caution| mode.into())
-        .field(Column::new("parts"), |of| of.parts.into())
+        .field(Column::new("mode"), |of: &Caution| modes[usize::from(of.inner)].into())
+        .field(Column::new("place"), |of| Cell::Text(of.place.name()))
         .field(Column::new("step"), |of| if of.inner { "inner" } else { "outer" }.into())
-        .field(Column::new("limit"), |of| part(of.parts))
+        .field(Column::new("limit"), |of| limit(of))
         .field(Column::new("statement"), |of| of.statement.into())
         .field(Column::new("source"), |of| of.source.into());
-    record.all(&PUBLISHED).into()
+    record.all(crate::advise::published(steps)).into()
 }
 
 /// A table for people: of its columns those that are to be shown, numbers rounded to five digits.
