@@ -17,7 +17,7 @@ from kickdrift._minimum import cooled, minimum
 from kickdrift._monodromy import Followed, Monodromy, unbalanced
 from kickdrift._orbit import monodromy
 from kickdrift._progress import Progress, shown
-from kickdrift._rigid import Doubles, is_held, norm, rigid_motions
+from kickdrift._rigid import Doubles, is_held, norm, off_the_mesh, rigid_motions
 from kickdrift._system import System
 
 
@@ -88,11 +88,14 @@ class Groups:
         follow = "Ask oscillations(...) for what grows about that orbit, as a run shows it"
         beside = unbalanced(pulls, norm(total) * scale, self.masses, unit, follow)
         moved = rigid_motions(where, self.masses, rotations=False)
-        held = not self.has_mesh and is_held(total, moved, sum(error for _, error in measured.values()))
+        matrices = [matrix for matrix, _ in measured.values()]
+        held = not self.has_mesh and is_held(matrices, moved, sum(error for _, error in measured.values()))
         root = np.sqrt(np.repeat(self.masses, 3))
-        potentials = {}
+        potentials, beside = {}, list(beside)
         for (name, (matrix, _)), step in zip(measured.items(), self.steps, strict=True):
             own = (matrix + matrix.T) / 2 if symmetric else matrix
+            if self.has_mesh:
+                own = off_the_mesh(own, moved, name, accuracy, beside)
             potentials[name] = (step, own * np.outer(root, root))
         made = System.from_hessians(
             self.masses,

@@ -20,7 +20,7 @@ from kickdrift._minimum import SMALLEST_PART, firmed
 from kickdrift._monodromy import DRIFTS, Monodromy
 from kickdrift._numbers import frozen
 from kickdrift._progress import Progress
-from kickdrift._rigid import Doubles, is_held, rigid_motions
+from kickdrift._rigid import Doubles, is_held, off_the_mesh, rigid_motions
 from kickdrift._system import System
 
 
@@ -227,7 +227,7 @@ def monodromy(
     values = eigenvalues(half.matrix, half.struck, found.residual)
     measured = (about, frozen(start.copy()), away, period, frozen(half.matrix), found.residual, *values)
     moved = rigid_motions(start, held.masses, rotations=False)
-    keep = has_field or (not has_mesh and is_held(total, moved, error))
+    keep = has_field or (not has_mesh and is_held([total], moved, error))
     sides: dict[str, Any] = {"positions": start, "turned": half.struck[-1].positions, "periodic": is_boxed}
     masses, root, struck = held.masses, held.root, half.struck
     ahead = found.residual * (float(np.ptp(start, axis=0).max()) or 1.0)
@@ -239,6 +239,11 @@ def monodromy(
             sides = {} if keep else {"rigid": np.array(rigid)}
             masses = root = np.ones(half.first.shape[1])
         potentials, accuracy = along(struck, dict(zip(forces, steps, strict=True)), root, ahead)
+        if is_boxed and not keep and not held.distances:
+            weight, notes = np.outer(root, root), []
+            for name, (step, kicks) in potentials.items():
+                free = [off_the_mesh(own / weight, moved, name, accuracy, notes) * weight for own in kicks]
+                potentials[name] = (step, np.array(free))
     except KickdriftError as refused:
         return Monodromy(*measured, None, str(refused), time_unit, found.drift)
     made = System.along_orbit(masses, potentials, accuracy=accuracy, time_unit=time_unit, keep_rigid=keep, **sides)

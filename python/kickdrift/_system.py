@@ -140,7 +140,7 @@ class System(Frozen):
             energy/length², by name; minus the derivative of a force that is no gradient. Two sparse matrices or arrays
             of SciPy are decided by sparse factorizations, in the first stable region: some 10^5 degrees of freedom.
         positions : array of doubles, shape (n/3, 3), optional
-            By which rigid motions are projected out; else the null space of the total is.
+            By which rigid motions are projected out; else those that every Hessian leaves free within its accuracy are.
         accuracy : float
             How well the Hessians are known, relative to their norms; verdicts tell whether they stand within it.
         title : str, optional

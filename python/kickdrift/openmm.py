@@ -34,7 +34,7 @@ from kickdrift._openmm.forces import Engine, engine_of, led_downhill, masses_of,
 from kickdrift._openmm.rest import at_rest, near_minimum, relaxed
 from kickdrift._orbit import monodromy
 from kickdrift._progress import Progress, shown
-from kickdrift._rigid import Doubles, is_held, norm, rigid_motions
+from kickdrift._rigid import Doubles, is_held, norm, off_the_mesh, rigid_motions
 from kickdrift._system import System
 
 __all__ = ["bands", "oscillations", "system"]
@@ -194,9 +194,13 @@ def system(
     keep = chosen is not None or _is_held(system, where, engine.masses, frame, measured)
     root = np.sqrt(np.repeat(engine.masses[kept], 3))
     labels, elements, bonded = names_of(masses_of(system), topology, engine.moving[kept])
+    full = {own.name: own.full for own in measured}
+    if system.usesPeriodicBoundaryConditions() and not keep:
+        moved = rigid_motions(where[kept], engine.masses[kept], rotations=False)
+        full = {name: off_the_mesh(own, moved, name, accuracy, notes) for name, own in full.items()}
     made = System.from_hessians(
         engine.masses[kept],
-        {own.name: (own.step, own.full * np.outer(root, root)) for own in measured},
+        {own.name: (own.step, full[own.name] * np.outer(root, root)) for own in measured},
         positions=where[kept],
         accuracy=accuracy,
         title=title,
@@ -403,11 +407,11 @@ def _unbalanced(
 def _is_held(system: Any, where: Doubles, masses: Doubles, frame: Doubles, measured: Sequence[_Level]) -> bool:
     """Whether there are no rigid motions: an outer field holds the atoms."""
     moved = frame.T @ rigid_motions(where, masses, rotations=False)
-    total = np.sum([own.matrix for own in measured], axis=0)
+    matrices = [own.matrix for own in measured]
     error = sum(own.error for own in measured)
     field = any(isinstance(force, mm.CustomExternalForce) for force in system.getForces())
     # The mesh of a box's Ewald sum knows places, a little.
-    return field or (not system.usesPeriodicBoundaryConditions() and is_held(total, np.asarray(moved), error))
+    return field or (not system.usesPeriodicBoundaryConditions() and is_held(matrices, np.asarray(moved), error))
 
 
 def oscillations(

@@ -212,7 +212,7 @@ def test_rigid_motions_are_projected_out_of_three_clocks_as_of_two(where: bool, 
             system.decide()
     else:
         verdict = system.decide()
-        removed, by = 5 if linear else 6, "positions" if where else "null space of the total"
+        removed, by = 5 if linear else 6, "positions" if where else "common null space"
         assert f"with {removed} motions projected out ({by})" in verdict.warnings[-1]
         assert (verdict.stable and verdict.proven) or linear
     for clocks in ("abc", "ab"):

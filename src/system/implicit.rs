@@ -50,7 +50,7 @@ impl ImplicitExplicit {
     pub fn at_square(&self, square: &Rational) -> Result<System> {
         let [fast, slow] = two_clocks(&self.plain)?;
         let (mass, stiffness) = parts(&self.plain, fast, slow, square);
-        System::new(mass, vec![Potential::new(stiffness.scaled(square), Rational::one())]).map_err(unsolvable)
+        of_stiffness(&self.plain, mass, stiffness.scaled(square), Rational::one())
     }
 
     /// The system as it was given.
@@ -89,7 +89,13 @@ fn parts(plain: &System, fast: &Potential, slow: &Potential, square: &Rational) 
 fn of_step(plain: &System, step: &Rational) -> Result<System> {
     let [fast, slow] = two_clocks(plain)?;
     let (mass, stiffness) = parts(plain, fast, slow, &(step * step));
-    System::new(mass, vec![Potential::new(stiffness, step.clone())]).map_err(unsolvable)
+    of_stiffness(plain, mass, stiffness, step.clone())
+}
+
+/// Where F and S cancel along a motion it drifts and is not rigid, unless neither holds it.
+fn of_stiffness(plain: &System, mass: Symmetric, stiffness: Symmetric, step: Rational) -> Result<System> {
+    let step = System::new(mass, vec![Potential::new(stiffness, step)]).map_err(unsolvable)?;
+    Ok(step.held_by(plain))
 }
 
 fn unsolvable(_: Error) -> Error {

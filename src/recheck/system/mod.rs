@@ -4,6 +4,7 @@
 //! afterwards. Errors made from the start are looked for by exact arithmetic (the kind) and by the dense full
 //! period in doubles (multipliers, runs of linear systems).
 
+mod apart;
 mod dense;
 mod implicit;
 pub mod intervals;
@@ -97,6 +98,7 @@ fn verdict(
         };
     }
     let traces = || {
+        apart::exactly(scene, analysis)?;
         scene.model().local_steps().map_or(Ok(()), local::steps)?;
         scene.model().implicit().map_or(Ok(()), |own| implicit::in_doubles(own, analysis))?;
         dense::traces(scene, analysis)

@@ -10,6 +10,7 @@ use crate::number::Rational;
 use crate::number::rational::to_f64;
 use crate::report::document::Document;
 use crate::report::record::Record;
+use crate::report::system::of_each;
 use crate::report::table::{Cell, Column, Table};
 use crate::system::levels::Growing;
 
@@ -23,6 +24,7 @@ pub(super) fn document(findings: &Findings, reading: Option<&Reading>, notes: &[
         .entries((!between.is_empty()).then(|| ("between_periods", between.clone())))
         .entry("rigid_motions.count", removed.map(|own| own.count))
         .entry("rigid_motions.found_by", removed.map(|own| own.found_by))
+        .entry("rigid_motions.held", removed.map(|own| own.held.clone()))
         .entry("accuracy", findings.accuracy)
         .entry("slow_period", findings.slow)
         .entry("groups", groups.to_json_rows())
@@ -97,7 +99,12 @@ fn summary(findings: &Findings, reading: Option<&Reading>, notes: &[String]) -> 
         lines.push(lines::friction(friction, unit));
     }
     if let Some(removed) = &findings.removed {
-        lines.push(format!("  rigid      {} motions projected out, by {}", removed.count, removed.found_by));
+        let held = of_each(&removed.held);
+        lines.push(format!(
+            "  rigid      {} motions projected out, by {}{held}",
+            removed.count, removed.found_by
+        ));
+        lines.extend(removed.warning(findings.accuracy).map(|own| format!("  rigid      {own}")));
     }
     lines.extend(findings.levers.iter().flat_map(|own| super::levers::lines(own, unit)));
     lines

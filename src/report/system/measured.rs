@@ -9,10 +9,8 @@ use crate::system::{Holds, Measured};
 
 /// The entry `measured` of a document.
 pub(super) fn value(own: &Measured) -> Value {
-    let removed = own
-        .removed
-        .as_ref()
-        .map(|r| json!({"count": r.count, "found_by": r.found_by, "fast": r.fast, "slow": r.slow}));
+    let removed =
+        own.removed.as_ref().map(|r| json!({"count": r.count, "found_by": r.found_by, "held": r.held}));
     let mut value = json!({
         "accuracy": own.accuracy,
         "holds": own.holds.name(),
@@ -32,17 +30,24 @@ fn has_other_method(own: &Measured) -> bool {
     own.method != Method::Respa.name()
 }
 
+/// ": they held 3.5e-3, 6.4e-2 of the stiffnesses".
+pub(in crate::report) fn of_each(held: &[f64]) -> String {
+    let parts: Vec<String> = held.iter().map(|part| format!("{part:.1e}")).collect();
+    match parts.as_slice() {
+        [] => String::new(),
+        [part] => format!(": they held {part} of the stiffness"),
+        _ => format!(": they held {} of the stiffnesses, by increasing step", parts.join(", ")),
+    }
+}
+
 /// The entries as lines of text; `unit` is that of times, after a space.
-pub(super) fn lines(own: &Measured, is_stable: bool, unit: &str) -> Vec<String> {
+pub(super) fn lines(own: &Measured, (clocks, is_stable): (usize, bool), unit: &str) -> Vec<String> {
     let mut lines = Vec::new();
     if has_other_method(own) {
         lines.push(format!("  by {}: the fast force in one go over the outer step", own.method));
     }
     if let Some(r) = &own.removed {
-        lines.push(format!(
-            "  {} rigid motions projected out ({}): they held {:.1e} of the fast and {:.1e} of the slow stiffness",
-            r.count, r.found_by, r.fast, r.slow
-        ));
+        lines.push(format!("  {} rigid motions projected out ({}){}", r.count, r.found_by, of_each(&r.held)));
     }
     let accuracy = own.accuracy;
     lines.push(match own.holds {
@@ -63,9 +68,13 @@ pub(super) fn lines(own: &Measured, is_stable: bool, unit: &str) -> Vec<String> 
             ""
         };
         let first = decimal::enclosure(lo, hi);
-        let inner = if has_other_method(own) { "" } else { " with as many inner ones" };
+        let step = match (clocks, has_other_method(own)) {
+            (1, _) => "step",
+            (_, true) => "outer step",
+            _ => "outer step with as many inner ones",
+        };
         lines.push(format!(
-            "  first unstable outer step{inner}: {first}{unit}; every smaller one is proven stable{place}"
+            "  first unstable {step}: {first}{unit}; every smaller one is proven stable{place}"
         ));
     }
     lines

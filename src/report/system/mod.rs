@@ -27,6 +27,7 @@ pub use chart::Colouring;
 pub use intervals::figure as intervals_figure;
 pub use intervals::{document as intervals, sampled};
 pub use map::SystemMap;
+pub(in crate::report) use measured::of_each;
 #[cfg(feature = "figure")]
 pub use modes::figure;
 pub use viewers::{vtu, xyz};
@@ -155,8 +156,12 @@ fn lines(analysis: &Analysis, beside: &Beside) -> Vec<String> {
     lines.extend(beside.local.into_iter().flat_map(|own| beside::local_lines(own, &suffix)));
     lines.extend(beside.remark.map(|remark| format!("  {remark}")));
     lines.extend(beside::lines(beside, analysis));
-    lines
-        .extend(analysis.measured.iter().flat_map(|own| measured::lines(own, analysis.is_stable(), &suffix)));
+    lines.extend(
+        analysis
+            .measured
+            .iter()
+            .flat_map(|own| measured::lines(own, (analysis.clocks, analysis.is_stable()), &suffix)),
+    );
     lines.extend(beside.nearest.iter().flat_map(|own| nearest::lines(own, &suffix)));
     lines.extend(analysis.warnings.iter().map(|warning| format!("  warning: {warning}")));
     lines

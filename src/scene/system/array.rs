@@ -305,6 +305,24 @@ impl Array {
         Ok(all.map(|own| DMatrix::from_row_slice(rows, columns, own)).collect())
     }
 
+    /// The diagonal of a square matrix, all elements of any other array.
+    ///
+    /// # Errors
+    /// A square matrix that is not diagonal.
+    pub fn into_diagonal(self, field: &str) -> Result<Vec<f64>> {
+        let n = match *self.shape {
+            [rows, columns] if rows == columns => rows,
+            _ => return Ok(self.values),
+        };
+        match (0..n * n).find(|k| k / n != k % n && self.values[*k] != 0.0) {
+            Some(k) => {
+                let remedy = "beside a stiffness from a file a mass matrix is diagonal: lump it, or write both in the file by their numbers";
+                Err(Error::input(&self.place(field, k), self.values[k], remedy))
+            }
+            None => Ok(self.values.into_iter().step_by(n + 1).collect()),
+        }
+    }
+
     /// All elements, by rows.
     pub fn into_values(self) -> Vec<f64> {
         self.values

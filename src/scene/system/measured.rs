@@ -14,8 +14,11 @@
 //! }
 //! ```
 //!
+//! `masses` are a number for each degree of freedom or for each three, or a diagonal matrix of these; `mass_matrix` is another name for that.
+//!
 //! Rigid motions are projected out: by `positions` three translations and three rotations, with `"periodic": true` the translations alone,
-//! else the null space of the total, if it is no larger than that.
+//! else the common null space of all stiffnesses, if it is no larger than that. What a stiffness holds is not rigid, each by its own accuracy: then
+//! the file is refused, or the motion stays (see [`Removed`](crate::system::Removed)).
 //!
 //! `"hydrogen_mass": 3.024` makes hydrogens (up to 1.1) heavier at the cost of the nearest heavy particle. `"constraints": "h-bonds"`, or pairs,
 //! holds distances; then each potential has a `force` by reference, at the positions and not mass-weighted (see `held`).
@@ -58,6 +61,7 @@ pub(super) struct Document {
     #[serde(default)]
     pub mass_weighted: bool,
     pub masses: Option<MassesDocument>,
+    pub mass_matrix: Option<MassesDocument>,
     pub positions: Option<Reference>,
     #[serde(default)]
     pub periodic: bool,
@@ -128,6 +132,9 @@ impl TryFrom<Value> for MassesDocument {
 
     fn try_from(value: Value) -> std::result::Result<Self, String> {
         match value {
+            Value::Array(all) if all.iter().any(Value::is_array) => {
+                Err("by rows it stands beside stiffnesses by rows: here name the file of a diagonal matrix, or give masses".into())
+            }
             Value::Array(all) => Ok(MassesDocument::List(all.into_iter().map(Number::from).collect())),
             other => Reference::try_from(other).map(MassesDocument::Array),
         }
@@ -135,15 +142,17 @@ impl TryFrom<Value> for MassesDocument {
 }
 
 impl MassesDocument {
-    fn read(&self, arrays: &Arrays) -> Result<Vec<f64>> {
-        match self {
-            MassesDocument::Array(at) => Ok(at.read("masses", arrays)?.into_values()),
+    /// A mass for each of n degrees of freedom, from as many numbers, one for each three, or a diagonal matrix of either.
+    pub fn read(&self, field: &str, n: usize, arrays: &Arrays) -> Result<Vec<f64>> {
+        let masses = match self {
+            MassesDocument::Array(at) => at.read(field, arrays)?.into_diagonal(field)?,
             MassesDocument::List(all) => {
                 let number =
-                    |(i, own): (usize, &Number)| own.read(&format!("masses[{i}]")).map(|own| to_f64(&own));
-                all.iter().enumerate().map(number).collect()
+                    |(i, own): (usize, &Number)| own.read(&format!("{field}[{i}]")).map(|own| to_f64(&own));
+                all.iter().enumerate().map(number).collect::<Result<_>>()?
             }
-        }
+        };
+        spread(masses, n)
     }
 }
 
@@ -193,7 +202,7 @@ pub(super) fn read(document: &Document, arrays: &Arrays) -> Result<Model> {
     }
     let positions = document.positions(n, arrays)?;
     let (is_weighted, is_periodic) = (document.mass_weighted, document.periodic);
-    let mut body = Body { masses, positions, is_weighted, is_periodic, held: None };
+    let mut body = Body { masses, positions, is_weighted, is_periodic, held: None, rigid: None };
     document.transform(&mut body, &mut read, arrays)?;
     let accuracy = document.accuracy()?;
     let potentials: Vec<_> = read.into_iter().map(|own| (own.step, own.stiffness)).collect();
@@ -284,7 +293,14 @@ impl Document {
 
     /// The mass of each degree of freedom, where masses are given.
     pub fn masses(&self, n: usize, arrays: &Arrays) -> Result<Option<Vec<f64>>> {
-        self.masses.as_ref().map(|own| spread(own.read(arrays)?, n)).transpose()
+        match (&self.masses, &self.mass_matrix) {
+            (Some(_), Some(_)) => {
+                Err(Error::input("mass_matrix", "given", "stands in place of masses: give one of them"))
+            }
+            (Some(own), None) => own.read("masses", n, arrays).map(Some),
+            (None, Some(own)) => own.read("mass_matrix", n, arrays).map(Some),
+            (None, None) => Ok(None),
+        }
     }
 
     /// The positions of the particles, where they are given. Elements and bonds are checked against the number of particles.
@@ -391,7 +407,7 @@ fn check_symmetric(field: &str, kicks: &[DMatrix<f64>], accuracy: f64) -> Result
 }
 
 /// A mass for each degree of freedom, from one each or from one for each three.
-pub(super) fn spread(masses: Vec<f64>, n: usize) -> Result<Vec<f64>> {
+fn spread(masses: Vec<f64>, n: usize) -> Result<Vec<f64>> {
     let wrong = || {
         let remedy = format!("there are {n} degrees of freedom: give a mass for each, or for each three");
         Error::input("masses", masses.len(), remedy)

@@ -6,8 +6,7 @@ use serde::Deserialize;
 use serde_json::{Value, json};
 
 use super::SystemScene;
-use super::array::Reference;
-use super::measured::spread;
+use super::measured::MassesDocument;
 use crate::advise::unit::{self, Dimension};
 use crate::advise::{Direct, Molecule, Names, Scheme, Source, Told};
 use crate::error::{Error, Result};
@@ -61,17 +60,22 @@ impl SystemScene {
             labels: Option<Vec<String>>,
             elements: Option<Vec<String>>,
             bonded: Option<Vec<[usize; 2]>>,
-            masses: Option<Reference>,
+            masses: Option<MassesDocument>,
+            mass_matrix: Option<MassesDocument>,
         }
-        let Ok(Document { labels, elements, bonded, masses }) = Document::deserialize(self.source()) else {
+        let Ok(Document { labels, elements, bonded, masses, mass_matrix }) =
+            Document::deserialize(self.source())
+        else {
             return Ok(Names::default());
         };
         let labels = labels.unwrap_or_default();
-        let (Some(positions), Some(moving), Some(masses)) = (&body.positions, &body.masses, masses) else {
+        let (Some(positions), Some(moving), Some(masses)) =
+            (&body.positions, &body.masses, masses.or(mass_matrix))
+        else {
             return Ok(Names::of_labels(labels));
         };
         let of_atoms = |masses: &[f64]| masses.chunks_exact(3).map(|own| own[0]).collect::<Vec<_>>();
-        let given = spread(masses.read("masses", &self.arrays)?.into_values(), moving.len())?;
+        let given = masses.read("masses", moving.len(), &self.arrays)?;
         let told =
             Told { labels, elements: elements.unwrap_or_default(), bonds: bonded, masses: of_atoms(&given) };
         Ok(Names::new(told, positions, of_atoms(moving)))

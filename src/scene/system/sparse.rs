@@ -62,8 +62,8 @@ pub(super) fn read(document: &Document, arrays: &Arrays) -> Result<SparseSystem>
     };
     let count = rigid.ncols();
     let own = SparseLevels::new(&masses, [fast, slow], rigid)?;
-    let [fast, slow] = own.removed();
-    let removed = (count > 0).then_some(Removed { count, found_by, fast, slow });
+    let held = own.removed().to_vec();
+    let removed = (count > 0).then_some(Removed { count, found_by, held, total: 0.0 });
     SparseSystem::new(own, [inner, outer], document.accuracy()?, removed)
 }
 

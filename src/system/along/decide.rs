@@ -14,6 +14,7 @@ use crate::system::exact::decide::{MuCount, judged_blocks};
 use crate::system::half::float::FloatBlocks;
 use crate::system::half::norm;
 use crate::system::half::period::{Drifts, Propagated, Stiff, Stiffness, follow};
+use crate::system::levels::apart::Given;
 use crate::system::levels::{Method, projected};
 use crate::system::signs;
 use crate::system::signs::inertia::orthogonality;
@@ -231,6 +232,24 @@ impl Along {
         multipliers.iter().fold(0.0, |a: f64, z| a.max(z.norm().ln())) / to_f64(&self.clocks.period())
     }
 
+    /// That no kick holds the translations of a box.
+    fn check_translations(&self, motions: &Mat<f64>) -> Result<()> {
+        let n = self.size();
+        let root: Vec<f64> = self.masses.iter().map(|m| m.sqrt()).collect();
+        let events = self.schedule.half_period().zip(&self.hessians);
+        let kicks: Vec<(usize, Given)> = events
+            .flat_map(|(event, own)| event.clocks().zip(own))
+            .map(|(clock, k)| {
+                let weighted = DMatrix::from_fn(n, n, |i, j| k[(i, j)] / (root[i] * root[j]));
+                (clock, Given::new(self.step(clock), &weighted))
+            })
+            .collect();
+        kicks.iter().try_for_each(|(clock, own)| {
+            let alike = kicks.iter().filter(|(other, _)| other == clock).map(|(_, own)| own.size());
+            own.leaves_free(motions, alike.fold(0.0, f64::max), self.accuracy.unwrap_or(0.0))
+        })
+    }
+
     fn rigid_modes(&self) -> Vec<Vec<Rational>> {
         let exact = |x: f64| from_f64_exact(x).unwrap_or_default();
         let columns = |own: &Mat<f64>| {
@@ -363,6 +382,9 @@ impl Half<'_> {
     /// That some Hessians within the accuracy leave the rigid motions free, C J₀ = 0 and J₁ᵀ C = 0: else what is proven would be so of none. (A J₀ is in
     /// the span of J₁ then, as Cᵀ A = Aᵀ C, and J₁ᵀ D in that of J₀ᵀ.)
     fn check_rigid(&self) -> Result<()> {
+        if let Rigid::Translations(motions) = &self.own.rigid {
+            return self.own.check_translations(motions);
+        }
         let Rigid::Turning([start, turned]) = &self.own.rigid else { return Ok(()) };
         let n = self.own.size();
         let Some(error) = self.propagated.error_within(if self.own.accuracy.is_some() { 1.0 } else { 0.0 })

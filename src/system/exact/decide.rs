@@ -64,14 +64,26 @@ pub struct MuCount {
 /// # Errors
 /// A budget error with the estimated cost, before any work.
 pub fn decide_exact(system: &System, limits: &Limits) -> Result<ExactVerdict> {
-    let frame = Frame::new(system);
+    decide_beside(system, &Frame::new(system), limits)
+}
+
+/// The exact verdict beside the rigid modes of `frame`. Potentials of one clock, restricted to a subspace that their sum alone leaves invariant,
+/// do not tell any more what is rigid.
+///
+/// # Errors
+/// As [`decide_exact`].
+pub(in crate::system) fn decide_beside(
+    system: &System,
+    frame: &Frame,
+    limits: &Limits,
+) -> Result<ExactVerdict> {
     let program = IntegerProgram::new(system);
-    let cost = estimate(system, &frame, &program);
+    let cost = estimate(system, frame, &program);
     limits.allow(cost, || {
         let (size, kicks) = (frame.kept.len(), system.schedule().strikes() / 2);
         format!("exact arithmetic on {} with {kicks} kicks in half a period", degrees_of_freedom(size))
     })?;
-    Ok(judge(&program.half_period(system, &frame)))
+    Ok(judge(&program.half_period(system, frame)))
 }
 
 /// Roots are refined where there are no more of them.

@@ -239,9 +239,10 @@ pub fn full_period<S: Ring>(system: &System) -> DMatrix<S> {
     propagator(&Program::new(system).map(S::from_rational), system.schedule().symmetric_period())
 }
 
-/// The degrees of freedom that some entry of the mass or of a stiffness connects.
+/// The degrees of freedom that some entry of the mass or of a stiffness connects, an effective one or one that it comes from.
 pub(in crate::system) fn connected_parts(system: &System) -> Vec<Vec<usize>> {
-    let graphs = system.potentials().iter().map(|own| &own.stiffness).chain([system.mass()]);
+    let potentials = system.potentials().iter().map(|own| &own.stiffness);
+    let graphs = potentials.chain(system.holding()).chain([system.mass()]);
     connected(system.size(), graphs.flat_map(Symmetric::places))
 }
 

@@ -13,7 +13,8 @@ use crate::number::rational::{from_f64_exact, to_f64};
 use crate::number::{Rational, U};
 use crate::schedule::Schedule;
 use crate::system::half::norm;
-use crate::system::levels::{rigid_motions, translations};
+use crate::system::levels::Motions;
+use crate::system::levels::apart::{self, of_particles};
 use crate::system::linear::sparse::{Symmetric, null_space};
 use crate::system::linear::system::{Potential, System};
 use crate::system::model::Body;
@@ -106,9 +107,10 @@ impl Jacobians {
             (DMatrix::from_fn(n, n, |a, b| &j[(a, b)] / &masses[a]), step.clone(), phase.clone())
         });
         let clocks = merged(weighted);
-        // Motions n that no force sees: A_k n = 0. In the coordinates y_i = x_i − Σ n_J[i] x_J of the others A_k keeps its rows' images.
-        let rows = clocks.iter().flat_map(|(a, ..)| {
-            a.row_iter().map(|row| {
+        // Motions n that no force sees, each for itself: those of one clock may cancel. In the coordinates y_i = x_i − Σ n_J[i] x_J of the
+        // others A_k keeps its rows' images.
+        let rows = given.iter().flat_map(|(j, ..)| {
+            j.row_iter().map(|row| {
                 row.iter().cloned().enumerate().filter(|(_, x)| !x.is_zero()).collect::<BTreeMap<_, _>>()
             })
         });
@@ -153,21 +155,28 @@ impl Jacobians {
             Some(masses) if !body.is_weighted => masses.iter().map(|m| m.sqrt()).collect(),
             _ => vec![1.0; n],
         };
-        let motions = match (&body.masses, &body.positions) {
-            _ if keeps_rigid || !n.is_multiple_of(3) => Mat::new(),
-            (Some(masses), _) if body.is_periodic => translations(&thirds(masses)),
-            (Some(masses), Some(positions)) => rigid_motions(positions, &thirds(masses)),
-            _ => Mat::new(),
+        let found = match (&body.masses, &body.positions) {
+            _ if keeps_rigid || !n.is_multiple_of(3) => None,
+            (Some(masses), _) if body.is_periodic => Some((Motions::of_box(&thirds(masses)), masses)),
+            (Some(masses), Some(positions)) => {
+                Some((Motions::of_particles(positions, &thirds(masses)), masses))
+            }
+            _ => None,
         };
+        let weighted = |j: &DMatrix<f64>| DMatrix::from_fn(n, n, |a, b| j[(a, b)] / (root[a] * root[b]));
+        if let Some((motions, masses)) = &found {
+            let each: Vec<_> =
+                given.iter().map(|(step, j)| apart::Given::new(step.clone(), &weighted(j))).collect();
+            of_particles(motions, &thirds(masses), &each, accuracy)?;
+        }
+        let motions = found.map_or_else(Mat::new, |(own, _)| own.columns);
         // Orthonormal columns beside the motions.
         let removed = motions.ncols();
         let basis = match removed {
             0 => Mat::identity(n, n),
             _ => motions.qr().compute_Q().subcols(removed, n - removed).to_owned(),
         };
-        let clocks = merged(given.iter().map(|(step, j)| {
-            (DMatrix::from_fn(n, n, |a, b| j[(a, b)] / (root[a] * root[b])), step.clone(), Rational::zero())
-        }));
+        let clocks = merged(given.iter().map(|(step, j)| (weighted(j), step.clone(), Rational::zero())));
         let clocks = clocks.into_iter().map(|(a, step, phase)| {
             let a = MatRef::from_column_major_slice(a.as_slice(), n, n);
             let matrix = basis.transpose() * a * &basis;

@@ -32,11 +32,11 @@ impl Kernel {
         let part = Part::new(self.size(), period, (kind, evidence), multipliers);
         let part = Part { dofs: (0..self.modes.nrows()).collect(), ..part };
         let measured = Some(Measured { margin, ..self.measured(outer, accuracy) });
-        Analysis { measured, ..Analysis::of_part(part, 2, self.warnings(evidence)) }
+        Analysis { measured, ..Analysis::of_part(part, 2, self.warnings(evidence, accuracy)) }
     }
 
-    fn warnings(&self, evidence: Evidence) -> Vec<String> {
-        let mut warnings = Vec::new();
+    fn warnings(&self, evidence: Evidence, accuracy: f64) -> Vec<String> {
+        let mut warnings: Vec<String> = self.removed.iter().filter_map(|own| own.warning(accuracy)).collect();
         if !self.is_total_definite() {
             let (lowest, mode) = self.lowest_total();
             let moves = match mode {

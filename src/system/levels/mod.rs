@@ -33,7 +33,7 @@
 //! |---|---|
 //! | `half`, `interval` | the fast half period of one mode, in intervals |
 //! | `method` | that of other integrators, as exact flows with filters: the same machinery serves them all |
-//! | `rigid` | rigid motions projected out |
+//! | `rigid`, `apart` | rigid motions projected out, and which are |
 //! | `basis` | eigenvalues and eigenvectors, block by block |
 //! | `kernel` | the eigenbasis, its backward error, norms |
 //! | `region` | the first stable region: verdict, margin, first unstable step |
@@ -52,6 +52,7 @@
 //! | `intervals` | the verdicts on a range of outer steps |
 
 mod answer;
+pub(in crate::system) mod apart;
 mod band;
 mod basis;
 mod beyond;
@@ -78,5 +79,5 @@ pub use kernel::{Kernel, Outer};
 pub use method::Method;
 pub use nested::{AtStep, Nested, Steps};
 pub use paths::Near;
-pub(in crate::system) use rigid::projected;
 pub use rigid::{Hessians, rigid_motions, translations};
+pub(in crate::system) use rigid::{Motions, Shares, projected};

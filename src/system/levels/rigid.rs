@@ -1,11 +1,10 @@
 //! Hessians of two levels in mass-weighted coordinates, rigid motions projected out.
 
-use faer::{Mat, MatRef, Side};
+use faer::{Mat, MatRef};
 use nalgebra::DMatrix;
 
 use crate::error::{Error, Result};
 use crate::number::U;
-use crate::system::half::compose::connected;
 use crate::system::half::norm;
 use crate::system::signs::inertia::{orthogonality, spectral_norm};
 use crate::system::verdict::measured::Removed;
@@ -22,6 +21,15 @@ pub struct Hessians {
     /// The coordinates kept, as orthonormal columns in those given; `None`: all.
     pub(super) basis: Option<Mat<f64>>,
     pub(super) removed: Option<Removed>,
+}
+
+/// What the potentials, in their order, hold along motions set apart.
+#[derive(Clone, Debug)]
+pub(in crate::system) struct Shares {
+    /// Of each one's norm.
+    pub each: Vec<f64>,
+    /// Of the sum of the norms, by all together.
+    pub total: f64,
 }
 
 impl Hessians {
@@ -80,6 +88,20 @@ impl Hessians {
     /// These Hessians on the motions orthogonal to the columns of `rigid`, which are orthonormal.
     #[must_use]
     pub fn without(self, rigid: &Mat<f64>, found_by: &'static str) -> Hessians {
+        let part = |k: &Mat<f64>| norm::spectral(&(k * rigid)) / norm::spectral(k).max(f64::MIN_POSITIVE);
+        let each = [&self.fast, &self.slow].map(part).to_vec();
+        let total = part(&(&self.fast + &self.slow));
+        self.set_apart(rigid, found_by, Shares { each, total })
+    }
+
+    /// The same, with what each potential holds along the rigid motions among these.
+    #[must_use]
+    pub(in crate::system) fn set_apart(
+        self,
+        rigid: &Mat<f64>,
+        found_by: &'static str,
+        shares: Shares,
+    ) -> Hessians {
         let (n, r) = (rigid.nrows(), rigid.ncols());
         if r == 0 || r >= n {
             return self;
@@ -89,8 +111,7 @@ impl Hessians {
         // Exactly orthonormal columns are within the defect of these.
         let defect = orthogonality(&kept).unwrap_or(f64::INFINITY);
         let project = |k: &Mat<f64>| projected(k, &kept, defect);
-        let off = |k: &Mat<f64>| norm::spectral(&(k * rigid)) / norm::spectral(k).max(f64::MIN_POSITIVE);
-        let removed = Removed { count: r, found_by, fast: off(&self.fast), slow: off(&self.slow) };
+        let removed = Removed { count: r, found_by, held: shares.each, total: shares.total };
         let ((fast, e), (slow, f)) = (project(&self.fast), project(&self.slow));
         let errors = [self.errors[0] + e, self.errors[1] + f];
         Hessians { fast, slow, errors, basis: Some(kept), removed: Some(removed), ..self }
@@ -122,34 +143,6 @@ impl Hessians {
         };
         self.sizes[level] = 1.01 * shares.iter().map(size).sum::<f64>();
         self
-    }
-
-    /// These Hessians without the null space of F + S within `accuracy`: the eigenvectors whose eigenvalues are at most
-    /// `accuracy` (‖F‖ + ‖S‖), at most `most` of them for each part that no entry joins to the others.
-    ///
-    /// # Errors
-    /// A larger null space: then it is not that of rigid motions alone.
-    pub fn without_null_space(self, accuracy: f64, most: usize) -> Result<Hessians> {
-        let total = &self.fast + &self.slow;
-        let Ok(eigen) = total.self_adjoint_eigen(Side::Lower) else { return Ok(self) };
-        let least = accuracy * (norm::spectral(&self.fast) + norm::spectral(&self.slow));
-        let null: Vec<usize> = (0..self.size()).filter(|&i| eigen.S()[i].abs() <= least).collect();
-        if null.len() > most {
-            let n = self.size();
-            let places = (0..n * n).map(|k| (k % n, k / n)).filter(|&(i, j)| total[(i, j)] != 0.0);
-            let parts = connected(n, places);
-            let bound = parts.iter().map(|part| part.len().min(most)).sum::<usize>();
-            if null.len() > bound {
-                let found = format!("zero within {accuracy:.1e} of the norms in {} directions", null.len());
-                let remedy = format!(
-                    "rigid motions are at most {bound}, and what else is soft may not be left out: give masses and positions, or better \
-                     stiffnesses with their accuracy, or keep the rigid motions in"
-                );
-                return Err(Error::input("total stiffness", found, remedy));
-            }
-        }
-        let rigid = Mat::from_fn(self.size(), null.len(), |i, j| eigen.U()[(i, null[j])]);
-        Ok(self.without(&rigid, "null space of the total"))
     }
 
     /// The coordinates kept, as orthonormal columns in those given; `None`: all.
@@ -212,23 +205,44 @@ pub(super) fn halved(m: MatRef<'_, f64>) -> Mat<f64> {
 /// Translations and rotations of particles at `positions` (one triple each) with `masses` (one each), in mass-weighted
 /// coordinates x_1, y_1, z_1, x_2, ...: orthonormal columns, 6 of them, 5 for particles on a line, 3 for one.
 pub fn rigid_motions(positions: &[[f64; 3]], masses: &[f64]) -> Mat<f64> {
-    motions(positions, masses, 6)
+    Motions::of_particles(positions, masses).columns
 }
 
 /// The three translations alone, of particles in a periodic box.
 pub fn translations(masses: &[f64]) -> Mat<f64> {
-    motions(&vec![[0.0; 3]; masses.len()], masses, 3)
+    Motions::of_box(masses).columns
+}
+
+/// Translations and rotations.
+#[derive(Clone, Debug)]
+pub(in crate::system) struct Motions {
+    /// Orthonormal and mass-weighted.
+    pub columns: Mat<f64>,
+    /// ω of each, the rotation in it: 0 of translations.
+    pub turns: Vec<[f64; 3]>,
+}
+
+impl Motions {
+    pub fn of_particles(positions: &[[f64; 3]], masses: &[f64]) -> Motions {
+        motions(positions, masses, 6)
+    }
+
+    pub fn of_box(masses: &[f64]) -> Motions {
+        motions(&vec![[0.0; 3]; masses.len()], masses, 3)
+    }
 }
 
 /// The first `count` of translations and rotations.
-fn motions(positions: &[[f64; 3]], masses: &[f64], count: usize) -> Mat<f64> {
+fn motions(positions: &[[f64; 3]], masses: &[f64], count: usize) -> Motions {
     let total: f64 = masses.iter().sum();
     let centre = [0, 1, 2].map(|a| positions.iter().zip(masses).map(|(x, m)| x[a] * m).sum::<f64>() / total);
     let mut columns: Vec<Vec<f64>> = Vec::new();
+    let mut turns: Vec<[f64; 3]> = Vec::new();
     for motion in 0..count {
         let axis = motion % 3;
         let (b, c) = ((axis + 1) % 3, (axis + 2) % 3);
-        let mut column = vec![0.0; 3 * positions.len()];
+        let (mut column, mut turn) = (vec![0.0; 3 * positions.len()], [0.0; 3]);
+        turn[axis] = f64::from(u8::from(motion >= 3));
         for (i, (x, m)) in positions.iter().zip(masses).enumerate() {
             let weight = m.sqrt();
             if motion < 3 {
@@ -242,16 +256,19 @@ fn motions(positions: &[[f64; 3]], masses: &[f64], count: usize) -> Mat<f64> {
         let before = length(&column);
         // Twice is enough (Kahan, Parlett).
         for _ in 0..2 {
-            for other in &columns {
+            for (other, turned) in columns.iter().zip(&turns) {
                 let along: f64 = column.iter().zip(other).map(|(x, y)| x * y).sum();
                 column.iter_mut().zip(other).for_each(|(x, y)| *x -= along * y);
+                turn.iter_mut().zip(turned).for_each(|(x, y)| *x -= along * y);
             }
         }
         let after = length(&column);
         // A rotation about the line of a linear molecule moves nothing: what is left of it is rounding.
         if after > 1e-8 * before.max(f64::MIN_POSITIVE) {
             columns.push(column.iter().map(|x| x / after).collect());
+            turns.push(turn.map(|x| x / after));
         }
     }
-    Mat::from_fn(3 * positions.len(), columns.len(), |i, j| columns[j][i])
+    let columns = Mat::from_fn(3 * positions.len(), columns.len(), |i, j| columns[j][i]);
+    Motions { columns, turns }
 }

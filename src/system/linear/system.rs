@@ -52,6 +52,8 @@ pub struct System {
     clocks: Vec<Potential>,
     schedule: Schedule,
     tick: Rational,
+    /// What holds a motion, where the potentials are effective ones: these may vanish at one step along what their own parts hold.
+    holding: Option<Vec<Symmetric>>,
 }
 
 impl System {
@@ -79,7 +81,19 @@ impl System {
         let phases: Vec<_> = clocks.iter().map(|clock| clock.phase.clone()).collect();
         let schedule = Schedule::new(&steps, &phases)?;
         let tick = &steps[0] / Rational::from_integer(schedule.clocks()[0].step().into());
-        Ok(System { mass, potentials, clocks, schedule, tick })
+        Ok(System { mass, potentials, clocks, schedule, tick, holding: None })
+    }
+
+    /// This system, whose potentials are effective ones, with the stiffnesses that they come from: rigid is what none of these holds.
+    #[must_use]
+    pub(in crate::system) fn held_by(self, plain: &System) -> System {
+        System { holding: Some(plain.holding().cloned().collect()), ..self }
+    }
+
+    /// The stiffnesses whose common null vectors are the rigid motions.
+    pub(in crate::system) fn holding(&self) -> impl Iterator<Item = &Symmetric> {
+        let potentials = self.potentials.iter().filter(|_| self.holding.is_none()).map(|own| &own.stiffness);
+        self.holding.iter().flatten().chain(potentials)
     }
 
     /// The number of degrees of freedom.
@@ -123,13 +137,15 @@ impl System {
             return System::new(mass, potentials);
         }
         // Sums of equal clocks are multiples, too.
-        System::on(self.clocks.iter().map(changed).collect(), mass, potentials)
+        let changed = System::on(self.clocks.iter().map(changed).collect(), mass, potentials)?;
+        Ok(System { holding: self.holding.clone(), ..changed })
     }
 
     /// This system with every clock, also those whose sum vanishes: with friction a kick of strength 0 parts a drift in two.
     pub(in crate::system) fn with_silent_clocks(&self) -> System {
         let (mass, potentials) = (self.mass.clone(), self.potentials.clone());
-        System::on(merged(&potentials), mass, potentials).expect("the clocks of a checked system")
+        let all = System::on(merged(&potentials), mass, potentials).expect("the clocks of a checked system");
+        System { holding: self.holding.clone(), ..all }
     }
 
     /// When which clock kicks.
@@ -182,7 +198,8 @@ impl System {
 
     /// The common null vectors of all potentials as they were given, which move freely: (coordinate where it alone is
     /// 1, vector) pairs. A direction in which potentials of one clock cancel is none of them: it drifts, but only as
-    /// long as they cancel, and is called what it is, parabolic.
+    /// long as they cancel, and is called what it is, parabolic. Nor is one along which an effective stiffness vanishes at
+    /// this step alone, as after a full turn.
     pub fn rigid_modes(&self) -> Vec<(usize, Vec<Rational>)> {
         // Common null vectors are null vectors of the sum: look among those.
         if inertia_of_sum(&self.stiffnesses()).unknown == 0 {
@@ -190,8 +207,8 @@ impl System {
         }
         let candidates: Vec<_> = self.total_stiffness().null_space().into_iter().map(|(_, z)| z).collect();
         let mut conditions = Vec::new();
-        for potential in &self.potentials {
-            let images: Vec<_> = candidates.iter().map(|z| potential.stiffness.times(z)).collect();
+        for stiffness in self.holding() {
+            let images: Vec<_> = candidates.iter().map(|z| stiffness.times(z)).collect();
             for i in 0..self.size() {
                 let row: BTreeMap<_, _> = images.iter().map(|z| z[i].clone()).enumerate().collect();
                 conditions.push(row.into_iter().filter(|(_, x)| !x.is_zero()).collect());
@@ -213,7 +230,8 @@ impl System {
     /// The degrees of freedom in `indices` alone; `None` where no potential acts on them.
     pub(in crate::system) fn component(&self, indices: &[usize]) -> Option<System> {
         let part = self.part(indices);
-        part.potentials.iter().any(|own| !own.stiffness.is_zero()).then_some(part)
+        let is_held = part.holding().any(|own| !own.is_zero());
+        is_held.then_some(part)
     }
 
     /// The degrees of freedom in `indices` alone, which nothing couples to others.
@@ -227,8 +245,9 @@ impl System {
     fn mapped(&self, mass: Symmetric, map: impl Fn(&Symmetric) -> Symmetric) -> System {
         let mapped = |own: &Potential| Potential { stiffness: map(&own.stiffness), ..own.clone() };
         // A part of a schedule has no longer a period than the whole.
-        System::of_checked(mass, self.potentials.iter().map(mapped).collect())
-            .expect("a part of a checked system")
+        let part = System::of_checked(mass, self.potentials.iter().map(mapped).collect())
+            .expect("a part of a checked system");
+        System { holding: self.holding.as_ref().map(|all| all.iter().map(&map).collect()), ..part }
     }
 }
 

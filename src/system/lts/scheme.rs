@@ -311,5 +311,5 @@ fn substeps(own: &Symmetric, weights: &[Rational], substeps: u32) -> Symmetric {
 
 fn with_stiffness(plain: &System, stiffness: Symmetric, step: &Rational) -> Result<System> {
     let potential = Potential { stiffness, step: step.clone(), phase: Rational::zero() };
-    System::new(plain.mass().clone(), vec![potential])
+    Ok(System::new(plain.mass().clone(), vec![potential])?.held_by(plain))
 }

@@ -3,7 +3,6 @@
 use std::borrow::Cow;
 use std::sync::{Arc, OnceLock};
 
-use faer::Mat;
 use nalgebra::DMatrix;
 use num_traits::{One, Zero};
 
@@ -11,7 +10,7 @@ use crate::error::{Error, Result};
 use crate::number::Rational;
 use crate::number::rational::{from_f64_exact, to_f64};
 use crate::system::friction::Friction;
-use crate::system::levels::{Cells, Hessians, Kernel, Method, Nested, Outer, rigid_motions, translations};
+use crate::system::levels::{Cells, Hessians, Kernel, Method, Nested, Outer};
 use crate::system::linear::sparse::Symmetric;
 use crate::system::linear::system::{Potential, System};
 use crate::system::vary::stretches::{Stretch, cover, most_cells};
@@ -32,6 +31,8 @@ pub struct Body {
     pub is_periodic: bool,
     /// The mass-weighted gradients of the distances that are held, a column each; by these the stiffnesses are bent.
     pub held: Option<DMatrix<f64>>,
+    /// The rigid motions where these are known, mass-weighted and independent, a column each; `None`: they are looked for.
+    pub rigid: Option<DMatrix<f64>>,
 }
 
 /// Measured stiffnesses with their clocks.
@@ -41,9 +42,9 @@ pub struct MeasuredSystem {
     potentials: Vec<(Rational, DMatrix<f64>)>,
     /// The stiffnesses of steps that several potentials have: each is known to its own norm.
     shares: Vec<(Rational, Vec<DMatrix<f64>>)>,
-    body: Body,
+    pub(super) body: Body,
     pub(super) accuracy: f64,
-    keeps_rigid: bool,
+    pub(super) keeps_rigid: bool,
     method: Method,
     system: OnceLock<System>,
     kernel: Arc<OnceLock<Kernel>>,
@@ -133,7 +134,11 @@ impl MeasuredSystem {
             }
             Ok((clock.step.clone(), own))
         };
-        let body = Body { masses: Some(masses), ..Body::default() };
+        let masses: Vec<f64> = masses;
+        // Exactly: what is soft beside the roundings of doubles is not rigid.
+        let rigid = system.rigid_modes();
+        let rigid = DMatrix::from_fn(n, rigid.len(), |i, k| to_f64(&rigid[k].1[i]) * masses[i].sqrt());
+        let body = Body { masses: Some(masses), rigid: Some(rigid), ..Body::default() };
         let clocks = system.clocks().iter().map(dense).collect::<Result<_>>()?;
         MeasuredSystem::new(body, clocks, ROUNDED)
     }
@@ -238,7 +243,13 @@ impl MeasuredSystem {
             return self.decide_projected(route, limits);
         };
         self.allow(limits)?;
-        Ok(self.kernel()?.decide(&outer, &period, self.accuracy))
+        self.decided(&outer, &period)
+    }
+
+    /// Of one potential, too, which is one clock.
+    fn decided(&self, outer: &Outer, period: &Rational) -> Result<Analysis> {
+        let own = self.kernel()?.decide(outer, period, self.accuracy);
+        Ok(Analysis { clocks: self.potentials.len(), ..own })
     }
 
     /// The verdict that is proven for the doubles given: of two levels in the eigenbasis, where it is known, else at the least cost for this one
@@ -271,7 +282,7 @@ impl MeasuredSystem {
     pub(super) fn decide_at(&self, outer: &Rational, limits: &Limits) -> Result<Analysis> {
         self.allow(limits)?;
         let at = Outer::new(to_f64(outer), self.inner_steps())?;
-        Ok(self.kernel()?.decide(&at, outer, self.accuracy))
+        self.decided(&at, outer)
     }
 
     /// The effect of friction of this rate per unit time.
@@ -376,13 +387,18 @@ impl MeasuredSystem {
         if self.potentials.len() == 2 && self.is_of_two_levels() {
             return Ok(None);
         }
-        let clock = |(step, own): &(Rational, DMatrix<f64>)| {
-            let shares = self.shares.iter().find(|(other, _)| other == step).map(|(_, own)| &own[..]);
-            shares.unwrap_or(std::slice::from_ref(own)).iter().map(|k| self.weighted(k)).collect()
-        };
-        let clocks: Vec<Vec<DMatrix<f64>>> = self.potentials.iter().map(clock).collect();
+        let weighted = |own: &[DMatrix<f64>]| own.iter().map(|k| self.weighted(k)).collect();
+        let clocks: Vec<Vec<DMatrix<f64>>> = self.clocks().map(|(_, own)| weighted(own)).collect();
         let levels = Nested::new(&self.hessians()?, &clocks)?;
         Ok(Some(ManyLevels { levels, body: &self.body, accuracy: self.accuracy }))
+    }
+
+    /// The stiffnesses as they were given, those of each step together, by increasing step.
+    pub(super) fn clocks(&self) -> impl Iterator<Item = (&Rational, &[DMatrix<f64>])> {
+        self.potentials.iter().map(|(step, own)| {
+            let shares = self.shares.iter().find(|(other, _)| other == step).map(|(_, own)| &own[..]);
+            (step, shares.unwrap_or(std::slice::from_ref(own)))
+        })
     }
 
     fn not_two(&self) -> Error {
@@ -408,7 +424,7 @@ impl MeasuredSystem {
     }
 
     /// M^-½ K M^-½ of a stiffness given.
-    fn weighted(&self, k: &DMatrix<f64>) -> DMatrix<f64> {
+    pub(super) fn weighted(&self, k: &DMatrix<f64>) -> DMatrix<f64> {
         match self.body.masses.as_ref().filter(|_| !self.body.is_weighted) {
             Some(m) => DMatrix::from_fn(k.nrows(), k.ncols(), |i, j| k[(i, j)] / (m[i].sqrt() * m[j].sqrt())),
             None => k.clone(),
@@ -429,40 +445,11 @@ impl MeasuredSystem {
             ),
         };
         let slow = slow.as_ref();
-        let Body { masses, positions, is_weighted, is_periodic, held } = &self.body;
-        let hessians = match masses {
-            Some(masses) if !is_weighted => Hessians::weighted(masses, fast, slow, self.accuracy)?,
+        let hessians = match &self.body.masses {
+            Some(masses) if !self.body.is_weighted => Hessians::weighted(masses, fast, slow, self.accuracy)?,
             _ => Hessians::new(fast, slow, self.accuracy)?,
         };
-        Ok(match (positions, masses) {
-            (Some(positions), Some(masses)) if held.is_some() => {
-                let held = held.as_ref().expect("some");
-                let rigid = if self.keeps_rigid { Mat::new() } else { self.rigid(Some(positions), masses) };
-                let all = |i: usize, j: usize| match j.checked_sub(held.ncols()) {
-                    None => held[(i, j)],
-                    Some(j) => rigid[(i, j)],
-                };
-                let all = Mat::from_fn(held.nrows(), held.ncols() + rigid.ncols(), all);
-                let by = if self.keeps_rigid { "constraints" } else { "positions and constraints" };
-                hessians.without(&all.qr().compute_thin_Q(), by)
-            }
-            _ if self.keeps_rigid => hessians,
-            (_, Some(masses)) if *is_periodic && self.size().is_multiple_of(3) => {
-                hessians.without(&self.rigid(None, masses), "periodic box")
-            }
-            (Some(positions), Some(masses)) => {
-                hessians.without(&self.rigid(Some(positions), masses), "positions")
-            }
-            _ => hessians.without_null_space(self.accuracy, if *is_periodic { 3 } else { 6 })?,
-        })
-    }
-
-    fn rigid(&self, positions: Option<&[[f64; 3]]>, masses: &[f64]) -> Mat<f64> {
-        let masses: Vec<f64> = masses.iter().step_by(3).copied().collect();
-        match positions {
-            Some(positions) if !self.body.is_periodic => rigid_motions(positions, &masses),
-            _ => translations(&masses),
-        }
+        self.without_rigid(hessians)
     }
 
     /// Where the matrices themselves would be taken, all distances free.

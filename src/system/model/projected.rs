@@ -1,21 +1,92 @@
-//! Measured stiffnesses on any clocks: the doubles given, or what is left of them when rigid motions and held distances are projected out.
+//! What moves of measured stiffnesses: rigid motions and held distances projected out. On any clocks the doubles that are left decide.
 
 use std::borrow::Cow;
 
 use faer::{Mat, MatRef};
 use nalgebra::DMatrix;
 
-use super::measured::{MeasuredSystem, rational};
+use super::measured::{Body, MeasuredSystem, rational};
 use crate::error::Result;
 use crate::number::Rational;
 use crate::number::rational::{from_f64_exact, to_f64};
 use crate::system::friction::{Friction, damped_system};
+use crate::system::levels::apart::{Given, common_null_space, of_particles};
+use crate::system::levels::{Hessians, Motions, Shares};
 use crate::system::linear::system::System;
 use crate::system::verdict::analysis::Analysis;
 use crate::system::verdict::decide::decide_by;
 use crate::system::verdict::limits::{Limits, Route};
 
+/// By which motions without positions are found.
+const COMMON: &str = "common null space";
+
 impl MeasuredSystem {
+    /// What moves: rigid motions set apart where no potential holds them, distances that are held.
+    pub(super) fn without_rigid(&self, whole: Hessians) -> Result<Hessians> {
+        let Body { is_periodic, held, rigid, .. } = &self.body;
+        if let Some(rigid) = rigid {
+            if rigid.is_empty() {
+                return Ok(whole);
+            }
+            let columns = Mat::from_fn(rigid.nrows(), rigid.ncols(), |i, k| rigid[(i, k)]);
+            return Ok(whole.without(&columns.qr().compute_thin_Q(), COMMON));
+        }
+        let motions = self.motions();
+        if let Some(held) = held {
+            let columns = motions.as_ref().map_or_else(Mat::new, |(own, _)| own.columns.clone());
+            let all = |i: usize, j: usize| match j.checked_sub(held.ncols()) {
+                None => held[(i, j)],
+                Some(j) => columns[(i, j)],
+            };
+            let all = Mat::from_fn(held.nrows(), held.ncols() + columns.ncols(), all);
+            let (by, shares) = match &motions {
+                Some((own, particles)) => ("positions and constraints", self.shares_of(own, particles)?),
+                None => ("constraints", Shares { each: Vec::new(), total: 0.0 }),
+            };
+            return Ok(whole.set_apart(&all.qr().compute_thin_Q(), by, shares));
+        }
+        match motions {
+            _ if self.keeps_rigid => Ok(whole),
+            Some((own, particles)) => {
+                let by = if *is_periodic { "periodic box" } else { "positions" };
+                Ok(whole.set_apart(&own.columns, by, self.shares_of(&own, &particles)?))
+            }
+            None => {
+                let found =
+                    common_null_space(&self.given(), self.accuracy, if *is_periodic { 3 } else { 6 })?;
+                Ok(match found {
+                    Some((columns, shares)) => whole.set_apart(&columns, COMMON, shares),
+                    None => whole,
+                })
+            }
+        }
+    }
+
+    /// What positions say is rigid, or a box, with the mass of each particle; `None` where neither does, and where rigid motions are kept.
+    fn motions(&self) -> Option<(Motions, Vec<f64>)> {
+        let masses =
+            self.body.masses.as_ref().filter(|_| !self.keeps_rigid && self.size().is_multiple_of(3))?;
+        let particles: Vec<f64> = masses.iter().step_by(3).copied().collect();
+        let motions = match &self.body.positions {
+            _ if self.body.is_periodic => Motions::of_box(&particles),
+            Some(positions) => Motions::of_particles(positions, &particles),
+            None => return None,
+        };
+        // Of one particle all there is.
+        (motions.columns.ncols() < self.size()).then_some((motions, particles))
+    }
+
+    fn given(&self) -> Vec<Given> {
+        let each = |(step, own): (&Rational, &[DMatrix<f64>])| -> Vec<Given> {
+            own.iter().map(|k| Given::new(step.clone(), &self.weighted(k))).collect()
+        };
+        self.clocks().flat_map(each).collect()
+    }
+
+    fn shares_of(&self, motions: &Motions, particles: &[f64]) -> Result<Shares> {
+        of_particles(motions, particles, &self.given(), self.accuracy)
+    }
+
     /// The verdict on these doubles as a rational system, without margins.
     pub(super) fn decide_projected(&self, route: Route, limits: &Limits) -> Result<Analysis> {
         let hessians = self.hessians()?;
@@ -28,6 +99,7 @@ impl MeasuredSystem {
         let mut analysis = decide_by(route, &self.projected(basis), limits)?;
         lift(&mut analysis, basis);
         let what = format!("with {} motions projected out ({}) and rounded", removed.count, removed.found_by);
+        analysis.warnings.extend(removed.warning(self.accuracy));
         analysis.warnings.push(warning(&what));
         Ok(analysis)
     }

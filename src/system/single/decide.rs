@@ -169,7 +169,7 @@ fn by_ladder<S: Decidable>(clocks: &ManyClocks<S>, limits: &Limits) -> Result<Op
 
 /// Any clocks: the signs that doubles prove. The bound of [`float`] has room for one more rounding of each stiffness.
 fn by_doubles<S: Decidable>(rounded: &System, clocks: &ManyClocks<S>) -> Option<Scalar> {
-    let blocks = float::half_period(rounded, &Frame::new(rounded));
+    let blocks = float::half_period(rounded, &Frame::whole(1));
     let error = blocks.error?;
     let certain = |x: f64| (x.abs() > error).then_some(if x > 0.0 { Sign::Positive } else { Sign::Negative });
     let (y, p) = (blocks.y.first()?, blocks.p.first()?);

@@ -9,12 +9,25 @@ use crate::verdict::Kind;
 pub struct Removed {
     /// How many.
     pub count: usize,
-    /// "positions", "periodic box" or "null space of the total", with constraints.
+    /// "positions", "periodic box", "common null space" or "constraints".
     pub found_by: &'static str,
-    /// ‖F r‖₂/‖F‖₂ for the orthonormal rigid motions r, rounded: what of the fast stiffness was removed.
-    pub fast: f64,
-    /// The slow one's.
-    pub slow: f64,
+    /// ‖K r‖₂/‖K‖₂ for the orthonormal rigid motions r, rounded: what was removed of the stiffness of each potential, by increasing step.
+    pub held: Vec<f64>,
+    /// ‖Σ K r‖₂/Σ ‖K‖₂: 0 at a minimum.
+    pub total: f64,
+}
+
+impl Removed {
+    /// A warning where the sum of the stiffnesses holds what was set apart.
+    pub(crate) fn warning(&self, accuracy: f64) -> Option<String> {
+        let Removed { found_by, total, .. } = self;
+        (*total > accuracy).then(|| {
+            format!(
+                "the sum of the stiffnesses holds {total:.1e} of their norms along the rigid motions found by {found_by}: the positions are at no \
+                 minimum, or an outer force turns the atoms, which then are held; say \"keep_rigid\": true"
+            )
+        })
+    }
 }
 
 /// That an accuracy of measured matrices, relative to their norms, is in (0, 1/10).

@@ -3,7 +3,7 @@
 use crate::error::{Kind as ErrorKind, Result};
 use crate::number::{Laurent, Rational};
 use crate::parallel::both;
-use crate::system::exact::decide::{MuCount, decide_by_signs, decide_exact};
+use crate::system::exact::decide::{MuCount, decide_beside, decide_by_signs};
 use crate::system::half::compose::check_length;
 use crate::system::half::float;
 use crate::system::linear::frame::Frame;
@@ -138,7 +138,7 @@ impl Piece {
     /// The kind in exact arithmetic, and where the μ lie.
     pub(in crate::system) fn exact(&self, limits: &Limits) -> Result<(Kind, MuCount)> {
         match &self.coefficients {
-            None => decide_exact(&self.system, limits).map(|exact| (exact.kind, exact.roots)),
+            None => decide_beside(&self.system, &self.frame, limits).map(|exact| (exact.kind, exact.roots)),
             Some(own) => own.decide_exact(&self.frame, limits),
         }
     }
