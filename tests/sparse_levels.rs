@@ -363,6 +363,80 @@ fn what_is_proven_of_small_systems_is_what_their_dense_period_does() {
     assert!(seen.iter().all(|&count| count > 50) && first > 100, "{seen:?} {first}");
 }
 
+/// Two atoms on a bond: with tethers, or where both stiffnesses hold a translation and their sum does not, nothing is set apart.
+#[test]
+fn motions_that_a_sparse_stiffness_holds_are_not_set_apart() {
+    let folder = tempfile::tempdir().unwrap();
+    let bond = |by: f64| {
+        DMatrix::from_fn(6, 6, |i, j| match (i % 3, j % 3) {
+            (0, 0) => {
+                if i == j {
+                    by
+                } else {
+                    -by
+                }
+            }
+            _ => 0.0,
+        })
+    };
+    let read = |fast: &DMatrix<f64>, slow: &DMatrix<f64>, more: serde_json::Value| {
+        npz_of(&folder.path().join("f.npz"), fast);
+        npz_of(&folder.path().join("s.npz"), slow);
+        let potential = |name: &str, step: &str| json!({"step": step, "stiffness": {"npz": format!("{name}.npz"), "csr": ""}});
+        let mut file = json!({
+            "schema": "kickdrift/system/1", "masses": [1, 2], "accuracy": 1e-6, "positions": {"npy": "x.npy"},
+            "potentials": [potential("f", "1/8"), potential("s", "1/2")],
+        });
+        file.as_object_mut().unwrap().extend(more.as_object().unwrap().clone());
+        SystemScene::from_json_in(kickdrift::scene::Arrays::from(folder.path()), file)
+    };
+    npy_of(&folder.path().join("x.npy"), &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0]);
+    let tether = DMatrix::identity(6, 6) * 0.1;
+    let soft = DMatrix::identity(6, 6) * 1e-3;
+    let none = json!({});
+    let free = read(&bond(1.0), &bond(0.1), none.clone()).unwrap();
+    let free = free.model().decide(Route::Cheapest, &Limits::default()).unwrap();
+    assert_eq!(free.measured.unwrap().removed.map(|own| own.count), Some(5));
+    for (fast, slow) in [
+        (bond(1.0), tether.clone()),
+        (bond(1.0), bond(0.1) + &soft),
+        (bond(1.0) + &tether, bond(0.1) - &tether),
+    ] {
+        let error = read(&fast, &slow, none.clone()).unwrap_err();
+        assert_eq!(error.field(), "rigid motions", "{error}");
+        assert!(error.to_string().contains("say \"keep_rigid\": true"), "{error}");
+        // The remedy works.
+        let kept = read(&fast, &slow, json!({"keep_rigid": true})).unwrap();
+        assert!(
+            kept.model()
+                .decide(Route::Cheapest, &Limits::default())
+                .unwrap()
+                .measured
+                .unwrap()
+                .removed
+                .is_none()
+        );
+    }
+    // Asked for with another accuracy it is the same question.
+    let scene = read(&bond(1.0), &(bond(0.1) + &soft * 1e-4), json!({"accuracy": 1e-3})).unwrap();
+    assert!(scene.asked(Some(1e-8), false, None, None).is_err());
+}
+
+/// Positions of three numbers each.
+fn npy_of(path: &std::path::Path, values: &[f64]) {
+    let mut header =
+        format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({}, 3), }}", values.len() / 3);
+    while (10 + header.len() + 1) % 64 > 0 {
+        header.push(' ');
+    }
+    header.push('\n');
+    let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
+    bytes.extend((header.len() as u16).to_le_bytes());
+    bytes.extend(header.bytes());
+    bytes.extend(values.iter().flat_map(|x| x.to_le_bytes()));
+    std::fs::write(path, bytes).unwrap();
+}
+
 /// One triangle of a matrix is no symmetric matrix, and nothing is made so in silence.
 #[test]
 fn what_is_not_symmetric_is_refused_with_the_entry_and_the_difference() {

@@ -53,9 +53,15 @@ pub(super) fn lines(own: &Measured, (clocks, is_stable): (usize, bool), unit: &s
     lines.push(match own.holds {
         Holds::Stable => format!("  stable for all stiffnesses within {accuracy:.0e} of their norms"),
         Holds::Unstable => format!("  unstable for all stiffnesses within {accuracy:.0e} of their norms"),
-        Holds::NotTold => format!(
-            "  not decided for all stiffnesses within {accuracy:.0e} of their norms: choose a step farther from the edge of stability, or write \"accuracy\" into the file if they are known better"
-        ),
+        Holds::NotTold => {
+            let place = match own.is_above_unstable {
+                true => "below the first unstable one",
+                false => "farther from the edge of stability",
+            };
+            format!(
+                "  not decided for all stiffnesses within {accuracy:.0e} of their norms: choose a step {place}, or write \"accuracy\" into the file if they are known better"
+            )
+        }
     });
     if let Some(margin) = own.margin {
         let stable = if is_stable { "stable" } else { "unstable" };

@@ -68,7 +68,7 @@ impl SparseSystem {
     /// that were set apart.
     ///
     /// # Errors
-    /// An outer step that is no multiple of the inner one, an accuracy that is not in (0, 1/10).
+    /// An outer step that is no multiple of the inner one, an accuracy that is not in (0, 1/10), motions set apart that a stiffness holds.
     pub fn new(
         levels: SparseLevels,
         steps: [&Rational; 2],
@@ -76,6 +76,9 @@ impl SparseSystem {
         removed: Option<Removed>,
     ) -> Result<SparseSystem> {
         check_accuracy(accuracy)?;
+        if removed.is_some() {
+            levels.check_rigid(accuracy)?;
+        }
         SparseSystem::of_levels(Arc::new(levels), steps, accuracy, removed)
     }
 
@@ -157,6 +160,9 @@ impl SparseSystem {
         check_accuracy(accuracy)?;
         match self.of {
             Of::Levels { levels, outer, removed, .. } => {
+                if removed.is_some() {
+                    levels.check_rigid(accuracy)?;
+                }
                 Ok(SparseSystem { of: Of::Levels { levels, outer, accuracy, removed }, ..self })
             }
             Of::Steps(_) => {

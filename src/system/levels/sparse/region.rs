@@ -104,6 +104,9 @@ const SIDE_BY_SIDE: f64 = 1e8;
 const BELOW_LIMIT: [f64; 3] = [1.0 - WIDTH / 2.0, 0.999, 0.99];
 const FROM: [f64; 8] = [0.9, 0.5, 0.2, 0.1, 0.03, 0.01, 1e-3, 1e-4];
 
+/// A stiffness's part of its norm up to which a rotation is set apart: of molecules at their minima forces that turn with the atoms hold some hundredths.
+const TURNED: f64 = 0.25;
+
 /// Shifts, relative to the norms, by which F + S is positive definite in doubles.
 const SHIFTED: [f64; 3] = [1e-9, 1e-7, 1e-5];
 
@@ -174,10 +177,44 @@ impl SparseLevels {
 
     /// ‖F r‖/‖F‖ for the rigid motions r, rounded, and the same of S.
     pub fn removed(&self) -> [f64; 2] {
+        self.removed_along(self.rigid.ncols())
+    }
+
+    /// The same for the first ones alone.
+    fn removed_along(&self, count: usize) -> [f64; 2] {
+        let rigid = self.rigid.subcols(0, count.min(self.rigid.ncols())).to_owned();
         [(&self.fast, self.sizes[0]), (&self.slow, self.sizes[1])].map(|(own, size)| {
-            let along = norm::frobenius(&self.both.times(own, &self.rigid));
+            let along = norm::frobenius(&self.both.times(own, &rigid));
             if along == 0.0 { 0.0 } else { along / size }
         })
+    }
+
+    /// That no stiffness holds what is set apart, three translations and rotations of particles: the former by no more than its accuracy, the latter by no more
+    /// than forces that turn with the atoms do. A sum that vanishes where both hold is no reason: their kicks fall at different times.
+    ///
+    /// # Errors
+    /// Where one does.
+    pub(in crate::system) fn check_rigid(&self, accuracy: f64) -> Result<()> {
+        let rounding = 16.0 * (self.size() as f64 + 4.0) * U;
+        let checks = [(3, "translations", accuracy + rounding), (usize::MAX, "rigid motions", TURNED)];
+        for (count, name, most) in checks {
+            let parts = ["fast", "slow"].into_iter().zip(self.removed_along(count));
+            if let Some((level, part)) = parts.into_iter().find(|own| own.1 > most) {
+                let value =
+                    format!("the {level} stiffness holds {part:.1e} of its norm along {name} of all atoms");
+                let remedy = if part > TURNED {
+                    "a field or tethers hold the atoms: say \"keep_rigid\": true".to_string()
+                } else {
+                    format!(
+                        "within its accuracy of {accuracy:.1e} they are neither rigid nor clearly held: say \"keep_rigid\": true where a field holds the \
+                         atoms, or \"accuracy\": {:.1e} where the stiffnesses are known no better",
+                        1.1 * part
+                    )
+                };
+                return Err(Error::input("rigid motions", value, remedy));
+            }
+        }
+        Ok(())
     }
 
     /// The products of one factorization.
