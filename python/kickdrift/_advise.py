@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, overload, runtime_ch
 from kickdrift import _plot
 from kickdrift._document import Asked, Document, Row, flat, frame
 from kickdrift._errors import KickdriftError, known, shown
+from kickdrift._files import text_of
 from kickdrift._native import Number
 from kickdrift._numbers import Exact, items, text, written
 
@@ -476,14 +477,8 @@ def _text(engine: str | PathLike[str]) -> str:
     own = fspath(engine)
     if "\n" in own:
         return own
-    try:
-        raw = Path(own).read_bytes()
-        try:
-            return raw.decode()
-        except UnicodeDecodeError:  # Letters in comments, which no engine reads.
-            return raw.decode("latin-1")
-    except (OSError, ValueError) as cause:
-        raise KickdriftError(own, "not read", f"{cause}: name an engine's input") from cause
+    # Letters in comments, which no engine reads, may be in Latin-1.
+    return text_of(own, "name an engine's input", "latin-1")
 
 
 def _time(field: str, value: Time | None) -> str | None:

@@ -274,7 +274,7 @@ def map(
             remedy = "a grid needs a spacing, as step='1/100'; verdicts(h1=xs[:, None], h2=ys) takes axes of any steps"
             raise KickdriftError(name, None, remedy)
     ends = [_ends("h1", h1), _ends("h2", h2)]
-    made, arrays = _native.map([lambda1, lambda2], steps, ends, (label, growth), budget, threads or 0)
+    made, arrays = _native.map([lambda1, lambda2], steps, ends, (label, growth), budget, threads)
     arguments = ["map"] + given(
         lambda1=text("lambda1", lambda1),
         lambda2=text("lambda2", lambda2),

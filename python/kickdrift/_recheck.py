@@ -10,7 +10,8 @@ from pathlib import Path
 from typing import Protocol, runtime_checkable
 
 from kickdrift import _native
-from kickdrift._errors import KickdriftError
+from kickdrift._errors import KickdriftError, shown
+from kickdrift._files import text_of
 from kickdrift._system import SystemVerdict
 
 
@@ -105,9 +106,11 @@ def _folder(document: HasJson | str | PathLike[str], folder: str | PathLike[str]
         with document.system._file() as path:
             yield str(Path(path).parent)
     elif folder is None and not isinstance(document, HasJson) and not _is_json(document):
-        yield str(Path(document).parent)
-    else:
+        yield str(Path(document).parent) if isinstance(document, str | PathLike) else ""
+    elif folder is None or isinstance(folder, str | PathLike):
         yield str(folder or "")
+    else:
+        raise KickdriftError("folder", shown(folder), "name a folder")
 
 
 def _is_json(document: object) -> bool:
@@ -119,7 +122,4 @@ def _text(document: HasJson | str | PathLike[str]) -> str:
         return document.to_json()
     if isinstance(document, str) and _is_json(document):
         return document
-    try:
-        return Path(document).read_text()
-    except OSError as cause:
-        raise KickdriftError(str(document), "not read", f"{cause}: name a JSON document") from cause
+    return text_of(document, "name a JSON document")

@@ -22,8 +22,9 @@ from kickdrift import _plot
 from kickdrift._advise import Engine, SystemAdvice, Time, asked
 from kickdrift._document import Answer, Asked, Document, Frozen, frame, question
 from kickdrift._errors import KickdriftError, shown
+from kickdrift._files import text_of
 from kickdrift._native import Number
-from kickdrift._numbers import Exact, Range, doubles, duration, frozen, number, range_text, text, written
+from kickdrift._numbers import Exact, Range, doubles, duration, frozen, items, number, range_text, text, written
 
 if TYPE_CHECKING:
     import pandas
@@ -68,6 +69,9 @@ class System(Frozen):
     _orbit: Followed | None = None
 
     def __post_init__(self) -> None:
+        for name, mapping in (("document", self.document), ("arrays", self.arrays)):
+            if not isinstance(mapping, Mapping):
+                raise KickdriftError(name, shown(mapping), "give a mapping of names to what they mean")
         own = {name: doubles(name, array) for name, array in self.arrays.items()}
         object.__setattr__(self, "arrays", MappingProxyType(own))
 
@@ -102,13 +106,14 @@ class System(Frozen):
         ...     print(error.field)
         nowhere.json
         """
-        own = Path(path)
+        source = text_of(path, "name a system file")
         try:
-            source = own.read_text()
             document = json.loads(source, parse_float=str)
-        except (OSError, ValueError) as cause:
+        except (ValueError, RecursionError) as cause:
             raise KickdriftError(str(path), "not read", f"{cause}: name a system file") from cause
-        return System(MappingProxyType(document), _path=own, _source=source)
+        if not isinstance(document, dict):
+            raise KickdriftError(str(path), "not read", "a system file is one JSON object: name another one")
+        return System(MappingProxyType(document), _path=Path(path), _source=source)
 
     @staticmethod
     def from_hessians(
@@ -568,6 +573,19 @@ class System(Frozen):
         return f"System({self.document.get('title') or 'untitled'}; {steps or 'built'})"
 
 
+def a_system(value: Any) -> System:
+    """The argument ``system`` itself, where it is one.
+
+    Raises
+    ------
+    KickdriftError
+        Anything else.
+    """
+    if not isinstance(value, System):
+        raise KickdriftError("system", shown(value), "give a System, as System.read('system.json') is")
+    return value
+
+
 def _warned(warnings: Sequence[str]) -> str:
     """What comes before an answer's text."""
     return "".join(f"warning: {note}\n" for note in warnings)
@@ -628,15 +646,15 @@ def _at(name: str) -> dict[str, str]:
     return {"npz": _ARRAYS, "array": name}
 
 
-def _exact(value: Any) -> Any:
-    """Whatever stands for an exact number as its text; JSON would round it or not know it."""
+def _exact(value: Any, field: str = "document") -> Any:
+    """Whatever stands for an exact number as its text; JSON would round it or not know it. An error names its place."""
     if isinstance(value, Mapping):
-        return {key: _exact(own) for key, own in value.items()}
+        return {written(field, key): _exact(own, f"{field}.{key}") for key, own in value.items()}
     if isinstance(value, list | tuple):
-        return [_exact(own) for own in value]
+        return [_exact(own, f"{field}[{n}]") for n, own in enumerate(value)]
     if value is None or isinstance(value, bool | str):
         return value
-    return value if isinstance(value, int) else text("number", value)
+    return value if isinstance(value, int) else text(field, value)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -932,8 +950,12 @@ def simulate(
     >>> kd.simulate(chain, periods=5, displace="1/100").data["schema"]
     'kickdrift/simulate/1'
     """
-    parts = list(displace) if isinstance(displace, list | tuple | np.ndarray) else [displace]
-    moved = ",".join(text("displace", part) for part in parts)
+    system = a_system(system)
+    if isinstance(displace, list | tuple | np.ndarray):
+        parts = enumerate(items("displace", displace, "list numbers"))
+        moved = ",".join(text(f"displace[{n}]", part) for n, part in parts)
+    else:
+        moved = text("displace", displace)
     form = "staggered" if staggered else "symmetric"
     asked = question("simulate", budget, periods=periods, displace=moved, form=form)
     return Run(system._about(asked).render("json"))
