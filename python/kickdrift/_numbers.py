@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from decimal import Decimal
 from fractions import Fraction
 from typing import Any, TypeAlias, TypeGuard, TypeVar
@@ -165,6 +165,39 @@ def items(field: str, value: Any, remedy: str) -> list[Any]:
         raise KickdriftError(field, shown(value), remedy) from None
 
 
+def flag(field: str, value: Any) -> bool:
+    """A yes or no: whatever else Python takes for one may be a slip."""
+    if not isinstance(value, bool | np.bool_):
+        raise KickdriftError(field, shown(value), "give True or False")
+    return bool(value)
+
+
+def mapping_of(field: str, value: Any, remedy: str) -> Mapping[str, Any]:
+    """A mapping, of names to what is meant by them."""
+    if not isinstance(value, Mapping):
+        raise KickdriftError(field, shown(value), remedy)
+    return value
+
+
+def pair_of(field: str, value: Any, remedy: str) -> tuple[Any, Any]:
+    """The two parts of a pair."""
+    parts = () if isinstance(value, str | bytes | Mapping) else items(field, value, remedy)
+    if len(parts) != 2:
+        raise KickdriftError(field, shown(value), remedy)
+    return parts[0], parts[1]
+
+
+def names_text(field: str, value: Any, remedy: str) -> str:
+    """Names as the library reads them: a text with commas, or several texts."""
+    if isinstance(value, str):
+        return written(field, value)
+    several = items(field, value, remedy)
+    for n, word in enumerate(several):
+        if not isinstance(word, str):
+            raise KickdriftError(f"{field}[{n}]", shown(word), remedy)
+    return ",".join(written(field, word) for word in several)
+
+
 def labels_text(value: Labels) -> str:
     """Labels as the library reads them."""
     if isinstance(value, str | int):
@@ -245,6 +278,8 @@ def simplest(value: float, ulps: Fraction | int = Fraction(1, 2)) -> Fraction:
         known = np.inf
     if not 0 < known < np.inf:
         raise KickdriftError("number", shown(value), "give a positive finite float")
+    if not isinstance(ulps, int | Fraction) or ulps < 0:
+        raise KickdriftError("ulps", shown(ulps), "give an int or a Fraction, 0 or more")
     width = ulps * Fraction(float(np.spacing(value if isinstance(value, np.floating) else known)))
     return _between(Fraction(known) - width, Fraction(known) + width)
 

@@ -12,6 +12,7 @@ from typing import Protocol, runtime_checkable
 from kickdrift import _native
 from kickdrift._errors import KickdriftError, shown
 from kickdrift._files import text_of
+from kickdrift._numbers import flag, written
 from kickdrift._system import SystemVerdict
 
 
@@ -96,7 +97,7 @@ def recheck(
     (True, 7)
     """
     with _folder(document, folder) as place:
-        rows, route, sample, not_rechecked, failures = _native.recheck(_text(document), all, budget, place)
+        rows, route, sample, not_rechecked, failures = _native.recheck(_text(document), flag("all", all), budget, place)
     return Recheck(rows, route, sample, tuple(not_rechecked), tuple(failures))
 
 
@@ -108,7 +109,7 @@ def _folder(document: HasJson | str | PathLike[str], folder: str | PathLike[str]
     elif folder is None and not isinstance(document, HasJson) and not _is_json(document):
         yield str(Path(document).parent) if isinstance(document, str | PathLike) else ""
     elif folder is None or isinstance(folder, str | PathLike):
-        yield str(folder or "")
+        yield written("folder", str(folder or ""))
     else:
         raise KickdriftError("folder", shown(folder), "name a folder")
 

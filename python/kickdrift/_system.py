@@ -24,7 +24,19 @@ from kickdrift._document import Answer, Asked, Document, Frozen, frame, question
 from kickdrift._errors import KickdriftError, shown
 from kickdrift._files import text_of
 from kickdrift._native import Number
-from kickdrift._numbers import Exact, Range, doubles, duration, frozen, items, number, range_text, text, written
+from kickdrift._numbers import (
+    Exact,
+    Range,
+    doubles,
+    duration,
+    frozen,
+    items,
+    number,
+    pair_of,
+    range_text,
+    text,
+    written,
+)
 
 if TYPE_CHECKING:
     import pandas
@@ -193,13 +205,14 @@ class System(Frozen):
         known = doubles("accuracy", accuracy)
         if known.ndim > 0:
             raise KickdriftError("accuracy", shown(accuracy), "give one number")
-        steps = {name: _step(name, step, time_unit) for name, (step, _) in potentials.items()}
+        pairs = {name: pair_of(written("potentials", name), own, _PAIR) for name, own in potentials.items()}
+        steps = {name: _step(name, step, time_unit) for name, (step, _) in pairs.items()}
         arrays = {"masses": doubles("masses", masses)}
         if positions is not None:
             arrays["positions"] = doubles("positions", positions)
         document: dict[str, Any] = {"accuracy": float(known), **{name: _at(name) for name in arrays}}
-        named: dict[str, Any] = {"title": title, "time_unit": time_unit, "labels": list(labels)}
-        named |= {"periodic": periodic, "keep_rigid": keep_rigid, "elements": list(elements)}
+        named: dict[str, Any] = {"title": title, "time_unit": time_unit, "labels": items("labels", labels, "list them")}
+        named |= {"periodic": periodic, "keep_rigid": keep_rigid, "elements": items("elements", elements, "list them")}
         named["constraints"] = constraints if isinstance(constraints, str) else _pairs("constraints", constraints)
         document |= {key: value for key, value in named.items() if value}
         if not symmetric:
@@ -207,7 +220,7 @@ class System(Frozen):
         if bonded is not None:
             document["bonded"] = _pairs("bonded", bonded)
         document["potentials"] = []
-        for place, (name, (_, hessian)) in enumerate(potentials.items()):
+        for place, (name, (_, hessian)) in enumerate(pairs.items()):
             at, own = _compressed(place, name, hessian, float(known)) or _dense(place, name, hessian)
             potential = {"name": name, "step": written(name, steps[name]), "stiffness": at}
             arrays |= own
@@ -280,11 +293,12 @@ class System(Frozen):
             arrays |= {name: doubles(name, own) for name, own in ends.items() if own is not None}
         document: dict[str, Any] = {"along_orbit": True, "accuracy": float(doubles("accuracy", accuracy))}
         document |= {name: _at(name) for name in arrays}
-        named: dict[str, Any] = {"title": title, "time_unit": time_unit, "labels": list(labels)}
+        named: dict[str, Any] = {"title": title, "time_unit": time_unit, "labels": items("labels", labels, "list them")}
         named |= {"periodic": periodic, "keep_rigid": keep_rigid}
         document |= {key: value for key, value in named.items() if value}
         document["potentials"] = []
-        for place, (name, (step, hessians)) in enumerate(potentials.items()):
+        pairs = {name: pair_of(written("potentials", name), own, _PAIR) for name, own in potentials.items()}
+        for place, (name, (step, hessians)) in enumerate(pairs.items()):
             at, own = _dense(place, name, hessians)
             exact = written(name, _step(name, step, time_unit))
             document["potentials"].append({"name": name, "step": exact, "stiffness": at})
@@ -589,6 +603,10 @@ def a_system(value: Any) -> System:
 def _warned(warnings: Sequence[str]) -> str:
     """What comes before an answer's text."""
     return "".join(f"warning: {note}\n" for note in warnings)
+
+
+#: What each potential is.
+_PAIR = "give the step and the Hessian, as ('1/40', [[400.0]])"
 
 
 def _step(name: str, value: Exact, unit: str) -> Fraction:

@@ -15,7 +15,7 @@ from kickdrift import _native
 from kickdrift._document import Document, Frozen
 from kickdrift._errors import KickdriftError, required
 from kickdrift._native import Number
-from kickdrift._numbers import Exact, frozen, placed
+from kickdrift._numbers import Exact, flag, frozen, placed
 from kickdrift._plot import COLOURS
 from kickdrift._progress import Progress, shown
 
@@ -263,7 +263,7 @@ def decide(
                    = 2 exactly
       decided by   exact
     """
-    return Verdict(_native.decide(lambda1, lambda2, h1, h2, exact, friction, budget))
+    return Verdict(_native.decide(lambda1, lambda2, h1, h2, flag("exact", exact), friction, budget))
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -146,7 +146,6 @@ CHAIN = kd.System({"build": {"kind": "chain", "masses": 3, "stiffness": [1], "st
 #: What each function is asked in earnest.
 ASKED: dict[str, dict[str, Any]] = {
     "advise": {"periods": ["10fs", "40fs"], "steps": ["0.5fs", "4fs"], "levers": False},
-    "bands": {"lambda1": 10, "lambda2": 1, "window_h1": (1, 2), "window_h2": (1, 2), "budget": 1},
     "closings": {"max_sum": 3},
     "compare": {"max_sum": 3, "rho": "1/25", "samples": 3},
     "curves": {"samples": 3},
@@ -184,6 +183,9 @@ def test_every_argument_of_every_function_refuses_what_does_not_belong_there_as_
         if parameter.kind is inspect.Parameter.VAR_KEYWORD:
             continue
         for junk in JUNK:
+            # What is called may raise what it likes; a default belongs there, and may take long.
+            if (parameter.name == "progress" and callable(junk)) or junk is parameter.default:
+                continue
             try:
                 function(**ASKED[name] | {parameter.name: junk})
             except kd.KickdriftError:
