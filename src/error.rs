@@ -246,15 +246,19 @@ fn is_unseen(c: char) -> bool {
         | '\u{fe00}'..='\u{fe0f}' | '\u{feff}' | '\u{fff9}'..='\u{fffb}' | '\u{e0000}'..='\u{e01ef}')
 }
 
+/// `text` whose lines a terminal shows as they are: names of files and titles may hold what moves the cursor, or hides what follows.
+pub(crate) fn visible(text: &str) -> String {
+    let is_hidden = |c: char| c != '\n' && (c.is_control() || is_unseen(c));
+    if !text.contains(is_hidden) {
+        return text.into();
+    }
+    let shown = |c: char| if is_hidden(c) { c.escape_unicode().to_string() } else { c.to_string() };
+    text.chars().map(shown).collect()
+}
+
 /// `text` on one line, what is not seen escaped, its middle left out where it has more than `most` characters.
 fn one_line(text: &str, most: usize) -> String {
-    let shown = |c: char| match c {
-        '\n' | '\r' | '\t' => " ".into(),
-        c if c.is_control() || is_unseen(c) => c.escape_unicode().to_string(),
-        c => c.to_string(),
-    };
-    let line: String = text.chars().map(shown).collect();
-    let line: Vec<char> = line.chars().collect();
+    let line: Vec<char> = visible(&text.replace(['\n', '\r', '\t'], " ")).chars().collect();
     if line.len() <= most {
         return line.into_iter().collect();
     }

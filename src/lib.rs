@@ -115,6 +115,7 @@ pub mod cli;
 pub mod error;
 #[cfg(feature = "cli")]
 pub mod explore;
+pub mod file;
 pub mod format;
 pub mod map;
 mod named;

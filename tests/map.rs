@@ -313,7 +313,7 @@ fn stopped_work_goes_on_and_parts_join_to_the_same_map() {
         merge(&grid, std::slice::from_ref(&store), |_, _| Ok(()))
             .unwrap_err()
             .to_string()
-            .contains("is in no part")
+            .contains("is whole in no part")
     );
     for k in [1, 2] {
         kept.shard(shard(k)).for_each_band(|_, _| Ok(())).unwrap();

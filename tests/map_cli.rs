@@ -271,6 +271,123 @@ fn parts_of_different_maps_are_refused_and_missing_ones_named() {
     assert!(colour.contains("without --growth"), "{colour}");
 }
 
+/// FNV-1a, as a part of a map ends with it.
+fn check(bytes: &[u8]) -> [u8; 8] {
+    let step = |hash: u64, &byte: &u8| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3);
+    bytes.iter().fold(0xcbf2_9ce4_8422_2325, step).to_le_bytes()
+}
+
+/// A directory with all bands of GRID, its bytes merged, and the bytes of its second band.
+fn whole_part(folder: &Path) -> (PathBuf, Vec<u8>, Vec<u8>) {
+    let part = folder.join("part");
+    done(&format!("{GRID} --label --growth --resume"), &[&part]);
+    let (merged, band) = (done("merge", &[&part]), fs::read(part.join("band-00000001")).unwrap());
+    (part, merged, band)
+}
+
+#[test]
+fn a_band_copied_over_another_one_is_not_there() {
+    let folder = tempfile::tempdir().unwrap();
+    let (part, whole, _) = whole_part(folder.path());
+    fs::copy(part.join("band-00000000"), part.join("band-00000001")).unwrap();
+    let line = refused("merge", &[&part]);
+    assert!(line.contains("band 1 from h1 = ") && line.contains("run its shard"), "{line}");
+    assert!(whole == done(&format!("{GRID} --label --growth --resume"), &[&part]), "another map");
+    assert!(whole == done("merge", &[&part]), "not mended by going on");
+}
+
+/// Fields that no band has, below a check that is right.
+#[test]
+fn a_forged_band_is_not_there() {
+    let folder = tempfile::tempdir().unwrap();
+    let (part, whole, sound) = whole_part(folder.path());
+    let start = (0..2).fold(0, |at, _| at + sound[at..].iter().position(|&b| b == b'\n').unwrap() + 1);
+    let number =
+        |bytes: &[u8], field: usize| u64::from_le_bytes(bytes[start + 8 * field..][..8].try_into().unwrap());
+    let (columns, rows, growing) = (number(&sound, 1), number(&sound, 2), number(&sound, 3));
+    let pairs = (columns * rows) as usize;
+    assert!(growing > 10 && number(&sound, 4) == pairs as u64);
+    let forged = |change: &dyn Fn(&mut Vec<u8>)| {
+        let mut bytes = sound[..sound.len() - 8].to_vec();
+        change(&mut bytes);
+        bytes.extend(check(&bytes));
+        fs::write(part.join("band-00000001"), bytes).unwrap();
+    };
+    let set = |field: usize, value: u64| {
+        move |bytes: &mut Vec<u8>| bytes[start + 8 * field..][..8].copy_from_slice(&value.to_le_bytes())
+    };
+    forged(&|_| {});
+    assert!(whole == done("merge", &[&part]), "the check is not that of the program");
+    let (verdicts, tiers, list) = (start + 64, start + 64 + pairs, start + 64 + 2 * pairs);
+    let stable = sound[verdicts..tiers].iter().position(|&code| code == 0).unwrap();
+    // Its columns and rows are 2^32 each, and their product wraps to 0.
+    let empty = |bytes: &mut Vec<u8>| {
+        bytes.truncate(start + 64);
+        [1, 2].into_iter().for_each(|field| set(field, 1 << 32)(bytes));
+        [3, 4].into_iter().for_each(|field| set(field, 0)(bytes));
+    };
+    let put = |at: usize, value: u64| {
+        move |bytes: &mut Vec<u8>| bytes[at..][..8].copy_from_slice(&value.to_le_bytes())
+    };
+    let changes: [(&str, Box<dyn Fn(&mut Vec<u8>)>); 17] = [
+        ("first", Box::new(set(0, 1))),
+        (
+            "columns and rows swapped",
+            Box::new(|bytes| {
+                [(1, rows), (2, columns)].into_iter().for_each(|(field, n)| set(field, n)(bytes))
+            }),
+        ),
+        ("a product that wraps", Box::new(empty)),
+        ("no list", Box::new(set(3, 0))),
+        ("a list without end", Box::new(set(3, u64::MAX))),
+        ("pairs", Box::new(set(4, 7))),
+        ("kicks", Box::new(set(5, u64::MAX))),
+        ("kicks again", Box::new(set(6, u64::MAX))),
+        ("escalated", Box::new(set(7, pairs as u64 + 1))),
+        ("a verdict's code", Box::new(|bytes| bytes[verdicts] = 7)),
+        ("a stable pair that grows", Box::new(|bytes| bytes[verdicts + stable] = 1)),
+        ("a tier's code", Box::new(|bytes| bytes[tiers] = 3)),
+        ("a position", Box::new(put(list, u64::from(u32::MAX)))),
+        ("a position that wraps", Box::new(|bytes| bytes[list + 4] = 1)),
+        ("a label", Box::new(put(list + 8, u64::MAX - 1))),
+        ("an end that is no number", Box::new(put(list + 16, f64::NAN.to_bits()))),
+        ("ends in the wrong order", Box::new(put(list + 24, 0))),
+    ];
+    for (what, change) in changes {
+        forged(&*change);
+        let line = refused("merge", &[&part]);
+        assert!(line.contains("band 1 from h1 = "), "{what}: {line}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn only_regular_files_of_a_bands_size_are_read_as_bands() {
+    let folder = tempfile::tempdir().unwrap();
+    let (part, whole, sound) = whole_part(folder.path());
+    let band = part.join("band-00000001");
+    let device = || std::os::unix::fs::symlink("/dev/zero", &band).unwrap();
+    let pipe = || assert!(Command::new("mkfifo").arg(&band).status().unwrap().success());
+    // What would fill a disk, were it not a hole.
+    let hole = || fs::File::create(&band).unwrap().set_len(1 << 50).unwrap_or(());
+    let longer = || fs::write(&band, [&sound[..], &[0; 1 << 22]].concat()).unwrap();
+    let makes: [&dyn Fn(); 4] = [&device, &pipe, &hole, &longer];
+    for make in makes {
+        fs::remove_file(&band).unwrap();
+        make();
+        assert!(refused("merge", &[&part]).contains("band 1 from h1 = "));
+    }
+    assert!(whole == done(&format!("{GRID} --label --growth --resume"), &[&part]));
+    for make in [&device, &pipe] as [&dyn Fn(); 2] {
+        let name = part.join("map.json");
+        fs::remove_file(&band).unwrap();
+        make();
+        fs::rename(&band, &name).unwrap();
+        assert!(refused("merge", &[&part]).contains("it is no regular file"));
+        fs::write(&band, &sound).unwrap();
+    }
+}
+
 #[test]
 fn bad_flags_are_told_in_one_line() {
     for (flags, says) in [

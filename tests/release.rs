@@ -68,39 +68,85 @@ fn release_jobs() -> Vec<(String, String)> {
     starts.iter().zip(ends).map(|((start, name), end)| (name.clone(), jobs[*start..end].to_owned())).collect()
 }
 
+/// The job of the release of this name.
+fn release_job(wanted: &str) -> String {
+    release_jobs().into_iter().find(|(name, _)| name == wanted).unwrap_or_else(|| panic!("no job {wanted}")).1
+}
+
 /// Whoever downloads a file can ask which commit and which workflow made it.
 #[test]
 fn every_file_that_a_release_holds_is_attested_before_it_is_uploaded() {
-    let mut uploading = 0;
-    for (name, job) in release_jobs() {
-        assert_eq!(job.contains("contents: write"), job.contains("gh release upload"), "{name}");
-        let Some(upload) = job.find("gh release upload") else { continue };
-        uploading += 1;
-        let attested = job.find("uses: actions/attest-build-provenance@").expect(&name);
-        assert!(
-            attested < upload && job.contains("attestations: write") && job.contains("id-token: write"),
-            "{name}"
-        );
-        let files = Regex::new(r"subject-path: (\S+)\n").unwrap().captures(&job).expect(&name)[1].to_owned();
-        assert!(job.contains(&format!("gh release upload \"$TAG\" {files}\n")), "{name}: {files}");
-    }
-    assert_eq!(uploading, 3);
-    let (_, pypi) = release_jobs().into_iter().find(|(name, _)| name == "pypi").unwrap();
+    let uploading: Vec<String> = release_jobs()
+        .into_iter()
+        .filter(|(_, job)| job.contains("gh release"))
+        .map(|(name, _)| name)
+        .collect();
+    assert_eq!(uploading, ["upload"]);
+    let upload = release_job("upload");
+    let place = |text: &str| upload.find(text).unwrap_or_else(|| panic!("no {text}"));
+    let [attested, named, sent] =
+        ["uses: actions/attest-build-provenance@", "subject-path: files/*\n", "gh release upload"].map(place);
+    assert!(attested < named && named < sent && upload[sent..].contains("files/*\n"));
+    assert!(upload.contains("needs: [program, wheels, source, version]"));
+    let pypi = release_job("pypi");
     assert!(
         pypi.find("pypi_attestations sign").unwrap()
             < pypi.find("upload --non-interactive --skip-existing --attestations").unwrap()
     );
 }
 
+/// A build script of any crate could take a token that is within its reach.
+#[test]
+fn whoever_builds_may_not_write_and_whoever_may_write_builds_nothing() {
+    let builds = ["cargo build", "cargo test", "cargo package", "maturin-action", "pip install ."];
+    let (mut building, mut writing) = (Vec::new(), Vec::new());
+    for (name, job) in release_jobs() {
+        let is_building = builds.iter().any(|own| job.contains(own));
+        let is_writing = job.contains(": write");
+        assert!(!(is_building && is_writing), "{name}");
+        building.extend(is_building.then(|| name.clone()));
+        writing.extend(is_writing.then_some(name));
+    }
+    assert_eq!((building.len(), writing), (4, ["upload", "crates", "pypi"].map(String::from).to_vec()));
+    let crates = release_job("crates");
+    let published: Vec<&str> = crates.lines().filter(|line| line.contains("cargo publish")).collect();
+    assert!(published.len() == 2 && published.iter().all(|line| line.contains(" --no-verify ")));
+    assert!(crates.contains("needs: [upload, verify]"));
+    let verify = release_job("verify");
+    assert!(verify.contains("cargo package --locked --package kickdrift-plot --package kickdrift\n"));
+}
+
+#[test]
+fn no_checkout_leaves_its_token_in_the_folder() {
+    for (name, text) in workflows() {
+        let after: Vec<&str> = text.split("uses: actions/checkout@").skip(1).collect();
+        assert!(!after.is_empty(), "{name}");
+        for rest in after {
+            let lines: Vec<&str> = rest.lines().skip(1).take(2).map(str::trim).collect();
+            assert_eq!(lines, ["with:", "persist-credentials: false"], "{name}");
+        }
+    }
+}
+
+#[test]
+fn what_uploads_to_pypi_is_named_by_its_hash() {
+    assert!(
+        release_job("pypi").contains("--require-hashes --no-deps --only-binary=:all: -r .ci/upload.txt\n")
+    );
+    let pins = std::fs::read_to_string(root().join(".ci/upload.txt")).unwrap();
+    let pinned = Regex::new(r"^[A-Za-z0-9_.-]+==[A-Za-z0-9.]+ --hash=sha256:[0-9a-f]{64}$").unwrap();
+    let lines: Vec<&str> = pins.lines().filter(|line| !line.starts_with('#')).collect();
+    assert!(lines.len() > 20 && lines.iter().any(|line| line.starts_with("twine==")));
+    lines.iter().for_each(|line| assert!(pinned.is_match(line), "{line}"));
+}
+
 /// A number with an underscore is an integer to some readers of YAML.
 #[test]
 fn programs_are_static_for_old_machines_and_wheels_are_there_without_the_lock() {
-    let jobs = release_jobs();
-    let job = |wanted: &str| jobs.iter().find(|(name, _)| name == wanted).unwrap().1.clone();
     for target in ["x86_64-unknown-linux-musl", "aarch64-unknown-linux-musl"] {
-        assert!(job("program").contains(&format!("target: {target}}}")), "{target}");
+        assert!(release_job("program").contains(&format!("target: {target}}}")), "{target}");
     }
-    let wheels = job("wheels");
+    let wheels = release_job("wheels");
     assert_eq!(wheels.matches("python: 3.14t, native: true").count(), 4);
     assert!(wheels.contains("not sys._is_gil_enabled()"));
     let unquoted = Regex::new(r"linux: [0-9]").unwrap();

@@ -14,8 +14,9 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, overload, runtime_ch
 from kickdrift import _plot
 from kickdrift._document import Asked, Document, Row, flat, frame
 from kickdrift._errors import KickdriftError, known, shown
+from kickdrift._files import text_of
 from kickdrift._native import Number
-from kickdrift._numbers import Exact, items, text, written
+from kickdrift._numbers import Exact, items, mapping_of, text, written
 
 if TYPE_CHECKING:
     import pandas
@@ -394,12 +395,18 @@ def advise(
     for name, value in named:
         own = str(_time("periods", value))
         given["period"].append(own if name is None else f"{_name('periods', name)}={own}")
-    given["bond"] = [f"{_name('bonds', name)}:{value}" for name, value in (bonds or {}).items()]
-    given["on"] = [f"{_name('on', name)}={clock}" for name, clock in (on or {}).items()]
+    bonded, clocks = mapping_of("bonds", bonds or {}, _BONDS), mapping_of("on", on or {}, _CLOCKS)
+    given["bond"] = [f"{_name('bonds', name)}:{value}" for name, value in bonded.items()]
+    given["on"] = [f"{_name('on', name)}={clock}" for name, clock in clocks.items()]
     scales = (band, length, friction, constraints, hmr)
     every = asked(given, rest, engine, scales, levers=levers, all_modes=all_modes, harmonic=harmonic)
     return Advice(every.render("json"), every.render("text"), every)
 
+
+#: What to give in place of what is none.
+_BONDS = "give a mapping of names to bonds, as {'OH': 'k=1106kcal/mol/A^2,15.999,1.008'}"
+_CLOCKS = "give a mapping of names to clocks, as {'OH': 1}"
+_INPUTS = "give the path of an input or its text, or several"
 
 #: What keywords are that :func:`advise` does not name.
 _ENGINES = "is for a system of OpenMM, ASE or LAMMPS"
@@ -459,7 +466,11 @@ def asked(
     """The question about what is given, and what all advice is asked with: the band, the length of the run, friction,
     constraints, the mass of hydrogens."""
     band, length, friction, constraints, hmr = scales
-    engines = [engine] if isinstance(engine, str | PathLike) else list(engine or ())
+    alone = engine is None or isinstance(engine, str | PathLike)
+    engines = [own for own in (engine,) if own] if alone else items("engine", engine, _INPUTS)
+    for own in engines:
+        if not isinstance(own, str | PathLike):
+            raise KickdriftError("engine", shown(own), _INPUTS)
     texts = [_text(own) for own in engines]
     rest = {
         "steps": _schemes(steps),
@@ -487,14 +498,8 @@ def _text(engine: str | PathLike[str]) -> str:
     own = fspath(engine)
     if "\n" in own:
         return own
-    try:
-        raw = Path(own).read_bytes()
-        try:
-            return raw.decode()
-        except UnicodeDecodeError:  # Letters in comments, which no engine reads.
-            return raw.decode("latin-1")
-    except (OSError, ValueError) as cause:
-        raise KickdriftError(own, "not read", f"{cause}: name an engine's input") from cause
+    # Letters in comments, which no engine reads, may be in Latin-1.
+    return text_of(own, "name an engine's input", "latin-1")
 
 
 def _time(field: str, value: Time | None) -> str | None:

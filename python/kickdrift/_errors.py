@@ -104,6 +104,10 @@ def shown(value: object) -> str:
         return repr(value)
     except ValueError:
         return f"a {type(value).__name__} of too many digits"
+    except MemoryError:
+        raise
+    except Exception:
+        return f"a {type(value).__name__} without a representation"
 
 
 def _short(value: str) -> str:

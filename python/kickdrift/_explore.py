@@ -10,7 +10,7 @@ import numpy as np
 from kickdrift import _native
 from kickdrift._errors import KickdriftError, required
 from kickdrift._numbers import Exact, Range, range_text, text
-from kickdrift._system import System
+from kickdrift._system import System, a_system
 
 if TYPE_CHECKING:
     from kickdrift._widget import Explorer
@@ -73,7 +73,7 @@ def explore(
 
 
 def _page(system: System) -> _native.Page:
-    path = system._path
+    path = a_system(system)._path
     if path is not None:
         return _native.Page.of_system(path.read_text(), {}, str(path.parent))
     arrays = {name: np.asarray(own, dtype=np.float64) for name, own in system.arrays.items()}

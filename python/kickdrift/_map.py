@@ -15,7 +15,7 @@ import numpy.typing as npt
 from kickdrift import _native, _plot
 from kickdrift._document import Document, Frozen, ask, given
 from kickdrift._errors import KickdriftError, required
-from kickdrift._numbers import Exact, Range, frozen, range_text, text
+from kickdrift._numbers import Exact, Range, flag, frozen, range_text, text
 from kickdrift._verdict import _STABLE, TIERS, VERDICTS
 
 if TYPE_CHECKING:
@@ -274,7 +274,8 @@ def map(
             remedy = "a grid needs a spacing, as step='1/100'; verdicts(h1=xs[:, None], h2=ys) takes axes of any steps"
             raise KickdriftError(name, None, remedy)
     ends = [_ends("h1", h1), _ends("h2", h2)]
-    made, arrays = _native.map([lambda1, lambda2], steps, ends, (label, growth), budget, threads or 0)
+    label, growth = flag("label", label), flag("growth", growth)
+    made, arrays = _native.map([lambda1, lambda2], steps, ends, (label, growth), budget, threads)
     arguments = ["map"] + given(
         lambda1=text("lambda1", lambda1),
         lambda2=text("lambda2", lambda2),

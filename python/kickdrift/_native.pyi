@@ -93,7 +93,7 @@ def verdicts(
     values: Sequence[list[Any]],
     positions: Sequence[npt.NDArray[np.int64]],
     budget: int | None,
-    threads: int,
+    threads: int | None,
     progress: Callable[[int, int], Any] | None,
 ) -> tuple[npt.NDArray[np.uint8], npt.NDArray[np.uint8]]: ...
 def map(
@@ -102,7 +102,7 @@ def map(
     ranges: Sequence[Sequence[Any]],
     products: tuple[bool, bool],
     budget: int | None,
-    threads: int,
+    threads: int | None,
 ) -> tuple[Map, dict[str, npt.NDArray[Any]]]: ...
 def multipliers(
     stiffness: Sequence[Any], steps: Sequence[Any], ranges: Sequence[Sequence[Any]]

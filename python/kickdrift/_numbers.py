@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from decimal import Decimal
 from fractions import Fraction
-from typing import Any, Protocol, TypeAlias, TypeGuard, TypeVar
+from typing import Any, TypeAlias, TypeGuard, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -17,12 +17,6 @@ from kickdrift._native import Number
 Exact: TypeAlias = int | float | Fraction | Decimal | str | Number | Any
 """An exact number: an int, a Fraction, a Decimal, a text such as ``"pi^2/25"`` (``**`` is ``^``), a SymPy number
 without rounded parts, a NumPy scalar, a Number. A float means what it prints, its shortest decimal: 0.02 is 1/50."""
-
-
-class SupportsRatio(Protocol):
-    """A number that knows its numerator and denominator."""
-
-    def as_integer_ratio(self) -> tuple[int, int]: ...
 
 
 Range: TypeAlias = tuple[Exact, Exact] | str
@@ -96,17 +90,27 @@ def exact(value: Any) -> Any:
     """
     if isinstance(value, np.ndarray):
         all_of_them = np.empty(value.shape, dtype=object)
-        all_of_them.ravel()[:] = [_exact(one) for one in value.ravel()]
+        for place in np.ndindex(value.shape):
+            all_of_them[place] = _exact(placed("number", place), value[place])
         return all_of_them
-    return _exact(value)
+    return _exact("number", value)
 
 
-def _exact(value: SupportsRatio) -> Number:
-    try:
+def _exact(field: str, value: Any) -> Number:
+    if isinstance(value, float | np.floating):
+        if not np.isfinite(value):
+            raise KickdriftError(field, shown(value), "give a finite float")
         above, below = value.as_integer_ratio()
-    except (AttributeError, OverflowError, ValueError):
-        raise KickdriftError("number", shown(value), "give a finite float") from None
-    return _native.number("number", Fraction(int(above), int(below)))
+        return _native.number(field, Fraction(int(above), int(below)))
+    if not hasattr(value, "as_integer_ratio"):
+        raise KickdriftError(field, shown(value), "give a finite float")
+    return _native.number(field, value)
+
+
+def placed(field: str, place: Iterable[int]) -> str:
+    """The name of an entry of an array, as ``h1[3, 4]``; of a number without axes its own."""
+    where = ", ".join(str(n) for n in place)
+    return f"{field}[{where}]" if where else field
 
 
 def text(field: str, value: Exact) -> str:
@@ -161,11 +165,45 @@ def items(field: str, value: Any, remedy: str) -> list[Any]:
         raise KickdriftError(field, shown(value), remedy) from None
 
 
+def flag(field: str, value: Any) -> bool:
+    """A yes or no: whatever else Python takes for one may be a slip."""
+    if not isinstance(value, bool | np.bool_):
+        raise KickdriftError(field, shown(value), "give True or False")
+    return bool(value)
+
+
+def mapping_of(field: str, value: Any, remedy: str) -> Mapping[str, Any]:
+    """A mapping, of names to what is meant by them."""
+    if not isinstance(value, Mapping):
+        raise KickdriftError(field, shown(value), remedy)
+    return value
+
+
+def pair_of(field: str, value: Any, remedy: str) -> tuple[Any, Any]:
+    """The two parts of a pair."""
+    parts = () if isinstance(value, str | bytes | Mapping) else items(field, value, remedy)
+    if len(parts) != 2:
+        raise KickdriftError(field, shown(value), remedy)
+    return parts[0], parts[1]
+
+
+def names_text(field: str, value: Any, remedy: str) -> str:
+    """Names as the library reads them: a text with commas, or several texts."""
+    if isinstance(value, str):
+        return written(field, value)
+    several = items(field, value, remedy)
+    for n, word in enumerate(several):
+        if not isinstance(word, str):
+            raise KickdriftError(f"{field}[{n}]", shown(word), remedy)
+    return ",".join(written(field, word) for word in several)
+
+
 def labels_text(value: Labels) -> str:
     """Labels as the library reads them."""
     if isinstance(value, str | int):
         return written("m", value)
-    return ",".join(written("m", m) for m in items("m", value, "give a label, several, or a text as '1,3,7..9'"))
+    several = items("m", value, "give a label, several, or a text as '1,3,7..9'")
+    return ",".join(written(f"m[{n}]", m) for n, m in enumerate(several))
 
 
 #: Units of time by name, in fs.
@@ -240,6 +278,8 @@ def simplest(value: float, ulps: Fraction | int = Fraction(1, 2)) -> Fraction:
         known = np.inf
     if not 0 < known < np.inf:
         raise KickdriftError("number", shown(value), "give a positive finite float")
+    if not isinstance(ulps, int | Fraction) or ulps < 0:
+        raise KickdriftError("ulps", shown(ulps), "give an int or a Fraction, 0 or more")
     width = ulps * Fraction(float(np.spacing(value if isinstance(value, np.floating) else known)))
     return _between(Fraction(known) - width, Fraction(known) + width)
 
@@ -286,11 +326,25 @@ def doubles(field: str, value: npt.ArrayLike) -> npt.NDArray[np.float64]:
     except (TypeError, ValueError, OverflowError) as cause:
         if isinstance(cause, KickdriftError):
             raise
-        raise KickdriftError(field, shown(value), "give an array of numbers") from None
+        raise _no_doubles(field, value) from None
     if not np.isfinite(own).all():
         where = ", ".join(str(int(n)) for n in np.argwhere(~np.isfinite(own))[0])
         raise KickdriftError(field, f"an entry that is not finite, at [{where}]", "give finite numbers")
     return frozen(own)
+
+
+def _no_doubles(field: str, value: Any) -> KickdriftError:
+    """The error that names the first entry which is no number, or the whole where that is no array at all."""
+    try:
+        entries = np.array(value, dtype=object)
+    except ValueError:
+        return KickdriftError(field, shown(value), "give nested lists of equal lengths")
+    for place in np.ndindex(entries.shape):
+        try:
+            float(entries[place])
+        except (TypeError, ValueError, OverflowError):
+            return KickdriftError(placed(field, place), shown(entries[place]), "give an array of numbers")
+    return KickdriftError(field, shown(value), "give an array of numbers")
 
 
 def _is_frozen(value: object) -> TypeGuard[npt.NDArray[np.float64]]:

@@ -7,6 +7,9 @@ from collections.abc import Callable
 from functools import partial
 from typing import TypeAlias
 
+from kickdrift._errors import KickdriftError
+from kickdrift._errors import shown as said
+
 Progress: TypeAlias = Callable[[int, int], None]
 """Called with what is done and what there is in all."""
 
@@ -24,4 +27,10 @@ def bar(done: int, total: int, what: str = "columns") -> None:
 
 def shown(progress: Progress | bool | None, what: str = "columns") -> Progress | None:
     """Who is called: a bar, the function given, or nobody."""
-    return partial(bar, what=what) if progress is True else progress or None
+    if progress is None or progress is False:
+        return None
+    if progress is True:
+        return partial(bar, what=what)
+    if not callable(progress):
+        raise KickdriftError("progress", said(progress), "give True, or what is called with how much is done and all")
+    return progress

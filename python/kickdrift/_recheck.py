@@ -10,7 +10,9 @@ from pathlib import Path
 from typing import Protocol, runtime_checkable
 
 from kickdrift import _native
-from kickdrift._errors import KickdriftError
+from kickdrift._errors import KickdriftError, shown
+from kickdrift._files import text_of
+from kickdrift._numbers import flag, written
 from kickdrift._system import SystemVerdict
 
 
@@ -95,7 +97,7 @@ def recheck(
     (True, 7)
     """
     with _folder(document, folder) as place:
-        rows, route, sample, not_rechecked, failures = _native.recheck(_text(document), all, budget, place)
+        rows, route, sample, not_rechecked, failures = _native.recheck(_text(document), flag("all", all), budget, place)
     return Recheck(rows, route, sample, tuple(not_rechecked), tuple(failures))
 
 
@@ -105,9 +107,11 @@ def _folder(document: HasJson | str | PathLike[str], folder: str | PathLike[str]
         with document.system._file() as path:
             yield str(Path(path).parent)
     elif folder is None and not isinstance(document, HasJson) and not _is_json(document):
-        yield str(Path(document).parent)
+        yield str(Path(document).parent) if isinstance(document, str | PathLike) else ""
+    elif folder is None or isinstance(folder, str | PathLike):
+        yield written("folder", str(folder or ""))
     else:
-        yield str(folder or "")
+        raise KickdriftError("folder", shown(folder), "name a folder")
 
 
 def _is_json(document: object) -> bool:
@@ -119,7 +123,4 @@ def _text(document: HasJson | str | PathLike[str]) -> str:
         return document.to_json()
     if isinstance(document, str) and _is_json(document):
         return document
-    try:
-        return Path(document).read_text()
-    except OSError as cause:
-        raise KickdriftError(str(document), "not read", f"{cause}: name a JSON document") from cause
+    return text_of(document, "name a JSON document")

@@ -22,8 +22,21 @@ from kickdrift import _plot
 from kickdrift._advise import Engine, SystemAdvice, Time, asked
 from kickdrift._document import Answer, Asked, Document, Frozen, frame, question
 from kickdrift._errors import KickdriftError, shown
+from kickdrift._files import text_of
 from kickdrift._native import Number
-from kickdrift._numbers import Exact, Range, doubles, duration, frozen, number, range_text, text, written
+from kickdrift._numbers import (
+    Exact,
+    Range,
+    doubles,
+    duration,
+    frozen,
+    items,
+    number,
+    pair_of,
+    range_text,
+    text,
+    written,
+)
 
 if TYPE_CHECKING:
     import pandas
@@ -68,6 +81,9 @@ class System(Frozen):
     _orbit: Followed | None = None
 
     def __post_init__(self) -> None:
+        for name, mapping in (("document", self.document), ("arrays", self.arrays)):
+            if not isinstance(mapping, Mapping):
+                raise KickdriftError(name, shown(mapping), "give a mapping of names to what they mean")
         own = {name: doubles(name, array) for name, array in self.arrays.items()}
         object.__setattr__(self, "arrays", MappingProxyType(own))
 
@@ -102,13 +118,14 @@ class System(Frozen):
         ...     print(error.field)
         nowhere.json
         """
-        own = Path(path)
+        source = text_of(path, "name a system file")
         try:
-            source = own.read_text()
             document = json.loads(source, parse_float=str)
-        except (OSError, ValueError) as cause:
+        except (ValueError, RecursionError) as cause:
             raise KickdriftError(str(path), "not read", f"{cause}: name a system file") from cause
-        return System(MappingProxyType(document), _path=own, _source=source)
+        if not isinstance(document, dict):
+            raise KickdriftError(str(path), "not read", "a system file is one JSON object: name another one")
+        return System(MappingProxyType(document), _path=Path(path), _source=source)
 
     @staticmethod
     def from_hessians(
@@ -188,13 +205,14 @@ class System(Frozen):
         known = doubles("accuracy", accuracy)
         if known.ndim > 0:
             raise KickdriftError("accuracy", shown(accuracy), "give one number")
-        steps = {name: _step(name, step, time_unit) for name, (step, _) in potentials.items()}
+        pairs = {name: pair_of(written("potentials", name), own, _PAIR) for name, own in potentials.items()}
+        steps = {name: _step(name, step, time_unit) for name, (step, _) in pairs.items()}
         arrays = {"masses": doubles("masses", masses)}
         if positions is not None:
             arrays["positions"] = doubles("positions", positions)
         document: dict[str, Any] = {"accuracy": float(known), **{name: _at(name) for name in arrays}}
-        named: dict[str, Any] = {"title": title, "time_unit": time_unit, "labels": list(labels)}
-        named |= {"periodic": periodic, "keep_rigid": keep_rigid, "elements": list(elements)}
+        named: dict[str, Any] = {"title": title, "time_unit": time_unit, "labels": items("labels", labels, "list them")}
+        named |= {"periodic": periodic, "keep_rigid": keep_rigid, "elements": items("elements", elements, "list them")}
         named["constraints"] = constraints if isinstance(constraints, str) else _pairs("constraints", constraints)
         document |= {key: value for key, value in named.items() if value}
         if not symmetric:
@@ -202,7 +220,7 @@ class System(Frozen):
         if bonded is not None:
             document["bonded"] = _pairs("bonded", bonded)
         document["potentials"] = []
-        for place, (name, (_, hessian)) in enumerate(potentials.items()):
+        for place, (name, (_, hessian)) in enumerate(pairs.items()):
             at, own = _compressed(place, name, hessian, float(known)) or _dense(place, name, hessian)
             potential = {"name": name, "step": written(name, steps[name]), "stiffness": at}
             arrays |= own
@@ -275,11 +293,12 @@ class System(Frozen):
             arrays |= {name: doubles(name, own) for name, own in ends.items() if own is not None}
         document: dict[str, Any] = {"along_orbit": True, "accuracy": float(doubles("accuracy", accuracy))}
         document |= {name: _at(name) for name in arrays}
-        named: dict[str, Any] = {"title": title, "time_unit": time_unit, "labels": list(labels)}
+        named: dict[str, Any] = {"title": title, "time_unit": time_unit, "labels": items("labels", labels, "list them")}
         named |= {"periodic": periodic, "keep_rigid": keep_rigid}
         document |= {key: value for key, value in named.items() if value}
         document["potentials"] = []
-        for place, (name, (step, hessians)) in enumerate(potentials.items()):
+        pairs = {name: pair_of(written("potentials", name), own, _PAIR) for name, own in potentials.items()}
+        for place, (name, (step, hessians)) in enumerate(pairs.items()):
             at, own = _dense(place, name, hessians)
             exact = written(name, _step(name, step, time_unit))
             document["potentials"].append({"name": name, "step": exact, "stiffness": at})
@@ -572,9 +591,26 @@ class System(Frozen):
         return f"System({self.document.get('title') or 'untitled'}; {steps or 'built'})"
 
 
+def a_system(value: Any) -> System:
+    """The argument ``system`` itself, where it is one.
+
+    Raises
+    ------
+    KickdriftError
+        Anything else.
+    """
+    if not isinstance(value, System):
+        raise KickdriftError("system", shown(value), "give a System, as System.read('system.json') is")
+    return value
+
+
 def _warned(warnings: Sequence[str]) -> str:
     """What comes before an answer's text."""
     return "".join(f"warning: {note}\n" for note in warnings)
+
+
+#: What each potential is.
+_PAIR = "give the step and the Hessian, as ('1/40', [[400.0]])"
 
 
 def _step(name: str, value: Exact, unit: str) -> Fraction:
@@ -632,15 +668,15 @@ def _at(name: str) -> dict[str, str]:
     return {"npz": _ARRAYS, "array": name}
 
 
-def _exact(value: Any) -> Any:
-    """Whatever stands for an exact number as its text; JSON would round it or not know it."""
+def _exact(value: Any, field: str = "document") -> Any:
+    """Whatever stands for an exact number as its text; JSON would round it or not know it. An error names its place."""
     if isinstance(value, Mapping):
-        return {key: _exact(own) for key, own in value.items()}
+        return {written(field, key): _exact(own, f"{field}.{key}") for key, own in value.items()}
     if isinstance(value, list | tuple):
-        return [_exact(own) for own in value]
+        return [_exact(own, f"{field}[{n}]") for n, own in enumerate(value)]
     if value is None or isinstance(value, bool | str):
         return value
-    return value if isinstance(value, int) else text("number", value)
+    return value if isinstance(value, int) else text(field, value)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -936,8 +972,12 @@ def simulate(
     >>> kd.simulate(chain, periods=5, displace="1/100").data["schema"]
     'kickdrift/simulate/1'
     """
-    parts = list(displace) if isinstance(displace, list | tuple | np.ndarray) else [displace]
-    moved = ",".join(text("displace", part) for part in parts)
+    system = a_system(system)
+    if isinstance(displace, list | tuple | np.ndarray):
+        parts = enumerate(items("displace", displace, "list numbers"))
+        moved = ",".join(text(f"displace[{n}]", part) for n, part in parts)
+    else:
+        moved = text("displace", displace)
     form = "staggered" if staggered else "symmetric"
     asked = question("simulate", budget, periods=periods, displace=moved, form=form)
     return Run(system._about(asked).render("json"))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Literal
 
 from kickdrift import _plot
 from kickdrift._document import Answer, Table, answered, ask, frame, given
-from kickdrift._numbers import Exact, Labels, Range, labels_text, range_text, text
+from kickdrift._numbers import Exact, Labels, Range, labels_text, names_text, range_text, text
 
 if TYPE_CHECKING:
     import pandas
@@ -129,7 +129,7 @@ def tongues(
         a=a,
         b=b,
         digits=digits,
-        columns=None if columns is None else ",".join(columns),
+        columns=None if columns is None else names_text("columns", columns, "name them, as ['edges']"),
     )
     return Tongues(ask(arguments), tuple(arguments), "tongues")
 
@@ -423,7 +423,7 @@ def compare(
             "compare-methods",
             "methods",
             budget,
-            methods=methods if isinstance(methods, str) else ",".join(methods),
+            methods=names_text("methods", methods, "give names of methods(), or words"),
             lambda1="1" if lambda1 is None else _text("lambda1", lambda1),
             lambda2=_text("lambda2", lambda2),
             h_range=_range("h1", h1) if by_step else _range("h", h),

@@ -15,7 +15,7 @@ from kickdrift import _native
 from kickdrift._document import Document, Frozen
 from kickdrift._errors import KickdriftError, required
 from kickdrift._native import Number
-from kickdrift._numbers import Exact, frozen
+from kickdrift._numbers import Exact, flag, frozen, placed
 from kickdrift._plot import COLOURS
 from kickdrift._progress import Progress, shown
 
@@ -263,7 +263,7 @@ def decide(
                    = 2 exactly
       decided by   exact
     """
-    return Verdict(_native.decide(lambda1, lambda2, h1, h2, exact, friction, budget))
+    return Verdict(_native.decide(lambda1, lambda2, h1, h2, flag("exact", exact), friction, budget))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -380,8 +380,20 @@ def verdicts(
     short = [own.dtype.kind == "f" and own.dtype != np.float64 for own in arrays]
     values = [list(own.ravel()) if odd else own.ravel().tolist() for own, odd in zip(arrays, short, strict=True)]
     positions = [_positions(array, shape) for array in arrays]
-    code, tier = _native.verdicts(values, positions, budget, threads or 0, shown(progress, "pairs"))
+    try:
+        code, tier = _native.verdicts(values, positions, budget, threads, shown(progress, "pairs"))
+    except KickdriftError as error:
+        raise _placed(error, dict(zip(fields, arrays, strict=True))) from None
     return Verdicts(frozen(code.reshape(shape)), frozen(tier.reshape(shape)))
+
+
+def _placed(error: KickdriftError, arrays: Mapping[str, npt.NDArray[Any]]) -> KickdriftError:
+    """An error about the n-th value of an array, ``h1[5]``, as one about its entry, ``h1[1, 2]``."""
+    name, _, place = error.field.removesuffix("]").partition("[")
+    if name not in arrays or not place.isdigit():
+        return error
+    where = np.unravel_index(int(place), arrays[name].shape)
+    return KickdriftError(placed(name, (int(n) for n in where)), error.value, error.remedy)
 
 
 def _array(field: str, value: Any) -> npt.NDArray[Any]:

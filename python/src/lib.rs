@@ -2,6 +2,7 @@
 //!
 //! The typed package `kickdrift` is the interface; this module, `kickdrift._native`, is its thin native half.
 
+mod arguments;
 mod error;
 mod job;
 mod map;

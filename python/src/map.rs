@@ -14,6 +14,7 @@ use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+use crate::arguments::{Budget, Threads};
 use crate::error::raised;
 use crate::job;
 use crate::number::quantity;
@@ -55,13 +56,13 @@ pub fn map<'py>(
     steps: [Bound<'py, PyAny>; 2],
     ranges: [[Bound<'py, PyAny>; 2]; 2],
     products: (bool, bool),
-    budget: Option<u64>,
-    threads: usize,
+    budget: Budget,
+    threads: Threads,
 ) -> PyResult<(Map, Bound<'py, PyDict>)> {
     let (asked, grid) = asked(&stiffness, &steps, &ranges, products)?;
     let (map, arrays) = job::run(py, move |stopped| {
         let mut map = Map { asked, grid, tally: MapTally::default() };
-        let arrays = map.compute(threads, budget, stopped)?;
+        let arrays = map.compute(threads.0, budget.0, stopped)?;
         Ok((map, arrays))
     })?;
     let arrays = arrays.into_python(py, &map.grid)?;

@@ -13,6 +13,7 @@ use kickdrift::verdict::{Answer, Decision, Growth, Limits, Tier, decide_from, de
 use num_bigint::BigInt;
 use pyo3::prelude::*;
 
+use crate::arguments::Budget;
 use crate::error::raised;
 use crate::job;
 use crate::number::{Number, quantity, rational};
@@ -69,7 +70,7 @@ pub fn decide(
     h2: &Bound<'_, PyAny>,
     exact: bool,
     friction: Option<&Bound<'_, PyAny>>,
-    budget: Option<u64>,
+    budget: Budget,
 ) -> PyResult<Pair> {
     let friction = friction.map(|rate| rational("friction", rate)).transpose()?;
     let quantities = (quantity("lambda1", lambda1)?, quantity("lambda2", lambda2)?);
@@ -78,7 +79,7 @@ pub fn decide(
         Oscillator::new(quantities.0, quantities.1, steps.0, steps.1).map_err(|error| raised(&error))?;
     let first = if exact { Tier::Exact } else { Tier::Filter };
     job::run(py, move |_| {
-        let limits = limits(budget);
+        let limits = limits(budget.0);
         let found = match oscillator.clocks() {
             Err(_) if !exact => {
                 let clocks = oscillator.long_clocks();
@@ -91,7 +92,7 @@ pub fn decide(
                 _ => Found::Pi(decide_from(first, &clocks?, &limits)?),
             },
         };
-        Ok(Pair { oscillator, found, exact, friction, budget })
+        Ok(Pair { oscillator, found, exact, friction, budget: budget.0 })
     })
 }
 

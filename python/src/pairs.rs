@@ -7,8 +7,9 @@ use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyList;
 
+use crate::arguments::{Budget, Threads};
 use crate::job::{self, Listener};
-use crate::number::quantity;
+use crate::number::{is_refusal, quantity};
 use crate::pair::limits;
 
 /// lambda1, lambda2, h1, h2.
@@ -33,8 +34,8 @@ pub fn verdicts<'py>(
     py: Python<'py>,
     values: [Bound<'py, PyList>; 4],
     positions: [PyReadonlyArray1<'py, i64>; 4],
-    budget: Option<u64>,
-    threads: usize,
+    budget: Budget,
+    threads: Threads,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(Bound<'py, PyArray1<u8>>, Bound<'py, PyArray1<u8>>)> {
     let mut quantities: [Vec<Laurent>; 4] = Default::default();
@@ -44,7 +45,10 @@ pub fn verdicts<'py>(
             if n.is_multiple_of(BETWEEN_SIGNALS) {
                 py.check_signals()?;
             }
-            quantity(field, &value)
+            quantity(field, &value).or_else(|error| match list.len() {
+                2.. if is_refusal(py, &error) => quantity(&format!("{field}[{n}]"), &value),
+                _ => Err(error),
+            })
         };
         *own = list.iter().enumerate().map(read).collect::<PyResult<_>>()?;
     }
@@ -54,8 +58,12 @@ pub fn verdicts<'py>(
     }
     let listener = Listener { called: progress, total: picked[0].len() };
     let decided = job::run_heard(py, listener, move |stopped, done| {
-        let resources =
-            Resources { threads, limits: limits(budget), stopped: Some(stopped), done: Some(done) };
+        let resources = Resources {
+            threads: threads.0,
+            limits: limits(budget.0),
+            stopped: Some(stopped),
+            done: Some(done),
+        };
         Pairs::new(quantities, picked)?.verdicts(&resources)
     })?;
     let verdicts = decided.iter().map(|decision| decision.verdict.index()).collect();

@@ -17,6 +17,7 @@ use numpy::{PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
+use crate::arguments::Budget;
 use crate::error::raised;
 use crate::job;
 
@@ -80,17 +81,17 @@ fn read(fields: BTreeMap<String, Given>, place: Option<Place<'_>>) -> PyResult<(
 
 /// Answers a question: its name, its fields, and where the arrays are that it refers to.
 #[pyfunction]
-#[pyo3(signature = (name, fields, budget = None, place = None))]
+#[pyo3(signature = (name, fields, budget = Budget(None), place = None))]
 pub fn ask(
     py: Python<'_>,
     name: String,
     fields: BTreeMap<String, Given>,
-    budget: Option<u64>,
+    budget: Budget,
     place: Option<Place<'_>>,
 ) -> PyResult<Answer> {
     let (fields, arrays) = read(fields, place)?;
     job::run(py, move |_| {
-        let work = Work { budget, arrays: Some(&arrays), ..Work::default() };
+        let work = Work { budget: budget.0, arrays: Some(&arrays), ..Work::default() };
         question::ask(&name, &fields, &work).map(Answer)
     })
 }
@@ -101,13 +102,13 @@ pub fn draw(
     py: Python<'_>,
     name: String,
     fields: BTreeMap<String, Given>,
-    budget: Option<u64>,
+    budget: Budget,
     place: Option<Place<'_>>,
     command: String,
 ) -> PyResult<String> {
     let (fields, arrays) = read(fields, place)?;
     job::run(py, move |_| {
-        let work = Work { budget, arrays: Some(&arrays), ..Work::default() };
+        let work = Work { budget: budget.0, arrays: Some(&arrays), ..Work::default() };
         let nothing = || Error::input("figure", &name, "has nothing to draw");
         let figure = question::draw(&name, &fields, &work)?.ok_or_else(nothing)?;
         Ok(String::from_utf8_lossy(&file(figure, &command, Format::Svg)?).into_owned())
@@ -134,11 +135,11 @@ pub fn recheck(
     py: Python<'_>,
     text: String,
     all: bool,
-    budget: Option<u64>,
+    budget: Budget,
     folder: PathBuf,
 ) -> PyResult<Outcome> {
     job::run(py, move |_| {
-        let options = Options { budget, all, folder };
+        let options = Options { budget: budget.0, all, folder };
         let outcome = Claim::read(&text)?.recheck(&options, None)?;
         let not_rechecked = outcome.not_rechecked.iter().map(ToString::to_string).collect();
         let failures = outcome.failures.iter();

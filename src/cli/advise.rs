@@ -6,9 +6,9 @@ use super::args::Common;
 use super::paper::Paper;
 use super::system::{arrays, source};
 use crate::error::{Error, Result};
+use crate::file;
 use crate::format::Format;
 use crate::question::{Advise, Question, Work};
-use crate::scene::file;
 
 /// Flags of `advise`.
 ///

@@ -8,7 +8,7 @@ use std::str::FromStr;
 use clap::ValueEnum;
 use clap::builder::PossibleValue;
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, visible};
 use crate::format::Format;
 use crate::map::Products;
 use crate::number::Laurent;
@@ -95,7 +95,11 @@ impl Common {
     pub fn wrote(&self, what: impl Display) {
         if !self.quiet && !is_captured() {
             // Where standard error is closed, nobody wants to know.
-            let _ = writeln!(std::io::stderr(), "kickdrift: wrote {what}");
+            let _ = writeln!(
+                std::io::stderr(),
+                "kickdrift: wrote {}",
+                visible(&what.to_string()).replace('\n', " ")
+            );
         }
     }
 

@@ -7,9 +7,11 @@ use super::args::Common;
 use crate::error::{Error, Result};
 use crate::explore::Session;
 use crate::explore::serve::Server;
+use crate::file;
 use crate::number::{ExactSign, Laurent, Rational, Sign};
 use crate::question::{Scene, flag};
-use crate::scene::{SystemScene, file};
+use crate::report::file::{private, write_output};
+use crate::scene::{SystemScene, json};
 
 /// Flags of `explore`.
 #[derive(Debug, clap::Args)]
@@ -42,8 +44,8 @@ impl Args {
     pub fn run(&self, common: &Common) -> Result<()> {
         let server = Server::bind(self.session()?, self.port, common.threads())?;
         let address = server.address();
-        crate::report::file::write_output(None, format!("{address}\n").as_bytes())?;
-        if !self.no_open && !open(&address) && !common.quiet {
+        write_output(None, format!("{address}\n").as_bytes())?;
+        if !self.no_open && open(&address).is_err() && !common.quiet {
             eprintln!("kickdrift: no browser could be started: open the address above");
         }
         match server.run()? {}
@@ -84,7 +86,7 @@ fn of_file(path: &Path) -> Result<Session> {
         let text = format!("cannot read it ({cause}): name a scene or a system, as data/scenes/figure1.json");
         Error::io(path.display(), text).caused_by(cause)
     })?;
-    let value: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
+    let value: serde_json::Value = json::from_str(&text).unwrap_or_default();
     if value["schema"].as_str().is_some_and(|schema| schema.starts_with("kickdrift/system/")) {
         let folder = path.parent().unwrap_or(Path::new(""));
         return Ok(Session::of_system(SystemScene::read_in(folder, &text)?));
@@ -92,14 +94,18 @@ fn of_file(path: &Path) -> Result<Session> {
     Session::of_scene(&Scene::from_json(&text)?)
 }
 
-/// Whether a browser was started on the address.
-fn open(address: &str) -> bool {
+/// Starts a browser on a file that leads to the address: every user sees the arguments of all processes, and the address is the key to the page.
+fn open(address: &str) -> std::io::Result<()> {
+    let page = format!(
+        "<!doctype html><meta http-equiv=\"refresh\" content=\"0; url={address}\"><title>kickdrift explore</title>\n"
+    );
+    let path = private(".html", page.as_bytes())?;
     let (program, first): (&str, &[&str]) = match std::env::consts::OS {
         "macos" => ("open", &[]),
         "windows" => ("rundll32", &["url.dll,FileProtocolHandler"]),
         _ => ("xdg-open", &[]),
     };
     let mut command = Command::new(program);
-    command.args(first).arg(address).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
-    command.spawn().is_ok()
+    command.args(first).arg(path).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+    command.spawn().map(drop)
 }

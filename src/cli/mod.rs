@@ -37,7 +37,7 @@ use crate::format::Format;
 use crate::question::{Closings, Curves, Half, Polynomial, Proposition, Question, State};
 #[cfg(unix)]
 use crate::report::file::abandon;
-use crate::report::file::{captured, is_captured, writable, write_output};
+use crate::report::file::{captured, is_captured, stdout_is_closed, writable, write_output};
 use args::Common;
 use asked::{Asked, Default};
 use progress::Patience;
@@ -138,8 +138,12 @@ fn parsed(arguments: impl IntoIterator<Item = OsString>) -> clap::error::Result<
     Ok(cli)
 }
 
-/// Runs the program with the process's arguments.
-pub fn main() -> ExitCode {
+/// Runs the program with the process's arguments. Whether standard output was closed is told by who could see it before the runtime opened
+/// another file in its place.
+pub fn main(is_stdout_closed: bool) -> ExitCode {
+    if is_stdout_closed {
+        stdout_is_closed();
+    }
     ExitCode::from(program(std::env::args_os()))
 }
 

@@ -8,6 +8,8 @@ use std::time::Duration;
 
 use indicatif::{HumanCount, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
+use crate::error::visible;
+
 /// A bar that shows itself on a terminal only, and nowhere where `quiet`; `things` names what is counted.
 pub fn progress(quiet: bool, length: u64, things: &str) -> ProgressBar {
     if quiet {
@@ -23,6 +25,7 @@ pub fn progress(quiet: bool, length: u64, things: &str) -> ProgressBar {
 /// Says on a terminal what is about to take more than a second, and about how long: for work that no bar counts.
 pub fn announce(quiet: bool, work: &str, seconds: f64) {
     if seconds > 1.0 && !quiet && stderr().is_terminal() {
+        let work = visible(work).replace('\n', " ");
         eprintln!("kickdrift: {work}: some {seconds:.0} s of one core");
     }
 }

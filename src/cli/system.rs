@@ -5,11 +5,12 @@ use std::path::{Path, PathBuf};
 use super::args::{Columns, Common, from_str};
 use super::paper::Paper;
 use crate::error::{Error, Result};
+use crate::file;
 use crate::format::Format;
 use crate::number::Rational;
 use crate::question::{Found, Question, System, Work, flag};
 use crate::report::system::Colouring;
-use crate::scene::{Arrays, Axis, Span, SystemFile, file};
+use crate::scene::{Arrays, Axis, Span, SystemFile};
 use crate::system::Holds;
 use crate::system::levels::Method;
 

@@ -7,10 +7,10 @@ use serde_json::{Value, json};
 use super::args::Common;
 use super::progress::{announce, progress};
 use crate::error::{Error, Kind, Result};
+use crate::file;
 use crate::format::Format;
 use crate::recheck::{Claim, Options, Outcome};
 use crate::report::document::Document;
-use crate::scene::file;
 
 /// Flags of `verify`.
 #[derive(Debug, clap::Args)]

@@ -34,12 +34,13 @@ pub struct Counters {
 }
 
 impl Counters {
-    /// The sums.
+    /// The sums, which end where numbers do: a part that was written by somebody else may say anything.
     pub fn add(&mut self, other: &Counters) {
-        self.pairs += other.pairs;
-        self.kicks += other.kicks;
-        self.kicks_again += other.kicks_again;
-        self.escalated += other.escalated;
+        let sum = |a: &mut u64, b: u64| *a = a.saturating_add(b);
+        sum(&mut self.pairs, other.pairs);
+        sum(&mut self.kicks, other.kicks);
+        sum(&mut self.kicks_again, other.kicks_again);
+        sum(&mut self.escalated, other.escalated);
     }
 }
 

@@ -168,7 +168,7 @@ pub fn merge(
             Error::input(
                 "parts",
                 format!("band {n} from h1 = {}", grid.h1(first)),
-                "is in no part: run its shard",
+                "is whole in no part: run its shard",
             )
         };
         let band = stores.iter().find_map(|store| store.load(n)).ok_or_else(missing)?;

@@ -63,6 +63,13 @@ pub(super) fn bands(grid: &Grid) -> impl ExactSizeIterator<Item = (u64, usize)> 
     })
 }
 
+/// The columns of band n, if there is one.
+pub(super) fn columns_of(grid: &Grid, n: u64) -> Option<(u64, usize)> {
+    let all = bands(grid);
+    let n = usize::try_from(n).ok().filter(|&n| n < all.len())?;
+    all.skip(n).next()
+}
+
 /// A band's number and its columns: the first one and how many.
 pub(super) type Numbered = (u64, (u64, usize));
 

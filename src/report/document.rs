@@ -9,7 +9,7 @@ use serde_json::{Map, Value, json};
 use super::latex::{self, Equation, Float};
 use super::table::Table;
 use super::{csv, text};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, visible};
 use crate::format::Format;
 
 /// A named result.
@@ -260,7 +260,7 @@ impl Document {
                 );
             }
         }
-        out
+        visible(&out)
     }
 }
 

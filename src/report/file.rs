@@ -13,6 +13,7 @@ use std::ffi::{OsStr, OsString};
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crate::error::{Error, Result};
@@ -68,7 +69,32 @@ pub fn captured(work: impl FnOnce() -> Result<()>) -> Result<Vec<u8>> {
     done.map(|()| bytes)
 }
 
+/// Whether what is written to standard output is lost, though nobody says so.
+static IS_STDOUT_CLOSED: AtomicBool = AtomicBool::new(false);
+
+/// From now on what would go to standard output is an error: the process was started without it.
+pub fn stdout_is_closed() {
+    IS_STDOUT_CLOSED.store(true, Ordering::Relaxed);
+}
+
+/// That standard output is there. Rust takes what is written to a closed one for written.
+fn stdout_is_open() -> io::Result<()> {
+    if IS_STDOUT_CLOSED.load(Ordering::Relaxed) {
+        return Err(io::Error::new(ErrorKind::NotConnected, "it is closed"));
+    }
+    #[cfg(unix)]
+    {
+        use std::os::fd::AsFd;
+        io::stdout().as_fd().try_clone_to_owned()?;
+    }
+    Ok(())
+}
+
 fn to_stdout(content: impl FnOnce(&mut dyn Write) -> Result<()>) -> Result<()> {
+    stdout_is_open().map_err(|cause| {
+        let text = format!("cannot write ({cause}): name a file with --output, or leave it open");
+        Error::io("standard output", text).caused_by(cause)
+    })?;
     let mut sink = BufWriter::new(io::stdout().lock());
     let written = content(&mut sink).and_then(|()| sink.flush().map_err(Error::stream));
     // The rest of the buffer has no reader, or belongs to a failed write; dropping it must not try again.
@@ -101,13 +127,24 @@ fn to_path(path: &Path, content: impl FnOnce(&mut dyn Write) -> Result<()>) -> R
     let finish = || {
         let file = sink.into_inner().map_err(io::IntoInnerError::into_error)?;
         if let Some(old) = old {
-            file.set_permissions(old.permissions())?;
+            file.set_permissions(permissions(&old))?;
         }
         file.sync_all()?;
         // The file is open, and so locked, until it has its name.
         temporary.take_name(&target)
     };
     finish().map_err(Error::stream)
+}
+
+/// Who may read and write a file that replaces an old one: those who could, but nobody runs what is new as the owner or the group of what was old.
+fn permissions(old: &fs::Metadata) -> fs::Permissions {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        fs::Permissions::from_mode(old.permissions().mode() & 0o777)
+    }
+    #[cfg(not(unix))]
+    old.permissions()
 }
 
 /// Checks that a file may be replaced, if there is one: a rename alone would ignore its write protection.
@@ -163,6 +200,30 @@ pub fn abandon(end: impl FnOnce()) {
         let _ = fs::remove_file(path).or_else(|_| fs::remove_dir(path));
     }
     end();
+}
+
+/// A file that its owner alone may read, among temporary ones, with an end such as `.html`. It goes when a signal ends this process; what is in it
+/// is worth nothing after that.
+///
+/// # Errors
+/// Those of the file.
+pub fn private(end: &str, bytes: &[u8]) -> io::Result<PathBuf> {
+    let mut options = OpenOptions::new();
+    // A link that waits there is not followed.
+    options.write(true).create_new(true);
+    #[cfg(unix)]
+    std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
+    let mut unfinished = unfinished();
+    for attempt in 0..1000 {
+        let path = std::env::temp_dir().join(format!("kickdrift-{}-{attempt}{end}", std::process::id()));
+        let mut file = match options.open(&path) {
+            Err(cause) if cause.kind() == ErrorKind::AlreadyExists => continue,
+            file => file?,
+        };
+        unfinished.push(path.clone());
+        return file.write_all(bytes).map(|()| path);
+    }
+    Err(ErrorKind::AlreadyExists.into())
 }
 
 /// A temporary file that is removed again unless it takes its final name.

@@ -1,18 +1,42 @@
-//! JSON as people write it: a byte order mark is skipped, a key that stands twice in one object is an error.
+//! JSON as people write it: a byte order mark is skipped, a key that stands twice in one object is an error, and values are counted before they
+//! are built.
 
+use std::cell::Cell;
 use std::collections::HashSet;
 use std::fmt;
 
-use serde::de::{Deserialize, DeserializeOwned, Deserializer, Error, MapAccess, SeqAccess, Visitor};
+use serde::de::{DeserializeOwned, DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visitor};
+
+use crate::error::room;
 
 /// A value of this type, from a text in which no object has a key twice.
 ///
 /// # Errors
-/// With line and column: no JSON, a key that stands twice, anything else than the type wants.
+/// With line and column: no JSON, a key that stands twice, more values than memory has room for, anything else than the type wants.
 pub fn from_str<T: DeserializeOwned>(text: &str) -> serde_json::Result<T> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    serde_json::from_str::<Once>(text)?;
+    let mut reader = serde_json::Deserializer::from_str(text);
+    Once(&Cell::new(0)).deserialize(&mut reader)?;
+    reader.end()?;
     serde_json::from_str(text)
+}
+
+/// What a value takes where it is read, read again as a rational, and kept: measured, a list of numbers of two bytes each takes 340 times those,
+/// and a number counts as three, since its digits are kept.
+const BYTES_A_VALUE: u128 = 230;
+
+/// So many values are always built.
+const FEW_VALUES: u64 = 1 << 20;
+
+/// One value more, where memory has room for as many again.
+fn counted<E: Error>(count: &Cell<u64>) -> Result<(), E> {
+    let n = count.get() + 1;
+    count.set(n);
+    if n < FEW_VALUES || !n.is_power_of_two() {
+        return Ok(());
+    }
+    let fits = room(2 * u128::from(n) * BYTES_A_VALUE, "a smaller file");
+    fits.map_err(|error| E::custom(format!("more than {n} values; {error}")))
 }
 
 /// What is wrong, in words for people, without the place: "found the number 5 where a list belongs".
@@ -66,63 +90,66 @@ fn noun(name: &str) -> String {
     }
 }
 
-/// Any value whose objects have each key once.
-struct Once;
+/// Any value whose objects have each key once; how many there were before it.
+#[derive(Clone, Copy)]
+struct Once<'a>(&'a Cell<u64>);
 
-impl<'de> Deserialize<'de> for Once {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Once, D::Error> {
-        deserializer.deserialize_any(Keys)
+impl<'de> DeserializeSeed<'de> for Once<'_> {
+    type Value = ();
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<(), D::Error> {
+        counted(self.0)?;
+        deserializer.deserialize_any(self)
     }
 }
 
-struct Keys;
-
-impl<'de> Visitor<'de> for Keys {
-    type Value = Once;
+impl<'de> Visitor<'de> for Once<'_> {
+    type Value = ();
 
     fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
         f.write_str("a value")
     }
 
-    fn visit_bool<E>(self, _: bool) -> Result<Once, E> {
-        Ok(Once)
+    fn visit_bool<E>(self, _: bool) -> Result<(), E> {
+        Ok(())
     }
 
-    fn visit_i64<E>(self, _: i64) -> Result<Once, E> {
-        Ok(Once)
+    fn visit_i64<E>(self, _: i64) -> Result<(), E> {
+        Ok(())
     }
 
-    fn visit_u64<E>(self, _: u64) -> Result<Once, E> {
-        Ok(Once)
+    fn visit_u64<E>(self, _: u64) -> Result<(), E> {
+        Ok(())
     }
 
-    fn visit_f64<E>(self, _: f64) -> Result<Once, E> {
-        Ok(Once)
+    fn visit_f64<E>(self, _: f64) -> Result<(), E> {
+        Ok(())
     }
 
-    fn visit_str<E>(self, _: &str) -> Result<Once, E> {
-        Ok(Once)
+    fn visit_str<E>(self, _: &str) -> Result<(), E> {
+        Ok(())
     }
 
-    fn visit_unit<E>(self) -> Result<Once, E> {
-        Ok(Once)
+    fn visit_unit<E>(self) -> Result<(), E> {
+        Ok(())
     }
 
-    fn visit_seq<A: SeqAccess<'de>>(self, mut all: A) -> Result<Once, A::Error> {
-        while all.next_element::<Once>()?.is_some() {}
-        Ok(Once)
+    fn visit_seq<A: SeqAccess<'de>>(self, mut all: A) -> Result<(), A::Error> {
+        while all.next_element_seed(self)?.is_some() {}
+        Ok(())
     }
 
-    fn visit_map<A: MapAccess<'de>>(self, mut all: A) -> Result<Once, A::Error> {
+    fn visit_map<A: MapAccess<'de>>(self, mut all: A) -> Result<(), A::Error> {
         let mut seen = HashSet::new();
         while let Some(key) = all.next_key::<String>()? {
             if seen.contains(&key) {
                 return Err(A::Error::custom(format!("the key \"{key}\" stands twice in one object")));
             }
             seen.insert(key);
-            all.next_value::<Once>()?;
+            counted(self.0)?;
+            all.next_value_seed(self)?;
         }
-        Ok(Once)
+        Ok(())
     }
 }
 
@@ -141,6 +168,17 @@ mod tests {
             "{message}"
         );
         assert!(read("{\"a\": 1, \"\\u0061\": 1}").is_err() && read("{} {}").is_err());
+    }
+
+    #[test]
+    fn values_are_counted_before_they_are_built() {
+        let count = Cell::new(0);
+        Once(&count)
+            .deserialize(&mut serde_json::Deserializer::from_str("[true, [null], {\"a\": \"b\"}]"))
+            .unwrap();
+        assert_eq!(count.get(), 7);
+        assert!(counted::<serde_json::Error>(&Cell::new((1 << 62) - 1)).is_err());
+        assert!(counted::<serde_json::Error>(&Cell::new(FEW_VALUES - 2)).is_ok());
     }
 
     #[test]

@@ -1,7 +1,5 @@
-//! Input documents: systems as a person writes them, as library types; files read up to a size, JSON in which no key stands
-//! twice.
+//! Input documents: systems as a person writes them, as library types; JSON in which no key stands twice.
 
-pub mod file;
 pub(crate) mod json;
 #[cfg(feature = "system")]
 mod system;

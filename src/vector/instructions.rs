@@ -1,20 +1,29 @@
 //! One portable program, and the vector instructions of the processor that it runs on.
 
+#[cfg(target_arch = "x86_64")]
+mod registers;
+
+use std::fmt;
 use std::marker::PhantomData;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-#[cfg(target_arch = "x86_64")]
-use super::registers::{Avx2, Avx2Single, Avx512, Avx512Single};
 use super::{LANES, Vector};
+#[cfg(target_arch = "x86_64")]
+use registers::{Avx2, Avx2Single, Avx512, Avx512Single};
 
 /// The width of a portable vector that stands for one register. On x86-64 without AVX2 fused operations are calls, and one by one
 /// they are no slower.
 const PLAIN: usize = if cfg!(target_arch = "x86_64") { 1 } else { 4 };
 
+/// Instructions that this processor has: but for the portable ones nobody has such a value who has not asked the processor, so whatever runs
+/// with them may run.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Instructions(Set);
+
 /// The instruction sets that kernels are compiled for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Instructions {
+enum Set {
     Portable,
     /// Four doubles at a time, and fused operations.
     #[cfg(target_arch = "x86_64")]
@@ -24,7 +33,16 @@ pub(crate) enum Instructions {
     Avx512,
 }
 
+impl fmt::Debug for Instructions {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.fmt(f)
+    }
+}
+
 impl Instructions {
+    /// Those that every processor has.
+    pub const PORTABLE: Instructions = Instructions(Set::Portable);
+
     /// Those that this processor has, the best first.
     pub fn available() -> impl Iterator<Item = Instructions> {
         #[cfg(target_arch = "x86_64")]
@@ -32,60 +50,60 @@ impl Instructions {
         #[cfg(target_arch = "x86_64")]
         let vector = [
             (
-                Instructions::Avx512,
+                Set::Avx512,
                 fused && is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512vl"),
             ),
-            (Instructions::Avx2, fused),
+            (Set::Avx2, fused),
         ];
         #[cfg(not(target_arch = "x86_64"))]
-        let vector: [(Instructions, bool); 0] = [];
-        let found = vector.into_iter().filter(|(_, has)| *has).map(|(set, _)| set);
-        found.chain([Instructions::Portable])
+        let vector: [(Set, bool); 0] = [];
+        let found = vector.into_iter().filter(|(_, has)| *has).map(|(set, _)| Instructions(set));
+        found.chain([Instructions::PORTABLE])
     }
 
     /// The task, compiled for these instructions: the same result to the bit.
     pub fn perform<T: Task>(self, task: T) -> T::Output {
-        match self {
-            // Safety: the two are private to `available`, which has seen the features.
+        match self.0 {
+            // Safety: `available` alone makes the two, and has seen the features.
             #[cfg(target_arch = "x86_64")]
-            Instructions::Avx512 => unsafe { avx512(task) },
+            Set::Avx512 => unsafe { avx512(task) },
             #[cfg(target_arch = "x86_64")]
-            Instructions::Avx2 => unsafe { avx2(task) },
-            Instructions::Portable => task.run(),
+            Set::Avx2 => unsafe { avx2(task) },
+            Set::Portable => task.run(),
         }
     }
 
     /// A task that is done number by number: of all vector instructions it needs the fused operations, which come with AVX2.
     pub fn perform_alone<T: Task>(self, task: T) -> T::Output {
-        match self {
-            Instructions::Portable => task.run(),
+        match self.0 {
+            Set::Portable => task.run(),
             // Safety: who has AVX-512 has the others too, as `available` has seen.
             #[cfg(target_arch = "x86_64")]
-            Instructions::Avx2 | Instructions::Avx512 => unsafe { avx2(task) },
+            Set::Avx2 | Set::Avx512 => unsafe { avx2(task) },
         }
     }
 
     /// The kernel, with the vectors that these instructions have: the same result to the bit.
     pub fn compute<K: Kernel>(self, kernel: K) -> K::Output {
-        match self {
+        match self.0 {
             // Safety: as above.
             #[cfg(target_arch = "x86_64")]
-            Instructions::Avx512 => unsafe { avx512(With::<Avx512, K>(kernel, PhantomData)) },
+            Set::Avx512 => unsafe { avx512(With::<Avx512, K>(kernel, PhantomData)) },
             #[cfg(target_arch = "x86_64")]
-            Instructions::Avx2 => unsafe { avx2(With::<Avx2, K>(kernel, PhantomData)) },
-            Instructions::Portable => kernel.run::<[f64; LANES]>(),
+            Set::Avx2 => unsafe { avx2(With::<Avx2, K>(kernel, PhantomData)) },
+            Set::Portable => kernel.run::<[f64; LANES]>(),
         }
     }
 
     /// Computes with vectors of a single register, for kernels that hold many vectors at a time.
     pub fn compute_by_register<K: Kernel>(self, kernel: K) -> K::Output {
-        match self {
+        match self.0 {
             // Safety: as above.
             #[cfg(target_arch = "x86_64")]
-            Instructions::Avx512 => unsafe { avx512(With::<Avx512Single, K>(kernel, PhantomData)) },
+            Set::Avx512 => unsafe { avx512(With::<Avx512Single, K>(kernel, PhantomData)) },
             #[cfg(target_arch = "x86_64")]
-            Instructions::Avx2 => unsafe { avx2(With::<Avx2Single, K>(kernel, PhantomData)) },
-            Instructions::Portable => kernel.run::<[f64; PLAIN]>(),
+            Set::Avx2 => unsafe { avx2(With::<Avx2Single, K>(kernel, PhantomData)) },
+            Set::Portable => kernel.run::<[f64; PLAIN]>(),
         }
     }
 
@@ -98,7 +116,7 @@ impl Instructions {
     pub fn best() -> Instructions {
         static AVAILABLE: OnceLock<Vec<Instructions>> = OnceLock::new();
         let available = AVAILABLE.get_or_init(|| Instructions::available().collect());
-        available.get(FORCED.load(Ordering::Relaxed)).copied().unwrap_or(Instructions::Portable)
+        available.get(FORCED.load(Ordering::Relaxed)).copied().unwrap_or(Instructions::PORTABLE)
     }
 }
 

@@ -6,8 +6,6 @@
 pub(crate) mod instructions;
 mod pair;
 mod portable;
-#[cfg(target_arch = "x86_64")]
-mod registers;
 
 pub(crate) use pair::Pair;
 
@@ -233,7 +231,7 @@ mod tests {
             }
             // A normal number that is not near an end of the range.
             numbers[2] = numbers[2].map(|x| if x.is_normal() { x } else { 1.0 });
-            let portable = Instructions::Portable.compute(EveryOperation(numbers));
+            let portable = Instructions::PORTABLE.compute(EveryOperation(numbers));
             for set in Instructions::available() {
                 assert_eq!(set.compute(EveryOperation(numbers)), portable);
                 assert_eq!(set.compute_by_register(EveryOperation(numbers)), portable);

@@ -258,6 +258,100 @@ fn a_full_disk_is_an_error() {
     assert_eq!(status.code(), Some(2));
 }
 
+/// Rust's runtime opens the null device where a descriptor is closed: nothing written there is an error.
+#[cfg(any(target_os = "linux", target_os = "macos"))]
+#[test]
+fn a_closed_standard_output_is_an_error_and_the_null_device_is_none() {
+    let desk = Desk::new();
+    for (line, code) in [
+        (format!("{VERDICT} >&-"), 2),
+        ("--help >&-".into(), 2),
+        (format!("{VERDICT} --output v.json >&-"), 0),
+        (format!("{VERDICT} > /dev/null"), 0),
+        (format!("{VERDICT} 1<> /dev/null"), 0),
+    ] {
+        let script = format!("exec {} {line}", env!("CARGO_BIN_EXE_kickdrift"));
+        let output =
+            std::process::Command::new("sh").args(["-c", &script]).current_dir(desk.path()).output().unwrap();
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(code), "{line}: {message}");
+        assert_eq!(
+            message.contains("standard output: cannot write (it is closed)"),
+            code == 2,
+            "{line}: {message}"
+        );
+    }
+    assert_eq!(desk.files(), ["v.json"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_file_that_is_replaced_keeps_who_may_read_it_and_not_whom_it_runs_as() {
+    use std::os::unix::fs::PermissionsExt;
+    let desk = Desk::new();
+    let path = desk.path().join("v.json");
+    for (old, new) in [(0o6751, 0o751), (0o1640, 0o640), (0o600, 0o600)] {
+        desk.write("v.json", "old");
+        std::fs::set_permissions(&path, std::fs::Permissions::from_mode(old)).unwrap();
+        assert_eq!(desk.run(&words(VERDICT, &["--output", "v.json"])).code, Some(0));
+        assert_eq!(std::fs::metadata(&path).unwrap().permissions().mode() & 0o7777, new, "{old:o}");
+    }
+}
+
+/// A name of a file, and a title that a file brings, may move the cursor of whoever reads it.
+#[cfg(unix)]
+#[test]
+fn names_and_titles_reach_a_terminal_without_control_characters() {
+    let desk = Desk::new();
+    let name = "a\u{1b}[31m\u{202e}b\nc.json";
+    let ended = desk.run(&words(VERDICT, &["--output", name]));
+    assert_eq!(
+        (ended.code, ended.stderr.as_str()),
+        (Some(0), "kickdrift: wrote a\\u{1b}[31m\\u{202e}b c.json\n")
+    );
+    assert_eq!(desk.files(), [name]);
+    let scene = r#"{"schema": "kickdrift/scene/1", "title": "a\u001b]0;b\u0007", "lambda1": 1, "lambda2": 1,
+        "grid": {"step": 1, "h1": "1..2", "h2": "1..2"}, "want": ["map.csv"]}"#;
+    desk.write("s.json", scene);
+    let ended = desk.run(&["run", "s.json", "--output", "o\u{1b}"]);
+    let is_control = |c: char| c != '\n' && c.is_control();
+    assert!(
+        ended.code == Some(0) && ended.stdout.contains("a\\u{1b}]0;b"),
+        "{}{}",
+        ended.stdout,
+        ended.stderr
+    );
+    assert!(!ended.stdout.contains(is_control) && !ended.stderr.contains(is_control));
+}
+
+/// Values that a file says it has, counted before there is room for them: within the memory that a shell allows, and at once.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_file_of_more_values_than_memory_holds_is_refused() {
+    let desk = Desk::new();
+    let ones = |n: usize| format!("[{}1]", "1,".repeat(n - 1));
+    let system = |rest: String| format!("{{\"schema\": \"kickdrift/system/1\", {rest}, \"potentials\": []}}");
+    desk.write("masses.json", &system(format!("\"masses\": {}", ones(5_000_000))));
+    desk.write("rows.json", &system(format!("\"masses\": [1], \"labels\": {}", ones(5_000_000))));
+    let head = "\"kickdrift\": {\"version\": \"0\", \"command\": \"verdict\"}";
+    desk.write(
+        "v.json",
+        &format!("{{\"schema\": \"kickdrift/verdict/1\", {head}, \"input\": {}}}", ones(20_000_000)),
+    );
+    desk.write("scene.json", &format!("{{\"a\": {}}}", ones(20_000_000)));
+    for (line, says) in [
+        ("system masses.json", "masses = 5000000: at most 4096 degrees of freedom"),
+        ("system rows.json", "there is no memory for it"),
+        ("verify v.json", "there is no memory for it"),
+        ("explore --no-open scene.json", "a scene has at most 1 MiB"),
+    ] {
+        let output = under_shell(&desk, "ulimit -v 600000", line).output().unwrap();
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{line}: {message}");
+        assert!(message.contains(says) && message.lines().count() == 1, "{line}: {message}");
+    }
+}
+
 #[test]
 fn packagers_get_a_page_of_each_command_and_completions_for_each_shell() {
     let desk = Desk::new();

@@ -44,6 +44,33 @@ fn the_page_is_whole_and_may_load_nothing_else() {
     assert_eq!(begun.as_bytes(), page.get("start").body);
 }
 
+/// Every user of a machine sees the arguments of all its processes.
+#[cfg(target_os = "linux")]
+#[test]
+fn the_browser_is_started_on_a_file_for_this_user_and_not_on_the_token() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = tempfile::tempdir().unwrap();
+    let (browser, told) = (folder.path().join("xdg-open"), folder.path().join("told"));
+    std::fs::write(&browser, format!("#!/bin/sh\necho \"$@\" > {0}.new\nmv {0}.new {0}\n", told.display()))
+        .unwrap();
+    std::fs::set_permissions(&browser, std::fs::Permissions::from_mode(0o755)).unwrap();
+    let path = format!("{}:{}", folder.path().display(), std::env::var("PATH").unwrap());
+    let mut page =
+        Page::start_with("explore", &[("PATH", path.as_ref()), ("TMPDIR", folder.path().as_os_str())]);
+    let start = Instant::now();
+    while !told.exists() && start.elapsed() < Duration::from_secs(20) {
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    let told = std::fs::read_to_string(told).unwrap();
+    assert!(!told.contains(&page.token) && !told.contains("http"), "{told}");
+    let file = std::path::Path::new(told.trim());
+    assert_eq!(std::fs::metadata(file).unwrap().permissions().mode() & 0o777, 0o600);
+    let address = format!("http://127.0.0.1:{}/{}/", page.port, page.token);
+    assert!(std::fs::read_to_string(file).unwrap().contains(&format!("content=\"0; url={address}\"")));
+    let kill = std::process::Command::new("kill").arg(page.id().to_string()).status();
+    assert!(kill.unwrap().success() && page.ends_within(Duration::from_secs(20)) && !file.exists());
+}
+
 #[test]
 fn only_this_machine_with_the_token_of_this_start_is_answered() {
     let (page, other) = (Page::start(""), Page::start(""));

@@ -16,8 +16,13 @@ pub struct Page {
 
 impl Page {
     pub fn start(flags: &str) -> Page {
+        Page::start_with(&format!("explore --no-open {flags}"), &[])
+    }
+
+    /// The program with these words and these variables.
+    pub fn start_with(line: &str, variables: &[(&str, &std::ffi::OsStr)]) -> Page {
         let mut command = Command::new(env!("CARGO_BIN_EXE_kickdrift"));
-        command.args("explore --no-open".split(' ')).args(flags.split_whitespace());
+        command.args(line.split_whitespace()).envs(variables.iter().copied());
         let mut child =
             command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         let mut line = String::new();

@@ -71,6 +71,35 @@ fn sources() -> Sources {
     Sources::read(root())
 }
 
+/// Safe functions on them rest on who asks the processor first.
+#[test]
+fn registers_are_named_by_none_but_who_asks_the_processor() {
+    let mut named = Vec::new();
+    walk(&root().join("src"), &mut |path, text| {
+        if ["Avx2", "Avx512", "_mm256_", "_mm512_"].iter().any(|name| text.contains(name)) {
+            named.push(path.strip_prefix(root()).unwrap().display().to_string());
+        }
+    });
+    named.sort();
+    assert_eq!(named, ["src/vector/instructions.rs", "src/vector/instructions/registers.rs"]);
+    let types = fs::read_to_string(root().join(&named[1])).unwrap();
+    assert!(!types.contains("pub(crate)") && !types.contains("pub struct"));
+    let sets = fs::read_to_string(root().join(&named[0])).unwrap();
+    assert!(sets.contains("pub(crate) struct Instructions(Set);") && sets.contains("\nenum Set {"));
+}
+
+/// Every source below a folder.
+fn walk(folder: &Path, see: &mut impl FnMut(&Path, &str)) {
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            walk(&path, see);
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            see(&path, &fs::read_to_string(&path).unwrap());
+        }
+    }
+}
+
 #[test]
 fn imports_go_down_only() {
     let (mut seen, floors) = (0, floors());

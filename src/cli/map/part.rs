@@ -5,14 +5,18 @@ use std::path::{Path, PathBuf};
 use serde_json::{Map as Input, Value};
 
 use crate::error::{Error, Result};
+use crate::file;
 use crate::map::Store;
 use crate::question::{Fields, Map};
 use crate::report::file::write_output;
-use crate::scene::{file, json};
+use crate::scene::json;
 
 /// The file that names the map, and what stands in it.
 const NAME: &str = "map.json";
 const SCHEMA: &str = "kickdrift/part/1";
+
+/// The longest such file, in bytes: some hundred, and what a person may type in numbers.
+const MOST_BYTES: u64 = 1 << 20;
 
 /// A map in writing: its fields, whether flags are set or not.
 fn written(map: &Map) -> Input<String, Value> {
@@ -53,7 +57,8 @@ impl Part {
         let unreadable = |cause: &dyn std::fmt::Display| {
             Error::io(directory.join(NAME).display(), format!("cannot read ({cause}): {remedy}"))
         };
-        let text = file::text(&directory.join(NAME), file::LONGEST).map_err(|cause| unreadable(&cause))?;
+        let bytes = file::bytes(&directory.join(NAME), MOST_BYTES).map_err(|cause| unreadable(&cause))?;
+        let text = String::from_utf8_lossy(&bytes);
         let map = read(json::from_str(&text).map_err(|cause| unreadable(&cause))?)?;
         let store = Store::open(directory, &map.grid()?, map.products())?;
         Ok(Part { directory: directory.to_owned(), map, store })

@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 use super::args::Common;
 use super::paper::Paper;
 use crate::error::{Error, Result};
+use crate::file;
 use crate::format::Format;
 use crate::question::{LONGEST_SCENE, Scene};
 use crate::report::file::{Folder, write_output};
-use crate::scene::file;
 use work::Work;
 
 /// Flags of `run`.

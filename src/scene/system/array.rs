@@ -4,7 +4,6 @@
 
 use std::collections::BTreeMap;
 use std::fs::File;
-#[cfg(feature = "npz")]
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -14,14 +13,17 @@ use serde::Deserialize;
 use serde_json::{Map, Value};
 
 use super::market;
-use crate::error::{Error, Result};
-use crate::scene::file;
+use crate::error::{Error, Result, room};
+use crate::file;
 
 /// The most elements read: 16,384 x 16,384, or the entries of 30,000 waters within 0.9 nm of each other.
 const MOST_ELEMENTS: usize = 1 << 28;
 
-/// The most bytes of a `.npy` file: its elements and its header.
-const MOST_BYTES: u64 = 8 * MOST_ELEMENTS as u64 + 65_536;
+/// The longest header of a `.npy` file, in bytes; NumPy's own have some hundred.
+const LONGEST_HEADER: usize = 1 << 16;
+
+/// The bytes that an element takes while it is read: as it stands, as a double, in the other order, and kept for who reads it again.
+const BYTES_AN_ELEMENT: u128 = 32;
 
 /// `{"npy": "h.npy"}`, `{"npz": "data.npz", "array": "fast"}`, `{"mm": "k.mtx"}` or, of a sparse stiffness, `{"npz": "k.npz", "csr": ""}`; paths
 /// are relative to the file that holds them.
@@ -126,7 +128,7 @@ impl Reference {
 
     fn in_folder(&self, field: &str, folder: &Path) -> Result<Array> {
         let io = |path: &Path, cause: std::io::Error| Error::io(path.display(), &cause).caused_by(cause);
-        let (path, bytes) = match self {
+        let (name, read) = match self {
             Reference::Mm { mm } => {
                 let path = folder.join(mm);
                 let text = file::text(&path, file::LONGEST).map_err(|cause| io(&path, cause))?;
@@ -135,17 +137,16 @@ impl Reference {
             }
             Reference::Npy { npy } => {
                 let path = folder.join(npy);
-                let bytes = file::bytes(&path, MOST_BYTES).map_err(|cause| io(&path, cause))?;
-                (npy.clone(), bytes)
+                (npy.clone(), parse(&mut file::open(&path).map_err(|cause| io(&path, cause))?))
             }
             Reference::Npz { npz, array } => {
                 let path = folder.join(npz);
-                let file = File::open(&path).map_err(|cause| io(&path, cause))?;
-                (format!("{npz}, {array}"), member(file, array).map_err(|why| Error::input(field, npz, why))?)
+                let file = file::open(&path).map_err(|cause| io(&path, cause))?;
+                (format!("{npz}, {array}"), member(file, array))
             }
             Reference::Csr { csr, .. } => return Err(no_array(field, csr)),
         };
-        parse(&bytes).map_err(|why| Error::input(field, path, why))
+        read.map_err(|why| Error::input(field, name, why))
     }
 
     fn held(&self, field: &str, held: &BTreeMap<String, Array>) -> Result<Array> {
@@ -166,43 +167,72 @@ fn no_array(field: &str, csr: &str) -> Error {
     Error::input(field, csr, "names compressed rows, as stiffnesses alone have: give one array")
 }
 
+type Told<T> = std::result::Result<T, String>;
+
 #[cfg(feature = "npz")]
-fn member(file: File, name: &str) -> std::result::Result<Vec<u8>, String> {
+fn member(file: File, name: &str) -> Told<Array> {
     let mut archive = zip::ZipArchive::new(file).map_err(|cause| format!("is no .npz archive ({cause})"))?;
     let names: Vec<String> = archive
         .file_names()
         .filter_map(|name| Some(name.ok()?.trim_end_matches(".npy").to_string()))
         .collect();
     let missing = |_| format!("holds no array {name}: it has {}", names.join(", "));
-    let mut entry = archive.by_name(&format!("{name}.npy")).map_err(missing)?;
-    let mut bytes = Vec::new();
-    entry
-        .by_ref()
-        .take(MOST_BYTES)
-        .read_to_end(&mut bytes)
-        .map_err(|cause| format!("cannot be unpacked ({cause})"))?;
-    Ok(bytes)
+    parse(&mut archive.by_name(&format!("{name}.npy")).map_err(missing)?)
 }
 
 #[cfg(not(feature = "npz"))]
-fn member(_file: File, _name: &str) -> std::result::Result<Vec<u8>, String> {
+fn member(_file: File, _name: &str) -> Told<Array> {
     Err("archives are not read without the feature npz: give a .npy file".into())
 }
 
-/// The array in the bytes of a `.npy` file, or why there is none.
-fn parse(bytes: &[u8]) -> std::result::Result<Array, String> {
-    let bad = |what: &str| format!("{what}: save it with numpy.save, as float64");
-    let start = match bytes {
-        [0x93, b'N', b'U', b'M', b'P', b'Y', 1, _, a, b, ..] => {
-            10 + usize::from(u16::from_le_bytes([*a, *b]))
-        }
-        [0x93, b'N', b'U', b'M', b'P', b'Y', 2 | 3, _, a, b, c, d, ..] => {
-            12 + u32::from_le_bytes([*a, *b, *c, *d]) as usize
-        }
+/// What is wrong, and how to save an array.
+fn bad(what: &str) -> String {
+    format!("{what}: save it with numpy.save, as float64")
+}
+
+/// `N` bytes more.
+fn next<const N: usize>(bytes: &mut impl Read) -> Told<[u8; N]> {
+    let mut all = [0; N];
+    bytes.read_exact(&mut all).map_err(|cause| bad(&format!("is no .npy file ({cause})")))?;
+    Ok(all)
+}
+
+/// The array that a `.npy` file's bytes begin with, or why there is none: they are counted by the header before there is room for them.
+fn parse(bytes: &mut impl Read) -> Told<Array> {
+    let [0x93, b'N', b'U', b'M', b'P', b'Y', version, _] = next(bytes)? else {
+        return Err(bad("is no .npy file"));
+    };
+    let length = match version {
+        1 => usize::from(u16::from_le_bytes(next(bytes)?)),
+        2 | 3 => u32::from_le_bytes(next(bytes)?) as usize,
         _ => return Err(bad("is no .npy file")),
     };
-    let (header, data) = bytes.split_at_checked(start).ok_or_else(|| bad("its header is cut off"))?;
-    let header = String::from_utf8_lossy(header).into_owned();
+    if length > LONGEST_HEADER {
+        return Err(bad("its header is too long"));
+    }
+    let header = taken(bytes, length).ok_or_else(|| bad("its header is cut off"))?;
+    let (kind, is_fortran, shape) = described(&String::from_utf8_lossy(&header))?;
+    let count = shape.iter().try_fold(1usize, |n, &k| n.checked_mul(k)).filter(|&n| n <= MOST_ELEMENTS);
+    // An axis may be long beside one of no length, and whoever counts along it would not end.
+    let count = count.filter(|_| shape.iter().all(|&k| k <= MOST_ELEMENTS));
+    let count = count.ok_or_else(|| format!("has more than {MOST_ELEMENTS} elements"))?;
+    room(count as u128 * BYTES_AN_ELEMENT, "a smaller array").map_err(|error| error.to_string())?;
+    let width = kind.chars().last().and_then(|digit| digit.to_digit(10)).unwrap_or(0) as usize;
+    let data = taken(bytes, count * width);
+    let values = data.and_then(|data| elements(&kind, &data));
+    let values = values.ok_or_else(|| bad(&format!("its elements are {kind} or cut off")))?;
+    Ok(Array { values: if is_fortran { c_order(&values, &shape) } else { values }, shape })
+}
+
+/// So many bytes more; `None` where there are fewer.
+fn taken(bytes: &mut impl Read, count: usize) -> Option<Vec<u8>> {
+    let mut all = Vec::new();
+    bytes.take(count as u64).read_to_end(&mut all).ok()?;
+    (all.len() == count).then_some(all)
+}
+
+/// The kind of the elements, whether the first index runs fastest, and the shape, as a header has them.
+fn described(header: &str) -> Told<(String, bool, Vec<usize>)> {
     let after = |key: &str| header.split_once(key).map(|(_, rest)| rest.trim_start_matches([' ', ':']));
     let kind = after("'descr'").and_then(|rest| rest.split('\'').nth(1)).unwrap_or_default().to_string();
     let is_fortran = after("'fortran_order'").is_some_and(|rest| rest.starts_with("True"));
@@ -213,27 +243,21 @@ fn parse(bytes: &[u8]) -> std::result::Result<Array, String> {
         .split(',')
         .map(str::trim)
         .filter(|s| !s.is_empty());
-    let shape: Vec<usize> = sizes
-        .map(|s| s.parse().map_err(|_| bad("its shape is not understood")))
-        .collect::<std::result::Result<_, _>>()?;
-    let count = shape.iter().try_fold(1usize, |n, &k| n.checked_mul(k)).filter(|&n| n <= MOST_ELEMENTS);
-    let count = count.ok_or_else(|| format!("has more than {MOST_ELEMENTS} elements"))?;
-    let values =
-        elements(&kind, data, count).ok_or_else(|| bad(&format!("its elements are {kind} or cut off")))?;
-    Ok(Array { values: if is_fortran { c_order(&values, &shape) } else { values }, shape })
+    let shape =
+        sizes.map(|s| s.parse().map_err(|_| bad("its shape is not understood"))).collect::<Told<_>>()?;
+    Ok((kind, is_fortran, shape))
 }
 
-/// `count` little-endian elements as doubles.
-fn elements(kind: &str, data: &[u8], count: usize) -> Option<Vec<f64>> {
-    fn each<const N: usize>(data: &[u8], count: usize, read: impl Fn([u8; N]) -> f64) -> Option<Vec<f64>> {
-        let data = data.get(..count.checked_mul(N)?)?;
-        Some(data.chunks_exact(N).map(|chunk| read(chunk.try_into().expect("N bytes"))).collect())
+/// Little-endian elements as doubles.
+fn elements(kind: &str, data: &[u8]) -> Option<Vec<f64>> {
+    fn each<const N: usize>(data: &[u8], read: impl Fn([u8; N]) -> f64) -> Vec<f64> {
+        data.chunks_exact(N).map(|chunk| read(chunk.try_into().expect("N bytes"))).collect()
     }
     match kind {
-        "<f8" => each(data, count, f64::from_le_bytes),
-        "<f4" => each(data, count, |bytes| f32::from_le_bytes(bytes).into()),
-        "<i8" => each(data, count, |bytes| i64::from_le_bytes(bytes) as f64),
-        "<i4" => each(data, count, |bytes| i32::from_le_bytes(bytes).into()),
+        "<f8" => Some(each(data, f64::from_le_bytes)),
+        "<f4" => Some(each(data, |bytes| f32::from_le_bytes(bytes).into())),
+        "<i8" => Some(each(data, |bytes| i64::from_le_bytes(bytes) as f64)),
+        "<i4" => Some(each(data, |bytes| i32::from_le_bytes(bytes).into())),
         _ => None,
     }
 }
@@ -257,7 +281,7 @@ impl Array {
     /// Another number of elements than the shape says, or too many.
     pub fn new(shape: Vec<usize>, values: Vec<f64>) -> Result<Array> {
         let count = shape.iter().try_fold(1usize, |n, &k| n.checked_mul(k));
-        if values.len() > MOST_ELEMENTS || count != Some(values.len()) {
+        if shape.iter().chain([&values.len()]).any(|&k| k > MOST_ELEMENTS) || count != Some(values.len()) {
             let remedy = format!("give as many elements as the shape says, {MOST_ELEMENTS} at most");
             return Err(Error::input(
                 "array",
@@ -346,23 +370,49 @@ mod tests {
         let data = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0];
         let header =
             |order: &str| format!("{{'descr': '<f8', 'fortran_order': {order}, 'shape': (2, 3), }}\n");
-        let rows = parse(&file(&header("False"), &data)).unwrap().matrix("k").unwrap();
+        let rows = parse(&mut &*file(&header("False"), &data)).unwrap().matrix("k").unwrap();
         assert_eq!((rows[(0, 2)], rows[(1, 0)]), (3.0, 4.0));
-        let columns = parse(&file(&header("True"), &data)).unwrap().matrix("k").unwrap();
+        let columns = parse(&mut &*file(&header("True"), &data)).unwrap().matrix("k").unwrap();
         assert_eq!((columns[(0, 2)], columns[(1, 0)]), (5.0, 2.0));
         // Two matrices of one row each.
         let three =
             |order: &str| format!("{{'descr': '<f8', 'fortran_order': {order}, 'shape': (2, 1, 3), }}\n");
-        let of = |order: &str| parse(&file(&three(order), &data)).unwrap().matrices("k").unwrap();
+        let of = |order: &str| parse(&mut &*file(&three(order), &data)).unwrap().matrices("k").unwrap();
         let [last, first] = [of("False"), of("True")];
         assert_eq!((last[0][(0, 1)], last[1][(0, 0)], last[1][(0, 2)]), (2.0, 4.0, 6.0));
         assert_eq!((first[0][(0, 1)], first[1][(0, 0)], first[1][(0, 2)]), (3.0, 2.0, 6.0));
-        assert_eq!(parse(&file(&header("True"), &data)).unwrap().matrices("k").unwrap_err().field(), "k");
-        assert!(parse(&file(&header("False"), &data[..5])).is_err());
-        assert!(parse(b"not an array").is_err());
+        assert_eq!(
+            parse(&mut &*file(&header("True"), &data)).unwrap().matrices("k").unwrap_err().field(),
+            "k"
+        );
+        assert!(parse(&mut &*file(&header("False"), &data[..5])).is_err());
+        assert!(parse(&mut &b"not an array"[..]).is_err());
         let held = |shape: &[usize]| Array::new(shape.to_vec(), data.to_vec());
         assert_eq!(held(&[2, 3]).unwrap().matrix("k").unwrap(), rows);
         assert!(held(&[2, 2]).is_err() && held(&[usize::MAX, 2]).is_err());
-        assert!(parse(&file("{'descr': '<c16', 'fortran_order': False, 'shape': (1,), }", &data)).is_err());
+        assert!(
+            parse(&mut &*file("{'descr': '<c16', 'fortran_order': False, 'shape': (1,), }", &data)).is_err()
+        );
+    }
+
+    /// Sizes of nothing: rows would be counted one after the other, and a header has no elements behind it.
+    #[test]
+    fn an_array_is_as_large_as_its_elements_whatever_its_header_says() {
+        for shape in [
+            "(18446744073709551615, 0)",
+            "(0, 18446744073709551615)",
+            "(268435457,)",
+            "(4294967296, 4294967296)",
+        ] {
+            let header = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': {shape}, }}\n");
+            assert!(parse(&mut &*file(&header, &[])).unwrap_err().contains("more than"), "{shape}");
+        }
+        let header = "{'descr': '<f8', 'fortran_order': False, 'shape': (16384, 16384), }\n";
+        assert!(parse(&mut &*file(header, &[1.0; 8])).unwrap_err().contains("cut off"));
+        let long = [b"\x93NUMPY\x02\x00".to_vec(), u32::MAX.to_le_bytes().to_vec()].concat();
+        assert!(
+            parse(&mut (&*long).chain(std::io::repeat(b' '))).unwrap_err().contains("header is too long")
+        );
+        assert!(Array::new(vec![usize::MAX, 0], Vec::new()).is_err());
     }
 }

@@ -2,6 +2,7 @@
 
 use num_traits::ToPrimitive;
 use serde::Deserialize;
+use serde::de::IgnoredAny;
 use serde_json::Value;
 
 use crate::error::{Error, Result};
@@ -77,6 +78,29 @@ impl Number {
             Number::Other(value) => Err(Error::input(field, value, remedy())),
         }
     }
+}
+
+/// That a text names no more degrees of freedom than dense matrices may have, its lists counted before their elements are built.
+pub(super) fn check_lengths(text: &str) -> Result<()> {
+    #[derive(Default, Deserialize)]
+    #[serde(default)]
+    struct Lengths {
+        masses: Vec<IgnoredAny>,
+        mass_matrix: Vec<IgnoredAny>,
+        near: Vec<IgnoredAny>,
+    }
+    // Whatever is written otherwise is named by who reads it.
+    let Lengths { masses, mass_matrix, near } = serde_json::from_str(text).unwrap_or_default();
+    let all = [("masses", masses.len()), ("mass_matrix", mass_matrix.len()), ("near", near.len())];
+    all.into_iter().try_for_each(|(field, n)| at_most(field, n))
+}
+
+/// That a list of one number for each degree of freedom is no longer than their largest number.
+pub(super) fn at_most(field: &str, n: usize) -> Result<()> {
+    if n <= LARGEST {
+        return Ok(());
+    }
+    Err(Error::input(field, n, format!("at most {LARGEST} degrees of freedom")))
 }
 
 /// A system file.

@@ -1,16 +1,19 @@
 //! Masses and stiffnesses from a file, and the usual systems by name.
 
-use super::document::{Build, Document, LARGEST, Number, PotentialDocument, ends};
+use super::document::{Build, Document, LARGEST, Number, PotentialDocument, at_most, ends};
 use crate::error::{Error, Result};
 use crate::number::Rational;
 use crate::system::{Jacobians, Potential, Symmetric, System, builders};
 use nalgebra::DMatrix;
 
+/// One number for each degree of freedom, or fewer.
 pub(super) fn numbers(field: &str, values: &[Number]) -> Result<Vec<Rational>> {
+    at_most(field, values.len())?;
     values.iter().enumerate().map(|(i, x)| x.read(&format!("{field}[{i}]"))).collect()
 }
 
 fn matrix(field: &str, rows: &[Vec<Number>]) -> Result<Symmetric> {
+    at_most(field, rows.len())?;
     let read = |(i, row): (usize, &Vec<Number>)| numbers(&format!("{field}[{i}]"), row);
     Symmetric::dense(field, &rows.iter().enumerate().map(read).collect::<Result<Vec<_>>>()?)
 }
@@ -18,16 +21,10 @@ fn matrix(field: &str, rows: &[Vec<Number>]) -> Result<Symmetric> {
 impl Document {
     /// M, checked for its size alone.
     pub fn mass(&self) -> Result<Symmetric> {
-        let mass = match (&self.masses, &self.mass_matrix) {
-            (Some(masses), None) => Symmetric::diagonal(&numbers("masses", masses)?),
-            (None, Some(rows)) => matrix("mass_matrix", rows)?,
-            _ => return Err(Error::input("masses", "missing", "give masses or mass_matrix, one of them")),
-        };
-        match mass.size() {
-            n if n > LARGEST => {
-                Err(Error::input("masses", n, format!("at most {LARGEST} degrees of freedom")))
-            }
-            _ => Ok(mass),
+        match (&self.masses, &self.mass_matrix) {
+            (Some(masses), None) => Ok(Symmetric::diagonal(&numbers("masses", masses)?)),
+            (None, Some(rows)) => matrix("mass_matrix", rows),
+            _ => Err(Error::input("masses", "missing", "give masses or mass_matrix, one of them")),
         }
     }
 
@@ -45,13 +42,6 @@ impl Document {
             Error::missing("masses", "a force that is no gradient needs them, one for each degree of freedom")
         })?;
         let masses = numbers("masses", masses)?;
-        if masses.len() > LARGEST {
-            return Err(Error::input(
-                "masses",
-                masses.len(),
-                format!("at most {LARGEST} degrees of freedom"),
-            ));
-        }
         let given = self.potentials()?.iter().enumerate().map(|(k, own)| own.jacobian(k, masses.len()));
         Jacobians::rational(&masses, &given.collect::<Result<Vec<_>>>()?)
     }
@@ -73,6 +63,7 @@ impl PotentialDocument {
         let springs = springs.linear(k, n)?;
         let mut matrix = springs.stiffness.to_dense();
         if let Some(rows) = &self.stiffness {
+            at_most(&field("stiffness"), rows.len())?;
             let read =
                 |(i, row): (usize, &Vec<Number>)| numbers(&format!("{}[{i}]", field("stiffness")), row);
             let rows = rows.iter().enumerate().map(read).collect::<Result<Vec<_>>>()?;

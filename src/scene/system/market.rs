@@ -47,6 +47,9 @@ pub(super) fn parse(text: &str) -> Told<(Vec<usize>, Vec<f64>)> {
         ("array", &[rows, columns]) => (rows, columns, None),
         _ => return Err("its line of sizes is not understood".into()),
     };
+    if rows == 0 || columns == 0 {
+        return Err(format!("has no elements: it says {rows} rows and {columns} columns"));
+    }
     if rows.checked_mul(columns).is_none_or(|n| n > MOST_ELEMENTS) {
         return Err(format!("has more than {MOST_ELEMENTS} elements"));
     }
@@ -106,6 +109,23 @@ mod tests {
             assert!(parse(&format!("{banner}{bad}")).is_err(), "{bad}");
         }
         assert!(parse("%%MatrixMarket matrix coordinate complex general\n1 1 0\n").is_err());
+    }
+
+    /// Sizes of nothing, whose places would be looked for one after the other.
+    #[test]
+    fn a_matrix_without_elements_is_refused_whatever_its_sizes() {
+        for sizes in ["0 18446744073709551615", "18446744073709551615 0", "0 0"] {
+            for (layout, entries) in [("array", ""), ("coordinate", " 0")] {
+                let told = parse(&format!("%%MatrixMarket matrix {layout} real general\n{sizes}{entries}\n"));
+                assert!(told.unwrap_err().contains("no elements"), "{layout} {sizes}");
+            }
+        }
+        let wraps = format!("%%MatrixMarket matrix array real general\n{} 2\n", 1u64 << 63);
+        assert!(parse(&wraps).unwrap_err().contains("more than"));
+    }
+
+    #[test]
+    fn banners_of_another_form_are_refused() {
         assert!(parse("1 1 0\n").is_err());
     }
 }

@@ -21,7 +21,7 @@ use std::collections::BTreeSet;
 
 use num_traits::{One, Zero};
 
-use super::document::{Fixed, LARGEST, MeshDocument, Number, Plane};
+use super::document::{Fixed, LARGEST, MeshDocument, Number, Plane, at_most};
 use super::linear::numbers;
 use crate::error::{Error, Result};
 use crate::number::Rational;
@@ -63,6 +63,7 @@ impl MeshDocument {
         let read = |what: &str, rows: &[Vec<Number>]| -> Result<Vec<Vec<Rational>>> {
             rows.iter().enumerate().map(|(i, row)| numbers(&format!("mesh.{what}[{i}]"), row)).collect()
         };
+        at_most("mesh.nodes", self.nodes.len())?;
         let nodes = read("nodes", &self.nodes)?;
         let element = |(e, own): (usize, &Vec<Number>)| {
             let index = |i: &Number| i.index(&format!("mesh.elements[{e}]"), nodes.len());

@@ -82,7 +82,7 @@ use crate::system::levels::Method;
 use crate::system::{ElementSteps, Limits, Model, OwnOrbit, Potential, Scheme as LocalScheme, System};
 pub use array::{Array, Arrays};
 use bonds::Nonlinear;
-use document::{Document, SIZES, no_system};
+use document::{Document, SIZES, check_lengths, no_system};
 pub use intervals::{NEAREST, Span};
 #[cfg(feature = "advise")]
 pub use molecule::of_archive;
@@ -135,6 +135,7 @@ impl SystemFile {
             let remedy = "a system has at most 16 MiB; is this the right file?";
             return Err(Error::input("system", format!("{} bytes", text.len()), remedy));
         }
+        check_lengths(text.strip_prefix('\u{feff}').unwrap_or(text))?;
         Ok(SystemFile { source: json::from_str(text).map_err(no_system)?, text: Some(text.into()) })
     }
 

@@ -23,7 +23,7 @@ use serde_json::Value;
 
 use super::array::{Arrays, Reference};
 use super::measured::{self, Document, FineDocument, LevelDocument};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, room};
 use crate::number::Rational;
 use crate::system::levels::sparse::{SparseLevels, symmetric};
 use crate::system::levels::{rigid_motions, translations};
@@ -170,6 +170,9 @@ impl Document {
     }
 }
 
+/// What an entry takes in two triangles until they are known to be the same.
+const BYTES_AN_ENTRY: u128 = 48;
+
 /// The number of rows, and the entries of the lower triangle.
 type Rows = (usize, Vec<(usize, usize, f64)>);
 
@@ -184,6 +187,11 @@ fn rows(stiffness: &Reference, field: &str, arrays: &Arrays) -> Result<Rows> {
     let [data, indices, ends]: [Vec<f64>; 3] = [array("data")?, array("indices")?, array("indptr")?];
     let refused = |what: String, remedy: &str| Err(Error::input(field, what, remedy));
     let n = ends.len().saturating_sub(1);
+    if n > LARGEST || data.len() as u128 > (n as u128).pow(2) {
+        let remedy = format!("give at most {LARGEST} rows, and each entry once: csr.sum_duplicates()");
+        return refused(format!("{} entries of {n} rows", data.len()), &remedy);
+    }
+    room(data.len() as u128 * BYTES_AN_ENTRY, "a shorter cutoff, which leaves fewer entries")?;
     // SciPy writes it, kickdrift's own files have none.
     if let Ok(shape) = array("shape")
         && shape != [n as f64; 2]

@@ -132,7 +132,7 @@ mod tests {
                 let wanted = string.dimensions.map(|n| (n > 0).then_some(1..=n));
                 eigenvalues(&string, &wanted)
             };
-            let portable = edges(Instructions::Portable);
+            let portable = edges(Instructions::PORTABLE);
             assert!(Instructions::available().all(|set| edges(set) == portable));
         }
     }

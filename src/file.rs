@@ -1,6 +1,6 @@
 //! Files read up to a size: a device without an end is no input.
 
-use std::fs::File;
+use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read};
 use std::path::Path;
 
@@ -10,7 +10,7 @@ pub const LONGEST: u64 = 1 << 30;
 /// Bytes that are read before they are looked at.
 const AT_ONCE: u64 = 1 << 16;
 
-/// The text of a file of at most so many bytes.
+/// The text of a file, or of a pipe, of at most so many bytes.
 ///
 /// # Errors
 /// Those of the file; more bytes; a zero byte, which no text holds but devices and binary files do; bytes that are not UTF-8.
@@ -40,20 +40,37 @@ fn characters(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// The bytes of a file of at most so many.
+/// The bytes of a regular file of at most so many.
 ///
 /// # Errors
-/// Those of the file; more bytes.
+/// As [`open`]; more bytes.
 pub fn bytes(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    File::open(path)?.take(most + 1).read_to_end(&mut bytes)?;
+    open(path)?.take(most.saturating_add(1)).read_to_end(&mut bytes)?;
     bounded(bytes.len(), most)?;
     Ok(bytes)
+}
+
+/// A regular file, open: a device need not end, and opening a pipe waits for who writes to it.
+///
+/// # Errors
+/// Those of the file, and anything but a regular one.
+pub fn open(path: &Path) -> io::Result<File> {
+    let regular = |is_file: bool| {
+        let refused = || io::Error::new(ErrorKind::InvalidInput, "it is no regular file");
+        is_file.then_some(()).ok_or_else(refused)
+    };
+    regular(fs::metadata(path)?.is_file())?;
+    let file = File::open(path)?;
+    // Another one may stand there since.
+    regular(file.metadata()?.is_file())?;
+    Ok(file)
 }
 
 fn bounded(length: usize, most: u64) -> io::Result<()> {
     if length as u64 <= most {
         return Ok(());
     }
-    Err(io::Error::new(ErrorKind::FileTooLarge, format!("it has more than {} MiB", most >> 20)))
+    let size = if most < 1 << 20 { format!("{most} bytes") } else { format!("{} MiB", most >> 20) };
+    Err(io::Error::new(ErrorKind::FileTooLarge, format!("it has more than {size}")))
 }

@@ -1,8 +1,12 @@
 //! Vectors in the registers of x86-64.
+//!
+//! Their operations are safe because nobody can name these types who has not asked the processor: `instructions` alone sees them, and it hands
+//! them to kernels with an `Instructions` in its hand that has them. A kernel knows them as some `V: Vector`, from which no
+//! value leads out of it.
 
 use std::arch::x86_64::*;
 
-use super::{EXPONENTS, SIGN, Vector, WHOLE};
+use crate::vector::{EXPONENTS, SIGN, Vector, WHOLE};
 
 /// A value for the k-th register, of every one. A loop and no closure: compilers leave closures for the processor's
 /// common instructions.
@@ -10,7 +14,7 @@ macro_rules! each {
     ($vector:ident, $k:ident => $value:expr) => {{
         let mut all = $vector;
         for ($k, register) in all.0.iter_mut().enumerate() {
-            // Safety: vectors in registers are used in functions only that are compiled for them.
+            // Safety: a processor without these instructions never sees a vector in its registers, as said above.
             *register = unsafe { $value };
         }
         all
@@ -24,9 +28,8 @@ macro_rules! registers {
      doubles: $add:ident $sub:ident $mul:ident $div:ident $sqrt:ident $mul_add:ident $neg_mul_add:ident $mul_sub:ident,
      bits: $as_integers:ident $as_doubles:ident $and:ident $xor:ident $plus:ident $minus:ident $right:ident $left:ident,
      choice: $choose:ident $any:ident $mask:ty, $exceeds:ident $contrast:ident $select:ident) => {
-        /// To be used only in functions that are compiled for these registers.
         #[derive(Clone, Copy)]
-        pub(crate) struct $name([$register; $count]);
+        pub(super) struct $name([$register; $count]);
 
         impl Vector for $name {
             const WIDTH: usize = $count * $width;
