@@ -3,6 +3,7 @@
 
 pub mod file;
 pub(crate) mod json;
+pub(crate) mod kind;
 #[cfg(feature = "system")]
 mod system;
 
