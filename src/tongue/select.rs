@@ -1,10 +1,11 @@
 //! Which tongues: by label, by family, by a window of s. Only these are computed.
 //!
 //! ```
-//! use kickdrift::number::rational::ratio;
+//! use kickdrift::number::{Laurent, rational::ratio};
 //! use kickdrift::tongue::{Selection, Tongues};
 //! let tongues = Tongues::new("70/31".parse().unwrap(), &ratio(1, 25)).unwrap();
-//! let window = Selection { s: Some((ratio(230, 100).into(), ratio(232, 100).into())), ..Selection::default() };
+//! let [lo, hi] = [230, 232].map(|n| Laurent::from_rational(ratio(n, 100)));
+//! let window = Selection { s: Some((lo, hi)), ..Selection::default() };
 //! let found: Vec<u64> = tongues.select(&window).unwrap().iter().map(|gap| gap.m).collect();
 //! assert_eq!(found, [39]);
 //! assert!(tongues.effort().doubles < 20); // of 99 tongues
