@@ -4,7 +4,7 @@ use kickdrift::error::Kind as ErrorKind;
 use kickdrift::map::{Grid, Map, Products};
 use kickdrift::number::parse::parse;
 use kickdrift::number::rational::{from_f64_exact, ratio, to_f64};
-use kickdrift::number::{Polynomial, Ratio, Rational};
+use kickdrift::number::{Laurent, Polynomial, Ratio, Rational};
 use kickdrift::propagator::TwoClocks;
 use kickdrift::resonance::dominant_family;
 use kickdrift::tongue::{
@@ -421,9 +421,12 @@ fn first_order_widths_and_growth_become_exact_as_rho_vanishes() {
             let gap = tongues.gap(m).unwrap();
             let row = tongues.row(&gap, &wanted).unwrap();
             let (law, peak) = (row.first_order.unwrap(), row.peak.unwrap());
-            let growth_ratio = peak.ln_multiplier / law.law.ln_multiplier;
+            let growth_ratio = peak.ln_multiplier / law.ln_multiplier;
             // The law's relative error is of order rho times the period's length.
-            assert!((law.width_ratio - 1.0).abs() < 1e-3, "{p}/{q}, {m}: {law:?}");
+            assert!(
+                (law.width_ratio.0 - 1.0).abs() < 1e-3 && (law.width_ratio.1 - 1.0).abs() < 1e-3,
+                "{p}/{q}, {m}: {law:?}"
+            );
             assert!((growth_ratio - 1.0).abs() < 1e-3, "{p}/{q}, {m}: {growth_ratio}");
             seen += 1;
         }
@@ -591,11 +594,40 @@ fn windows_hold_what_all_tongues_show() {
         for (lo, hi) in [(0.0, 1e300), (1.0, 1.5), (2.4, 2.4), (3.9, 400.0), (-1.0, 1e-9), (2.0, 1.0)] {
             let meets = |gap: &&Gap| gap.lower.lo <= hi && gap.upper.is_none_or(|upper| lo <= upper.hi);
             let expected: Vec<u64> = all.iter().filter(meets).map(|gap| gap.m).filter(|_| lo <= hi).collect();
-            let selection = Selection { s: Some((lo, hi)), ..Selection::default() };
+            let exact = |x: f64| Laurent::from_rational(Rational::from_float(x).unwrap());
+            let selection = Selection { s: Some((exact(lo), exact(hi))), ..Selection::default() };
             let found = Tongues::new(Ratio::new(p, q).unwrap(), &rho).unwrap().select(&selection).unwrap();
             assert_eq!(found.iter().map(|gap| gap.m).collect::<Vec<_>>(), expected, "{p}/{q}: {lo}..{hi}");
         }
     }
+}
+
+/// 2/1 at rho = 1: the first tongue begins at s = 2/3 and ends on the resonance s = 2.
+#[test]
+fn a_closed_window_holds_a_tongue_that_it_touches_and_none_that_is_a_hair_beyond() {
+    let tongues = Tongues::new("2/1".parse().unwrap(), &ratio(1, 1)).unwrap();
+    let labels = |lo: &Rational, hi: &Rational| -> Vec<u64> {
+        let window = [lo, hi].map(|x| Laurent::from_rational(x.clone()));
+        let [lo, hi] = window;
+        let selection = Selection { s: Some((lo, hi)), ..Selection::default() };
+        tongues.select(&selection).unwrap().iter().map(|gap| gap.m).collect()
+    };
+    let (begin, end, zero) = (ratio(2, 3), ratio(2, 1), ratio(0, 1));
+    let hair = Rational::new(1.into(), num_bigint::BigInt::from(10).pow(60));
+    assert_eq!(labels(&zero, &begin), [1]);
+    assert_eq!(labels(&zero, &(&begin - &hair)), [0; 0]);
+    assert_eq!(labels(&end, &end), [1]);
+    assert_eq!(labels(&(&end + &hair), &(&end + &hair)), [0; 0]);
+    // An irrational edge, 4 sin²(2 pi/7).
+    let tongues = Tongues::new("7/2".parse().unwrap(), &ratio(1, 25)).unwrap();
+    let upper = tongues.refine(&tongues.gap(4).unwrap().upper.unwrap(), 60).unwrap();
+    let begins = |lo: &Rational| {
+        let window = (Laurent::from_rational(lo.clone()), Laurent::from_rational(ratio(5, 2)));
+        let found = tongues.select(&Selection { s: Some(window), ..Selection::default() }).unwrap();
+        found.first().map(|gap| gap.m)
+    };
+    assert_eq!(begins(&upper.lo), Some(4));
+    assert_ne!(begins(&(&upper.hi + &hair)), Some(4));
 }
 
 #[test]

@@ -814,3 +814,17 @@ fn edges_beside_a_stiff_slow_force_are_found() {
         }
     }
 }
+
+/// Velocity Verlet with a gradient in both kicks: the last one is the first of the next step.
+#[test]
+fn gradients_at_joined_ends_are_counted_once() {
+    let cost = |text: &str| text.parse::<Word>().unwrap().cost();
+    let joined = cost("K(1/2, 1/24) D(1) K(1/2, 1/24)");
+    assert_eq!((joined.evaluations, joined.gradients, joined.total()), ([1, 0], 1, 2));
+    let apart = cost("D(1/2) K(1/2, 1/24) D(1/4) K(1/2, 1/24) D(1/4)");
+    assert_eq!((apart.evaluations, apart.gradients), ([2, 0], 2));
+    // One force's gradient is none of the other's, and a kick without one needs none.
+    assert_eq!(cost("K1(1/2, 1/24) K2(1/2) D(1) K2(1/2) K1(1/2, 1/24)").gradients, 1);
+    assert_eq!(cost("K1(1/2, 1/24) K2(1/2, 1/24) D(1) K2(1/2) K1(1/2, 1/24)").gradients, 2);
+    assert_eq!(cost("K(1/2) D(1) K(1/2, 1/24)").gradients, 1);
+}

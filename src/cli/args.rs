@@ -38,7 +38,7 @@ pub struct Common {
     /// Nothing on standard error but errors: neither progress nor the names of written files.
     #[arg(long, global = true)]
     pub quiet: bool,
-    /// The most kicks that may be composed for one pair of steps, in doubles or in more digits [default: 100000000].
+    /// The most work that an answer may cost, in the unit that a refusal names: as a rule kicks of one pair of steps [default: 100000000].
     #[arg(long, global = true, value_name = "KICKS", value_parser = flag::<u64>)]
     pub budget: Option<u64>,
     /// The command as figures carry it.

@@ -123,7 +123,7 @@ impl Args {
             [x, y] => [Some(x.clone()), Some(y.clone())],
             more => {
                 let given = format!("given {} times", more.len());
-                return Err(Error::input("--scan", given, "a map has two axes"));
+                return Err(Error::input("--scan", given, "a map has two axes: give --scan once or twice"));
             }
         };
         Ok(System {

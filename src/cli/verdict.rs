@@ -10,6 +10,7 @@ use crate::propagator::Oscillator;
 use crate::question::{self, Question, flag};
 use crate::report::certificate;
 use crate::report::file::write_output;
+use crate::schedule::Schedule;
 use crate::verdict::Verdict;
 
 /// Flags of `verdict`.
@@ -96,7 +97,9 @@ pub fn within(kicks: u64, most: u64, budget: Option<u64>) -> Result<()> {
 }
 
 fn certify(oscillator: &Oscillator, verdict: Verdict, path: &Path, budget: Option<u64>) -> Result<()> {
-    within(oscillator.clocks()?.ratio().kicks(), WORTH_CERTIFYING, budget)?;
+    let ratio = oscillator.clocks()?.ratio();
+    within(ratio.kicks(), WORTH_CERTIFYING, budget)?;
+    Schedule::two_clocks(ratio)?;
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let text = certificate::coq(oscillator, verdict, &name)?;
     write_output(Some(path), text.as_bytes())

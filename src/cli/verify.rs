@@ -1,5 +1,6 @@
 //! `kickdrift verify`: a document computed again, and rechecked by another route than the one that made it.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
@@ -9,7 +10,7 @@ use super::progress::{announce, progress};
 use crate::error::{Error, Kind, Result};
 use crate::file;
 use crate::format::Format;
-use crate::recheck::{Claim, Options, Outcome};
+use crate::recheck::{Claim, Failure, Options, Outcome};
 use crate::report::document::Document;
 
 /// Flags of `verify`.
@@ -48,12 +49,7 @@ impl Args {
         bar.finish_and_clear();
         let name = claim.name();
         if let Some(first) = outcome.failures.first() {
-            let more = format!("({} of {} rows of {file} fail)", outcome.failures.len(), outcome.rows);
-            return Err(Error::input(
-                &format!("row {} of {name}", first.row),
-                &first.place,
-                format!("{} {more}", first.why),
-            ));
+            return Err(failed(first, &outcome, name, &file.to_string()));
         }
         common.write(&document(&outcome, &file.to_string(), name), Format::Text)
     }
@@ -71,6 +67,26 @@ impl Args {
         let beside = || self.file.parent().unwrap_or(Path::new("")).into();
         self.data.clone().unwrap_or_else(beside)
     }
+}
+
+/// The error of the first of some failures: its row by number and name, where the document has rows.
+fn failed(first: &Failure, outcome: &Outcome, name: &str, file: &str) -> Error {
+    let rows: BTreeSet<u64> = outcome.failures.iter().map(|own| own.row).filter(|&row| row > 0).collect();
+    let more = match (outcome.failures.len(), rows.len()) {
+        (_, failing @ 1..) if outcome.rows > 1 => {
+            format!(
+                "{failing} of {} rows of {file} {}",
+                outcome.rows,
+                if failing == 1 { "fails" } else { "fail" }
+            )
+        }
+        (1, _) => format!("in {file}"),
+        (values, _) => format!("{values} values of {file} differ"),
+    };
+    let is_row = first.row > 0 && outcome.rows > 1;
+    let field = if is_row { format!("row {} of {name}", first.row) } else { "document".into() };
+    let place = if first.place.is_empty() { name } else { &first.place };
+    Error::input(&field, place, format!("{} ({more})", first.why))
 }
 
 /// The document `kickdrift/verify/1`: all rows hold.

@@ -4,6 +4,7 @@ use super::grid::Grid;
 use super::shard::Shard;
 use super::work::MOST_TOGETHER;
 use crate::error::{Error, Result};
+use crate::number::Ratio;
 use crate::verdict::Limits;
 
 /// A map as a whole may compose so many times the kicks that one pair may: with the default limits 10^12.
@@ -18,16 +19,18 @@ impl Grid {
     /// 0.4 %, one standard deviation.
     pub fn kicks(&self) -> f64 {
         let pairs = self.pairs();
-        let kicks = |n: u64| {
-            let rows = self.shape().1 as u64;
-            let ratio = self.ratio(self.columns().0 + n / rows, self.rows().0 + n % rows);
-            (ratio.p().min(ratio.q()) / 2 + 1).min(MOST_TOGETHER) as f64
-        };
-        if pairs <= SAMPLE {
-            return (0..pairs).map(kicks).sum();
-        }
-        let sum: f64 = (0..SAMPLE).map(|n| kicks(scattered(n, pairs))).sum();
-        sum / SAMPLE as f64 * pairs as f64
+        let kicks = |ratio: Ratio| (ratio.p().min(ratio.q()) / 2 + 1).min(MOST_TOGETHER) as f64;
+        let sum: f64 = self.sampled().map(kicks).sum();
+        if pairs <= SAMPLE { sum } else { sum / SAMPLE as f64 * pairs as f64 }
+    }
+
+    /// The ratios of some pairs spread over the grid, of all where these are few.
+    pub(super) fn sampled(&self) -> impl Iterator<Item = Ratio> {
+        let (pairs, rows) = (self.pairs(), self.shape().1 as u64);
+        let n = move |n| if pairs <= SAMPLE { n } else { scattered(n, pairs) };
+        (0..pairs.min(SAMPLE))
+            .map(n)
+            .map(move |n| self.ratio(self.columns().0 + n / rows, self.rows().0 + n % rows))
     }
 
     /// No pair costs more kicks than this.

@@ -3,7 +3,7 @@
 use crate::error::{Error, Result, room};
 use crate::number::{ExactSign, Laurent, Ratio, Rational, Ring, Sign};
 use crate::propagator::{Oscillator, TwoClocks};
-use crate::resonance::compare::Comparisons;
+use crate::resonance::compare::{Comparisons, allow};
 use crate::verdict::Limits;
 
 /// The most columns or rows: their products are then exact in doubles.
@@ -111,6 +111,7 @@ impl Grid {
     /// A negative tolerance, and as [`compare`](crate::resonance::compare::compare).
     pub fn compare(&self, tolerance: &Rational, limits: &Limits) -> Result<Comparisons> {
         room((self.shape().0 * size_of::<u64>()) as u128, "a larger step1 or a smaller h1-range")?;
+        allow(self.pairs(), self.sampled(), limits)?;
         let columns: Vec<u64> = (self.columns.0..=self.columns.1).collect();
         Comparisons::gather(&columns, tolerance, |&i, found| {
             (self.rows.0..=self.rows.1).try_for_each(|j| {

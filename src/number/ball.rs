@@ -37,6 +37,9 @@ const RADIUS_BITS: i64 = 30;
 /// The largest |exp| of a ball.
 const MAX_EXPONENT: i64 = 1 << 60;
 
+/// A number that so many bits leave between two roundings is taken to be half way between two doubles.
+const MOST_BITS_OF_NEAREST: u32 = 3072;
+
 /// The set [mid − rad, mid + rad] · 2^exp.
 ///
 /// Invariant: rad ≤ 2^30 + 1; |exp| ≤ 2^60, so that no sum of a few exponents overflows (what is smaller becomes a ball about 0, an
@@ -228,10 +231,34 @@ impl Ball {
         (lower, upper)
     }
 
-    /// A double next to the midpoint: for display and first guesses, not for proofs.
+    /// The double nearest to the midpoint, beyond the largest one that: for display and first guesses, not for proofs.
     pub fn mid_f64(&self) -> f64 {
-        let (lower, upper) = float::enclose_dyadic(&self.mid, self.exp);
-        if lower.is_finite() { lower } else { upper }
+        float::nearest_dyadic(&self.mid, self.exp).clamp(f64::MIN, f64::MAX)
+    }
+
+    /// The double nearest to a number that is evaluated in ever more bits, as both ends of its enclosure round to it. Of a number half
+    /// way between two doubles, which no bits tell apart, one of these.
+    ///
+    /// ```
+    /// use kickdrift::number::Ball;
+    /// let sine = |bits| Ball::pi(bits).div(&Ball::from_integer(&6.into()), bits).unwrap().sin(bits);
+    /// assert_eq!(Ball::nearest_f64(sine), 0.5);
+    /// ```
+    pub fn nearest_f64(evaluated: impl Fn(u32) -> Ball) -> f64 {
+        let mut bits = 96;
+        loop {
+            let ball = evaluated(bits);
+            if bits >= MOST_BITS_OF_NEAREST || ball.has_nearest_f64() {
+                return ball.mid_f64();
+            }
+            bits *= 2;
+        }
+    }
+
+    /// Whether one double is the nearest to every point of the ball: [`Ball::mid_f64`], unless it is too large for one.
+    pub(crate) fn has_nearest_f64(&self) -> bool {
+        let end = |mid: BigInt| float::nearest_dyadic(&mid, self.exp);
+        end(&self.mid - self.rad) == end(&self.mid + self.rad)
     }
 
     /// n and e of the midpoint n 2^e.

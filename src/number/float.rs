@@ -123,6 +123,16 @@ pub(super) fn enclose_dyadic(integer: &BigInt, exp: i64) -> (f64, f64) {
     signed(integer.sign(), Leading::of(integer.magnitude(), exp, false).around())
 }
 
+/// The double nearest to `integer 2^exp`, ties to even.
+pub(super) fn nearest_dyadic(integer: &BigInt, exp: i64) -> f64 {
+    let nearest = || Leading::of(integer.magnitude(), exp, false).around().nearest;
+    match integer.sign() {
+        IntSign::NoSign => 0.0,
+        IntSign::Plus => nearest(),
+        IntSign::Minus => -nearest(),
+    }
+}
+
 fn signed(sign: IntSign, around: Around) -> (f64, f64) {
     if sign == IntSign::Minus { (-around.up, -around.down) } else { (around.down, around.up) }
 }

@@ -99,7 +99,8 @@ impl TryFrom<f64> for Laurent {
 
     /// The number that the double is, to its last bit; infinities and NaN are none.
     fn try_from(x: f64) -> Result<Laurent> {
-        let exact = rational::from_f64_exact(x).ok_or_else(|| Error::input("number", x, "must be finite"))?;
+        let exact = rational::from_f64_exact(x)
+            .ok_or_else(|| Error::input("number", x, "is not a finite number: give one"))?;
         Ok(exact.into())
     }
 }
@@ -109,7 +110,8 @@ impl TryFrom<f64> for Ratio {
 
     /// The ratio that the double is, to its last bit.
     fn try_from(x: f64) -> Result<Ratio> {
-        let exact = rational::from_f64_exact(x).ok_or_else(|| Error::input("ratio", x, "must be finite"))?;
+        let exact = rational::from_f64_exact(x)
+            .ok_or_else(|| Error::input("ratio", x, "is not a finite number: give one"))?;
         Ratio::try_from(&exact)
     }
 }

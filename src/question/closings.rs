@@ -86,7 +86,11 @@ impl Question for Closings {
     fn answer(&self, work: &Work) -> Result<Vec<Found>> {
         let ratios = self.ratios()?;
         if matches!(ratios, Ratios::UpTo(_)) && self.m.is_some() {
-            return Err(Error::input("m", "given with --max-sum", "labels are those of one --ratio"));
+            return Err(Error::input(
+                "m",
+                "given with --max-sum",
+                "labels are those of one ratio: give --ratio P/Q, or leave --m out",
+            ));
         }
         if !(2..=MOST_SAMPLES).contains(&self.samples) {
             return Err(Error::input("samples", self.samples, format!("choose 2 to {MOST_SAMPLES}")));

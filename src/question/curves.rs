@@ -57,7 +57,7 @@ impl Question for Curves {
             }
         }
         let families = Families { a: self.a, b: self.b, samples: self.samples };
-        families.curves(&self.lambda1, &Window::new(&self.h1_range, &self.h2_range))
+        families.curves(&self.lambda1, &Window::nearest(&self.h1_range, &self.h2_range))
     }
 
     fn show(&self, curves: &Vec<Curve>) -> Document {

@@ -132,7 +132,7 @@ pub(super) fn parsed<T: Notation>(name: &str, value: &Value) -> Result<T> {
 pub fn read<T: Field>(name: &str, from: &Map<String, Value>, default: Option<&str>) -> Result<T> {
     let default = default.map(Value::from);
     let own = T::of(from.get(name).or(default.as_ref()), name);
-    own.unwrap_or_else(|| Err(Error::missing(name, "the question needs it")))
+    own.unwrap_or_else(|| Err(Error::missing(name, "the question needs it: add it")))
 }
 
 /// That all fields are among those known.

@@ -9,6 +9,7 @@ use crate::propagator::{HalfPeriod, TwoClocks, half_period};
 use crate::report::document::Document;
 use crate::report::record::Record;
 use crate::report::table::{Cell, Column};
+use crate::schedule::Schedule;
 
 question! {
     /// A, B, C, D of one ratio at rational s and ρ, exact and enclosed, in the time unit h1: A and D are numbers, B is in h1, C in 1/h1.
@@ -54,6 +55,8 @@ impl Question for Half {
             let cost = format!("the half period of {} has the digits of {kicks} kicks", self.ratio);
             return Err(Error::budget(cost, kicks).or(format!("choose p + q <= {most}")));
         }
+        // That its ticks can be counted.
+        Schedule::two_clocks(self.ratio)?;
         Ok(half_period(&TwoClocks::with_rho(self.ratio, self.s.clone(), self.rho.clone())))
     }
 

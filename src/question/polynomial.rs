@@ -42,10 +42,16 @@ impl Question for Polynomial {
     fn answer(&self, work: &Work) -> Result<Self::Answer> {
         let (ratio, most) = (self.ratio, work.budget.unwrap_or(MOST_PRODUCTS));
         let terms = u128::from(ratio.p()) * u128::from(ratio.q()) / 4 + u128::from(ratio.kicks());
-        let products = u64::try_from(terms.saturating_mul(ratio.kicks().into())).unwrap_or(u64::MAX);
-        if products > most {
-            let cost = format!("polynomials of {ratio} have some {terms} terms each");
-            return Err(Error::budget(cost, products).or("choose a ratio of smaller p and q"));
+        let products = terms.saturating_mul(ratio.kicks().into());
+        if products > most.into() {
+            let (cost, remedy) = (
+                format!(
+                    "polynomials of {ratio} have some {terms} terms each; the budget, in products of terms, is {most}"
+                ),
+                "choose a ratio of smaller p and q",
+            );
+            let budget = |products| Error::budget(&cost, products).or(remedy);
+            return Err(u64::try_from(products).map_or_else(|_| Error::too_much(&cost, remedy), budget));
         }
         Ok(polynomials(ratio))
     }

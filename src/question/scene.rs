@@ -22,6 +22,7 @@ use crate::number::{Laurent, Ratio, Rational};
 use crate::report::document::Document;
 use crate::resonance::Families;
 use crate::scene::json;
+use crate::scene::kind::of_another_kind;
 use crate::tongue::Stiffness;
 
 question! {
@@ -121,7 +122,7 @@ impl Scene {
         let schema = file.shift_remove("schema").unwrap_or_default();
         if schema != SCHEMA {
             let schema = schema.as_str().map_or_else(|| schema.to_string(), String::from);
-            return Err(Error::input("schema", schema, format!("this version reads {SCHEMA}")));
+            return Err(of_another_kind(&schema, SCHEMA));
         }
         // One text is how documents have it.
         if let Some(text) = file.get("want").and_then(Value::as_str) {

@@ -1,7 +1,7 @@
 //! Integrators side by side: their verdicts over the same grid of steps and stiffness ratios.
 
 #[cfg(feature = "figure")]
-use plot::{Axis, Cells, Figure, Foot, Layer, Panel, Place, palette};
+use plot::{Axis, Cells, Figure, Foot, Layer, Panel, Place, literal, palette};
 
 use super::asking::{Question, Work, question};
 use crate::error::{Error, Result};
@@ -86,7 +86,7 @@ impl CompareMethods {
             return Err(Error::input(
                 &format!("{field}_range"),
                 format!("{lo}..{hi}"),
-                "holds no positive multiple of the spacing",
+                "holds no positive multiple of the spacing: choose a smaller spacing or a longer range",
             ));
         }
         if count > Rational::from_integer(MOST.into()) {
@@ -240,7 +240,7 @@ impl Question for CompareMethods {
                 Axis::linear("*Λ*_2/*Λ*_1", low, high)
             };
             let share = 100.0 * own.count(Bounded::Stable) as f64 / (steps.len() * ratios.len()) as f64;
-            let panel = Panel::new(x, y).titled(&format!("{}: {share:.1} % stable", own.name));
+            let panel = Panel::new(x, y).titled(&format!("{}: {share:.1} % stable", literal(&own.name)));
             let kinds = [
                 (Bounded::Unstable, palette::HYPERBOLIC, "unstable"),
                 (Bounded::Edge, palette::PARABOLIC, "on an edge"),

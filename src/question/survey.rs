@@ -66,7 +66,8 @@ impl Question for Survey {
             .entry("predicted.inside", survey.predicted_inside)
             .entry("width_ratios", spreads(None).all(&survey.width_ratios))
             .entry("thinnest", thin().all(&survey.thinnest))
-            .long_rows(
+            .long_rows(spreads(None).table("width_ratios", &widths, &survey.width_ratios))
+            .for_people(
                 spreads(Some(DIGITS))
                     .table("width_ratios", &widths, &survey.width_ratios)
                     .captioned(WIDTHS_LATEX),

@@ -147,6 +147,7 @@ impl System {
         let width = self.width().filter(|_| self.nearest);
         let nearest = |width| {
             let cost = scene.cost_of_nearest(width, &limits)?;
+            limits.allow(model.counted(cost) as u64, || NEAREST.into())?;
             work.announce(NEAREST, model.seconds_of(cost));
             scene.nearest_unstable(width, &limits)
         };
@@ -159,6 +160,7 @@ impl System {
     fn intervals(span: &Span, width: f64, scene: &SystemScene, work: &Work) -> Result<Intervals> {
         let limits = work.products();
         let cost = scene.cost_of_intervals(span, width, &limits)?;
+        limits.allow(scene.model().counted(cost) as u64, || format!("intervals of {span}"))?;
         work.announce(&format!("intervals of {span}"), scene.model().seconds_of(cost));
         scene.intervals(span, width, &limits)
     }

@@ -5,6 +5,7 @@ use num_bigint::BigInt;
 use super::asking::{Question, Work, question};
 use crate::error::{Error, Result};
 use crate::number::{Ball, Laurent, Ratio, Rational, Real, rational};
+use crate::orbit::refine;
 use crate::propagator::Oscillator;
 use crate::report::decimal;
 use crate::report::document::Document;
@@ -238,11 +239,22 @@ impl Decided {
             lines.push(format!(
                 "  resonance    m = {m} {turns} a period; dominant family (a, b) = ({a}, {b})"
             ));
+        } else if verdict.kind() == Kind::Hyperbolic {
+            lines.push(self.not_counted());
         }
         lines.push(format!("  decided by   {}", self.decision.decided_by.name()));
         #[cfg(feature = "system")]
         lines.extend(self.friction.iter().flat_map(friction::lines));
         lines
+    }
+
+    /// Why a pair that grows has no label.
+    fn not_counted(&self) -> String {
+        let kicks = self.oscillator.clocks().ok().map(|clocks| refine::kicks(clocks.ratio()));
+        let remedy = kicks.map_or("no budget allows to count so many".into(), |kicks| {
+            format!("to count them kick by kick allow {kicks} kicks (--budget)")
+        });
+        format!("  resonance    not told: directions alone do not give the half turns a period; {remedy}")
     }
 
     /// The verdict at a much simpler ratio, where one lies within 10^-9: steps that are doubles stand for it, as a rule.

@@ -183,7 +183,7 @@ impl Claim {
         let turns = angle.over_pi(BITS).mul(&integer(clocks.p()), BITS);
         let distance = turns.sub(&integer(m), BITS);
         let half = Rational::new(1.into(), 2.into());
-        let nearest = distance.lower() <= half && (distance.upper() >= -half || m == 1) && m > 0;
+        let nearest = distance.lower() <= half && distance.upper() >= -half;
         holds(nearest, || format!("m = {m} is not the nearest to {}", turns.mid_f64()))?;
         holds(written.holds(&distance), || format!("its distance is {}", distance.mid_f64()))
     }

@@ -7,6 +7,7 @@ use crate::error::{Error, Result};
 use crate::number::{Ball, ExactSign, Laurent, Ratio, Rational, Real, Sign};
 use crate::propagator::TwoClocks;
 use crate::propagator::methods::avi;
+use crate::schedule::Schedule;
 use crate::tongue::Entry;
 use crate::verdict::{Decidable, Decision, HalfSigns, Kind, Limits, Tier, Verdict, decide_from, exact_trace};
 
@@ -19,6 +20,7 @@ pub fn lowest(p: u64, q: u64) -> Checked<Ratio> {
 /// p/q, and that exact signs of it are within the limits.
 pub fn check_ratio(p: u64, q: u64, limits: &Limits) -> Checked<Ratio> {
     let ratio = lowest(p, q)?;
+    Schedule::two_clocks(ratio)?;
     let kicks = ratio.kicks();
     let cost = kicks.saturating_mul(kicks) / 100;
     if kicks <= limits.kicks && cost <= limits.kicks {

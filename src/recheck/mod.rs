@@ -103,6 +103,7 @@ use self::again::{Compared, Recheck, compare};
 use self::context::{Context, REMEDY};
 use crate::error::{Error, Result};
 use crate::scene::json;
+use crate::scene::kind::{is_asked, of_another_kind};
 
 pub use context::{Failure, Options, Outcome, See};
 
@@ -214,6 +215,9 @@ impl Claim {
         let mut rows = document.clone();
         rows.retain(|key, _| !["schema", "kickdrift"].contains(&key.as_str()));
         let Some(rows) = name.and_then(|name| Rows::read(name, rows)) else {
+            if let Some(schema) = schema.as_str().filter(|schema| is_asked(schema)) {
+                return Err(of_another_kind(schema, "answers"));
+            }
             let known = Claim::NAMES.join(", ");
             let remedy = format!("can be rechecked: kickdrift/NAME/1, NAME one of {known}");
             return Err(Error::input("schema", schema, remedy));

@@ -148,6 +148,45 @@ fn placed(digits: &str, places: i64, plain: Range<i64>) -> (String, Option<i64>)
     (mantissa, (!is_plain).then_some(leading))
 }
 
+/// A text whose numbers with an uncertainty, as 1.2345(6), are in so many significant digits at most; all else stays.
+///
+/// ```
+/// use kickdrift::report::decimal::in_digits;
+/// assert_eq!(in_digits("rate -1.23456789(2)e-7, f(x) = (3)", 4), "rate -1.235(1)e-7, f(x) = (3)");
+/// ```
+pub fn in_digits(text: &str, digits: u32) -> String {
+    let (mut out, mut rest) = (String::with_capacity(text.len()), text);
+    while let Some((head, tail)) = rest.split_once('(') {
+        let start = head
+            .rfind(|c: char| !(c.is_ascii_digit() || c == '.'))
+            .map_or(0, |i| i + head[i..].chars().next().map_or(0, char::len_utf8));
+        let shorter = tail.split_once(')').and_then(|(units, _)| uncertain(&head[start..], units, digits));
+        match shorter {
+            Some(shorter) => {
+                out += &head[..start];
+                out += &shorter;
+                rest = tail.split_once(')').map_or("", |(_, behind)| behind);
+            }
+            None => {
+                out += head;
+                out.push('(');
+                rest = tail;
+            }
+        }
+    }
+    out + rest
+}
+
+/// `1.2345` and `6` in fewer digits; `None` where they are no such number.
+fn uncertain(number: &str, units: &str, digits: u32) -> Option<String> {
+    let (whole, fraction) = number.split_once('.').filter(|_| units.bytes().all(|b| b.is_ascii_digit()))?;
+    let [middle, error]: [BigInt; 2] = [format!("{whole}{fraction}").parse().ok()?, units.parse().ok()?];
+    let scale = power_of_ten(-(fraction.len() as i64));
+    let (lo, hi) = (&middle - &error, &middle + &error);
+    let [lo, hi] = [lo, hi].map(|end| Rational::from_integer(end) * &scale);
+    (lo.is_positive() && &hi - &lo <= lo).then(|| concise(&lo, &hi, digits).to_string())
+}
+
 /// Both ends with so many significant digits, the lower rounded down and the upper up: what is written contains
 /// [lo, hi], 0 < lo ≤ hi.
 ///

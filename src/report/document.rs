@@ -6,6 +6,7 @@
 
 use serde_json::{Map, Value, json};
 
+use super::decimal::in_digits;
 use super::latex::{self, Equation, Float};
 use super::table::Table;
 use super::{csv, text};
@@ -245,7 +246,7 @@ impl Document {
     }
 
     fn text(&self, to_see: &str) -> String {
-        let mut out = self.summary.clone();
+        let mut out = self.digits.map_or_else(|| self.summary.clone(), |n| in_digits(&self.summary, n));
         out.push('\n');
         let first = self.for_people.as_ref().or(self.table.as_ref());
         for table in first.into_iter().chain(&self.more).filter(|_| !self.summary_only) {

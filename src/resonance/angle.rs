@@ -1,6 +1,6 @@
 //! θ, the turn of the fast clock's solution in one step, and what follows from it.
 
-use num_traits::{One, Signed};
+use num_traits::Signed;
 
 use crate::number::{Ball, Rational, Real, Sign};
 use crate::propagator::TwoClocks;
@@ -14,7 +14,7 @@ pub struct Angle<S> {
 /// How far a pair is from the nearest resonance p θ = m π, m ≥ 1.
 #[derive(Clone, Debug)]
 pub struct Nearest {
-    /// The integer m ≥ 1 nearest to p θ/π.
+    /// The integer nearest to p θ/π: 0, which is no resonance, where q h2 is shorter than half of T½.
     pub m: u64,
     /// p θ/π − m, enclosed: the distance of q h2 from m T½, in units of T½.
     pub distance: Ball,
@@ -50,12 +50,17 @@ impl<S: Real> Angle<S> {
     /// p θ/π is half an odd integer only if θ/π is rational, and then (unless s is one of the cyclotomic
     /// values) s = 2, p odd: the smaller m is taken.
     pub fn nearest(&self, p: u64, bits: u32) -> Nearest {
-        if let Some((m, distance)) = self.rational_nearest(p) {
+        self.nearest_from(0, p, bits)
+    }
+
+    /// The nearest m ≥ `least`.
+    fn nearest_from(&self, least: u64, p: u64, bits: u32) -> Nearest {
+        if let Some((m, distance)) = self.rational_nearest(least, p) {
             return Nearest { m, distance: Ball::from_rational(&distance, bits) };
         }
         let turns = self.over_pi(bits + 64).mul(&Ball::from_integer(&p.into()), bits + 64);
         let (twice, _) = turns.mid_scaled(1);
-        let m = (twice / 2u8).max(One::one());
+        let m = (twice / 2u8).max(least.into());
         let next: num_bigint::BigInt = &m + 1;
         let distance = |m: &num_bigint::BigInt| turns.sub(&Ball::from_integer(m), bits);
         let nearer = distance(&next).abs().compare(&distance(&m).abs()) == Some(std::cmp::Ordering::Less);
@@ -71,12 +76,12 @@ impl<S: Real> Angle<S> {
     /// Decided: θ/π is rational only where 2 cos θ is an algebraic integer. For rational s that leaves
     /// s = 1, 2, 3, and no transcendental s at all; elsewhere more bits always decide.
     pub fn is_resonant(&self, p: u64, tolerance: &Rational) -> bool {
-        if let Some((_, distance)) = self.rational_nearest(p) {
+        if let Some((_, distance)) = self.rational_nearest(1, p) {
             return distance.abs() <= *tolerance;
         }
         let mut bits = 64;
         loop {
-            let nearest = self.nearest(p, bits);
+            let nearest = self.nearest_from(1, p, bits);
             if let Some(order) = nearest.distance.abs().compare(&Ball::from_rational(tolerance, bits)) {
                 return order.is_le();
             }
@@ -84,11 +89,11 @@ impl<S: Real> Angle<S> {
         }
     }
 
-    /// The nearest m ≥ 1 and p θ/π − m where θ/π is rational; of two the smaller m.
-    fn rational_nearest(&self, p: u64) -> Option<(u64, Rational)> {
+    /// The nearest m ≥ `least` and p θ/π − m where θ/π is rational; of two the smaller m.
+    fn rational_nearest(&self, least: u64, p: u64) -> Option<(u64, Rational)> {
         let turns = self.rational_over_pi()? * Rational::from_integer(p.into());
         let half = Rational::new(1.into(), 2.into());
-        let m = (&turns - half).ceil().max(One::one());
+        let m = (&turns - half).ceil().max(Rational::from_integer(least.into()));
         Some((m.to_integer().try_into().unwrap_or(u64::MAX), turns - m))
     }
 

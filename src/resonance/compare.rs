@@ -21,6 +21,7 @@ use super::tan;
 use crate::error::{Error, Result};
 use crate::named::named;
 use crate::number::{Laurent, Ratio, Rational};
+use crate::orbit::refine;
 use crate::parallel::{go_on, try_map};
 use crate::propagator::TwoClocks;
 use crate::verdict::{Decidable, Decision, Limits, Tier, Verdict, decide_from};
@@ -97,6 +98,40 @@ pub fn compare<S: Decidable>(
     let nearest = angle.map(|angle| angle.nearest(clocks.p(), BITS));
     Ok(Comparison { trace, tan, nearest, outcome })
 }
+
+/// That pairs which compose so many kicks together are within the limits: each pair's half period kick by kick, or what return maps of a
+/// longer one cost, and the tan criterion's turns. The `ratios` are those of some of the pairs.
+///
+/// # Errors
+/// A budget error in kicks.
+pub(crate) fn allow(pairs: u64, ratios: impl Iterator<Item = Ratio>, limits: &Limits) -> Result<()> {
+    let (mut kicks, mut sampled) = (0.0, 0u64);
+    for ratio in ratios {
+        kicks += PAIR + refine::kicks(ratio).min(LONGEST) as f64 + TURN * (ratio.q() / 2) as f64;
+        sampled += 1;
+    }
+    let kicks = (kicks / sampled.max(1) as f64 * pairs as f64).ceil();
+    if kicks <= limits.kicks as f64 {
+        return Ok(());
+    }
+    let cost = format!(
+        "comparing {pairs} pairs costs as much as {kicks:.1e} kicks, some {:.0} min of one core; the budget is {} kicks",
+        (kicks / KICKS_A_MINUTE).max(1.0),
+        limits.kicks
+    );
+    Err(Error::budget(cost, kicks as u64).or("choose fewer pairs"))
+}
+
+/// Numbers made and compared for each pair cost as much as so many kicks.
+const PAIR: f64 = 40.0;
+
+/// Return maps of a long period cost as much as so many kicks.
+const LONGEST: u64 = 1 << 10;
+
+/// A turn of the tan criterion costs as much as so many kicks.
+const TURN: f64 = 4.0;
+
+const KICKS_A_MINUTE: f64 = 6e7;
 
 /// Counts over many pairs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -224,6 +259,7 @@ pub fn compare_ratios(
         return Err(Error::input("samples", samples, "choose 1 to 1000000"));
     }
     let ratios: Vec<Ratio> = Ratio::up_to(max_sum).collect();
+    allow(samples * ratios.len() as u64, ratios.iter().copied(), limits)?;
     Comparisons::gather(&ratios, tolerance, |&ratio, found| {
         (1..=samples).try_for_each(|k| {
             let s = Rational::new((4 * k).into(), (samples + 1).into());

@@ -18,6 +18,12 @@ impl Window {
         let ends = |(lo, hi): &(Laurent, Laurent)| (lo.enclose_f64().0, hi.enclose_f64().1);
         Window { h1: ends(h1), h2: ends(h2) }
     }
+
+    /// The window of two closed ranges, its ends the nearest doubles: as points are written.
+    pub fn nearest(h1: &(Laurent, Laurent), h2: &(Laurent, Laurent)) -> Window {
+        let ends = |(lo, hi): &(Laurent, Laurent)| (lo.to_f64(), hi.to_f64());
+        Window { h1: ends(h1), h2: ends(h2) }
+    }
 }
 
 /// A curve 1/T½(h1) = a/h1 + b/h2 within a window: its pieces from left to right.
@@ -28,8 +34,8 @@ pub struct Curve {
     pub pieces: Vec<Vec<CurvePoint>>,
 }
 
-/// A point of a curve: h1 a double, h2 and θ/π the doubles nearest to the exact values there (to within one
-/// unit in the last place), so that θ/π = a + b h1/h2 up to 4 roundings.
+/// A point of a curve: h1 a double, h2 and θ/π the doubles nearest to the exact values there, so that θ/π = a + b h1/h2 up to
+/// 2^-53 (|a| + 2).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CurvePoint {
     pub h1: f64,
@@ -37,12 +43,9 @@ pub struct CurvePoint {
     pub theta_over_pi: f64,
 }
 
-/// Working precisions of a point, from the first that leaves [`ENOUGH`] bits of h2: beside the fast clock's limit the arcsine
-/// loses half of them.
+/// Working precisions of a point, up to the first that leaves no doubt which doubles are the nearest: beside the fast clock's limit the
+/// arcsine loses half of them.
 const BITS: [u32; 3] = [96, 192, 384];
-
-/// Relative accuracy of h2 and θ/π before they are rounded to doubles, in bits.
-const ENOUGH: i64 = 80;
 
 /// The most points of all curves together: some gigabytes of rows.
 pub(super) const MOST_POINTS: usize = 20_000_000;
@@ -104,9 +107,8 @@ impl Path {
         let all = BITS.iter().zip(&self.roots).filter_map(|(&bits, root)| within(bits, root));
         let mut best = None;
         for (h2, over_pi) in all {
-            let enough = h2.relative_accuracy_bits().min(over_pi.relative_accuracy_bits()) >= ENOUGH;
             best = Some((h2.mid_f64(), over_pi.mid_f64()));
-            if enough {
+            if h2.has_nearest_f64() && over_pi.has_nearest_f64() {
                 break;
             }
         }

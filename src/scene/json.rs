@@ -81,6 +81,9 @@ fn noun(name: &str) -> String {
         "a map" | "map" => "an object".into(),
         "a boolean" => "true or false".into(),
         "null" | "unit value" => "null".into(),
+        "f64" | "f32" => "a number".into(),
+        "u8" | "u16" | "u32" | "u64" | "u128" | "usize" => "a whole number, 0 or more,".into(),
+        "i8" | "i16" | "i32" | "i64" | "i128" | "isize" => "a whole number".into(),
         _ if name.starts_with("struct ") => "an object".into(),
         _ => {
             let renamed =
@@ -195,6 +198,10 @@ mod tests {
         assert_eq!(wrong("{\"list\": 5}"), "found the number 5 where a list belongs");
         assert_eq!(wrong("{\"list\": [\"a\"]}"), "found the text \"a\" where a list of 2 belongs");
         assert_eq!(wrong("{\"list\": [[1]]}"), "found a list of 1 where a list of 2 belongs");
+        let number = from_str::<f64>("\"a\"").map_err(|cause| plain(&cause)).unwrap_err();
+        assert_eq!(number, "found the text \"a\" where a number belongs");
+        let whole = from_str::<u64>("1.5").map_err(|cause| plain(&cause)).unwrap_err();
+        assert_eq!(whole, "found the number 1.5 where a whole number, 0 or more, belongs");
         assert_eq!(wrong("{\"list\": [], \"name\": [1]}"), "found a list where a text belongs");
         assert_eq!(wrong("{\"lists\": []}"), "unknown field `lists`; known here: `list` or `name`");
         assert_eq!(wrong("{}"), "missing field `list`");

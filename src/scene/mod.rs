@@ -1,6 +1,7 @@
 //! Input documents: systems as a person writes them, as library types; JSON in which no key stands twice.
 
 pub(crate) mod json;
+pub(crate) mod kind;
 #[cfg(feature = "system")]
 mod system;
 

@@ -57,10 +57,10 @@ pub use closing::{COMPLETE_UP_TO, Closing, Found, Search, closings, closings_of}
 pub use edge::{Edge, Effort, Enclosure};
 pub use gap::{Gap, count_closings, entries};
 pub use peak::Peak;
-pub use question::{Listing, Progress, Range, StepWindow, Stiffness};
+pub use question::{Listing, Progress, StepWindow, Stiffness};
 pub use request::{Bounds, Request, Tongue, TongueEdge};
 pub use row::{ExactEdge, Law, Predicted, Resonance, Row, Side, Wanted};
-pub use select::{Labels, Selection};
+pub use select::{Labels, Range, Selection};
 pub use string::Entry;
 pub use survey::{Spread, Survey, Thin, survey};
 pub use tongues::Tongues;

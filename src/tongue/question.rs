@@ -2,7 +2,7 @@
 
 use super::gap::Gap;
 use super::request::{Request, Tongue};
-use super::select::Selection;
+use super::select::{Range, Selection};
 use super::tongues::Tongues;
 use crate::error::{Error, Result};
 use crate::number::{ExactSign, Laurent, Ratio, Rational, Sign};
@@ -16,9 +16,6 @@ pub struct Stiffness {
     /// The slow stiffness, where it was given in place of ρ.
     pub lambda2: Option<Laurent>,
 }
-
-/// A closed range of steps.
-pub type Range = (Laurent, Laurent);
 
 /// Closed ranges of h1 and h2.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -96,8 +93,8 @@ impl Stiffness {
 }
 
 impl StepWindow {
-    /// The range of s = h1² L1 for one ratio, from both ranges of steps: h1 = h2 q/p. Ends rounded outward.
-    fn of_ratio(&self, ratio: Ratio, lambda1: &Laurent) -> Option<(f64, f64)> {
+    /// The range of s = h1² L1 for one ratio, from both ranges of steps: h1 = h2 q/p.
+    fn of_ratio(&self, ratio: Ratio, lambda1: &Laurent) -> Option<Range> {
         let back = Laurent::from_rational(ratio.inverse().into());
         let from_h2 = self.h2.as_ref().map(|(lo, hi)| (lo * &back, hi * &back));
         let (lo, hi) = match (self.h1.clone(), from_h2) {
@@ -107,10 +104,10 @@ impl StepWindow {
         };
         let zero = Laurent::from_integer(0);
         if hi < lo.clone().max(zero.clone()) {
-            return Some((1.0, 0.0)); // empty
+            return Some((Laurent::from_integer(1), zero)); // empty
         }
         let s = |h1: Laurent| &(&h1 * &h1) * lambda1;
-        Some((s(lo.max(zero)).enclose_f64().0, s(hi).enclose_f64().1))
+        Some((s(lo.max(zero)), s(hi)))
     }
 }
 
@@ -166,7 +163,10 @@ impl Listing {
     fn of_ratio(&self, ratio: Ratio, watch: &dyn Progress) -> Result<Vec<Tongue>> {
         let tongues = Tongues::new(ratio, &self.stiffness.rho)?;
         let window = self.stiffness.lambda1.as_ref().and_then(|lambda1| self.window.of_ratio(ratio, lambda1));
-        let gaps = tongues.select(&Selection { s: window.or(self.selection.s), ..self.selection.clone() })?;
+        let gaps = tongues.select(&Selection {
+            s: window.or_else(|| self.selection.s.clone()),
+            ..self.selection.clone()
+        })?;
         watch.expect(gaps.len() as u64);
         let chunk = |gaps: &&[Gap]| {
             let answers = self.request.answers(&tongues, gaps);

@@ -1,25 +1,31 @@
 //! Which tongues: by label, by family, by a window of s. Only these are computed.
 //!
 //! ```
-//! use kickdrift::number::rational::ratio;
+//! use kickdrift::number::{Laurent, rational::ratio};
 //! use kickdrift::tongue::{Selection, Tongues};
 //! let tongues = Tongues::new("70/31".parse().unwrap(), &ratio(1, 25)).unwrap();
-//! let window = Selection { s: Some((2.30, 2.32)), ..Selection::default() };
+//! let [lo, hi] = [230, 232].map(|n| Laurent::from_rational(ratio(n, 100)));
+//! let window = Selection { s: Some((lo, hi)), ..Selection::default() };
 //! let found: Vec<u64> = tongues.select(&window).unwrap().iter().map(|gap| gap.m).collect();
 //! assert_eq!(found, [39]);
 //! assert!(tongues.effort().doubles < 20); // of 99 tongues
 //! ```
 
+use std::cmp::Ordering;
 use std::fmt;
 use std::str::FromStr;
 
-use super::edge::{Edges, counts};
+use super::edge::{Edge, Edges, counts};
 use super::gap::Gap;
 use super::string::MOST_KICKS;
 use super::string::lanes::LANES;
 use crate::error::{Error, Result};
 use crate::number::parse::{parse_integer, parse_integer_range};
+use crate::number::{Laurent, rational};
 use crate::resonance::dominant_family;
+
+/// A closed range of steps, or of s.
+pub type Range = (Laurent, Laurent);
 
 /// Labels as closed ranges, in writing `4`, `1,3`, `7..9` and such.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -66,8 +72,8 @@ pub struct Selection {
     /// Closed ranges of the dominant family's a and b.
     pub a: Option<(i64, i64)>,
     pub b: Option<(i64, i64)>,
-    /// A closed window of s, its ends rounded outward: tongues whose enclosure meets it.
-    pub s: Option<(f64, f64)>,
+    /// A closed window of s: the tongues that meet it, their edges included.
+    pub s: Option<Range>,
 }
 
 /// Where at least one in so many tongues of a range is wanted, all of it is computed side by side.
@@ -77,14 +83,18 @@ const DENSE: u64 = 3;
 const SLACK: f64 = 1e-6;
 
 impl Selection {
-    /// The tongues that begin below s = `limit`, and no other condition.
+    /// The tongues that begin at s = `limit` or below, and no other condition.
     pub fn below(limit: f64) -> Self {
-        Selection { s: Some((0.0, limit)), ..Selection::default() }
+        let limit = rational::from_f64_exact(limit).map(Laurent::from_rational);
+        Selection { s: limit.map(|limit| (Laurent::from_integer(0), limit)), ..Selection::default() }
     }
 
-    /// Whether a tongue meets the window of s.
-    pub(crate) fn meets_window(&self, gap: &Gap) -> bool {
-        self.s.is_none_or(|(lo, hi)| gap.lower.lo <= hi && gap.upper.is_none_or(|upper| lo <= upper.hi))
+    /// Whether a tongue meets the window of s, decided.
+    pub(crate) fn meets_window(&self, edges: &Edges, gap: &Gap) -> Result<bool> {
+        let Some((lo, hi)) = &self.s else { return Ok(true) };
+        let is_above = |edge: &Edge| edges.compare(edge, hi).map(Ordering::is_gt);
+        let ends_below = |edge: &Edge| edges.compare(edge, lo).map(Ordering::is_lt);
+        Ok(lo <= hi && !is_above(&gap.lower)? && !gap.upper.as_ref().map_or(Ok(false), ends_below)?)
     }
 
     /// That the labels asked for exist among 1 to `last` of p/q.
@@ -107,7 +117,8 @@ impl Selection {
     /// # Errors
     /// A window of s of a period too long to be laid out.
     pub(crate) fn labels(&self, edges: &Edges, last: u64) -> Result<Vec<u64>> {
-        let (first, last) = self.s.map_or(Ok((1, last)), |window| labels_within(edges, window, last))?;
+        let (first, last) =
+            self.s.as_ref().map_or(Ok((1, last)), |window| labels_within(edges, window, last))?;
         let within = |range: Option<(i64, i64)>, x: i64| range.is_none_or(|(lo, hi)| lo <= x && x <= hi);
         let wanted = |m: u64| {
             let listed = self.m.as_ref().is_none_or(|list| list.0.iter().any(|&(a, b)| a <= m && m <= b));
@@ -132,7 +143,8 @@ impl Selection {
 
 /// A range of labels among 1 to `last` that holds all tongues which meet the window: an edge with an index not above
 /// the count at its lower end lies below it, one with an index above the count at its upper end lies beyond.
-fn labels_within(edges: &Edges, (lo, hi): (f64, f64), last: u64) -> Result<(u64, u64)> {
+fn labels_within(edges: &Edges, (lo, hi): &Range, last: u64) -> Result<(u64, u64)> {
+    let (lo, hi) = (lo.enclose_f64().0, hi.enclose_f64().1);
     if hi < lo || hi <= 0.0 {
         return Ok((1, 0));
     }

@@ -88,7 +88,10 @@ pub fn survey(max_sum: u64, rho: &Rational, keep: usize) -> Result<Survey> {
         for row in rows {
             survey.count(row);
             if let (Some((a, _)), Some(law)) = (row.family, row.first_order) {
-                by_family.entry(a.unsigned_abs()).or_default().push(law.width_ratio);
+                by_family
+                    .entry(a.unsigned_abs())
+                    .or_default()
+                    .push(0.5 * (law.width_ratio.0 + law.width_ratio.1));
             }
         }
     }

@@ -5,6 +5,8 @@
 //! ⌈m/2⌉. For ρ > 0 there are p + q − 2 of them, and the last, m = p + q − 1, has no upper end. For ρ = 0 the slow clock is
 //! silent: all are closed, at p θ = m π, m < p, and m = p begins at the Verlet limit s = 4.
 
+use std::cmp::Ordering;
+
 use num_traits::Zero;
 
 use super::edge::{Edge, Edges, Effort, Enclosure};
@@ -133,8 +135,7 @@ impl Tongues {
             let run = self.gaps(from, upto)?;
             gaps.extend(run.into_iter().filter(|gap| labels.binary_search(&gap.m).is_ok()));
         }
-        gaps.retain(|gap| selection.meets_window(gap));
-        Ok(gaps)
+        kept(gaps, |gap| selection.meets_window(&self.edges, gap))
     }
 
     /// The tongues whose lower edge lies below s = `limit`; below 4 each clock is stable on its own.
@@ -143,9 +144,12 @@ impl Tongues {
     /// Where the schedule is too long.
     pub fn below(&self, limit: impl Into<f64>) -> Result<Vec<Gap>> {
         let limit = limit.into();
-        let mut gaps = self.select(&Selection::below(limit))?;
-        gaps.retain(|gap| gap.lower.lo < limit);
-        Ok(gaps)
+        let selection = Selection::below(limit);
+        let begins_below = |gap: &Gap| match &selection.s {
+            Some((_, limit)) => self.edges.compare(&gap.lower, limit).map(Ordering::is_lt),
+            None => Ok(true),
+        };
+        kept(self.select(&selection)?, begins_below)
     }
 
     /// That the labels asked for exist.
@@ -220,6 +224,15 @@ impl Tongues {
         }
         Err(Error::input("m", m, format!("{} has the tongues 1 to {}", self.ratio(), self.last())))
     }
+}
+
+/// The tongues of which something holds.
+fn kept(gaps: Vec<Gap>, holds: impl Fn(&Gap) -> Result<bool>) -> Result<Vec<Gap>> {
+    let kept = gaps.into_iter().filter_map(|gap| match holds(&gap) {
+        Ok(holds) => holds.then_some(Ok(gap)),
+        Err(error) => Some(Err(error)),
+    });
+    kept.collect()
 }
 
 /// The indices of an entry's edges in the tongues `from` ..= `upto`.

@@ -59,12 +59,13 @@ impl Decidable for Laurent {
     /// As for the rationals where both strengths are rational. Otherwise a strength of n powers of π gives the entries
     /// up to n more with each kick, and each of them meets all n.
     fn exact_cost(clocks: &TwoClocks<Laurent>, kicks: u64) -> u64 {
-        let powers = clocks.fast().terms().len().max(clocks.slow().terms().len()) as u64;
-        clocks
-            .as_rational()
-            .map_or(kicks.saturating_pow(3).saturating_mul(powers.saturating_pow(2)), |rational| {
-                Decidable::exact_cost(&rational, kicks)
-            })
+        if let Some(rational) = clocks.as_rational() {
+            return Decidable::exact_cost(&rational, kicks);
+        }
+        let strengths = [clocks.fast(), clocks.slow()];
+        let powers = strengths.iter().map(|own| own.terms().len()).max().unwrap_or(0) as u64;
+        let words = words(strengths.iter().flat_map(|own| own.terms()).map(|(_, c)| c));
+        kicks.saturating_pow(3).saturating_mul(powers.saturating_mul(words).saturating_pow(2))
     }
 
     /// By residues: exact arithmetic over Q\[π\] is dear, and its only zeros are polynomial identities.
@@ -85,9 +86,17 @@ impl Decidable for Rational {
     }
 
     /// The last few multiplications, of numbers as long as all strengths together, make up most of it.
-    fn exact_cost(_clocks: &TwoClocks<Rational>, kicks: u64) -> u64 {
-        kicks.saturating_add(kicks.saturating_mul(kicks) / 100)
+    fn exact_cost(clocks: &TwoClocks<Rational>, kicks: u64) -> u64 {
+        let digits = kicks.saturating_mul(words([clocks.fast(), clocks.slow()]));
+        digits.saturating_add(digits.saturating_mul(digits) / 100)
     }
+}
+
+/// How many machine words the longest of some strengths has, above and below the line.
+fn words<'a>(strengths: impl IntoIterator<Item = &'a Rational>) -> u64 {
+    let bits = strengths.into_iter().map(|k| k.numer().bits() + k.denom().bits()).max().unwrap_or(0);
+    // Strengths as people write them, two words, are what the costs were measured with.
+    (bits / 128).max(1)
 }
 
 /// Tr Q = 2 (AD + BC) over the rationals, in lowest terms, by the product tree.

@@ -54,6 +54,9 @@ const ACCURACY: i64 = 60;
 /// As many are enough of a period so long that its return maps decide: ten digits.
 const ACCURACY_OF_RETURNS: i64 = 34;
 
+/// Bits in which half turns are counted kick by kick: the orbit that grows is known ever better, so few do.
+const COUNTED: [u32; 4] = [128, 256, 512, 1024];
+
 /// The enclosures of a pair whose verdict is known.
 ///
 /// # Errors
@@ -104,6 +107,7 @@ impl Runs {
                 self.returned(&clocks.into(), u32::MAX, verdict, ACCURACY_OF_RETURNS)
         {
             go_on()?;
+            let label = if label.is_none() { counted(clocks, verdict, limits)? } else { label };
             return Ok(from_products(products, verdict, label));
         }
         let schedule = Schedule::two_clocks(ratio)?;
@@ -195,6 +199,19 @@ impl Runs {
             bits *= 2;
         }
     }
+}
+
+/// The label by kicks, where return maps lose the turns and the limits allow kicks. `None` where they do not, and unless hyperbolic.
+fn counted<S: Decidable>(clocks: &TwoClocks<S>, verdict: Verdict, limits: &Limits) -> Result<Option<u64>> {
+    let ratio = clocks.ratio();
+    if verdict.side() == 0 || refine::kicks(ratio) > limits.kicks {
+        return Ok(None);
+    }
+    let schedule = Schedule::two_clocks(ratio)?;
+    let quick = first_tier(clocks, &schedule).and_then(|ends| label(&ends, verdict));
+    let by_kicks = |bits: u32| from_nodes(&refine::run_at_any(clocks, &schedule, bits)?, verdict);
+    let found = quick.or_else(|| COUNTED.into_iter().find_map(by_kicks));
+    go_on().map(|()| found)
 }
 
 /// The first tier's run: in Floquet coordinates, or kick by kick where there are none.
@@ -289,4 +306,19 @@ fn component(value: f64, end: &filter::End) -> Ball {
     let length = between(1.0 - 1.4 * end.stretch, 1.0 + 1.4 * end.stretch);
     let (range, length) = (range.expect("finite"), length.expect("finite"));
     range.mul(&length, 128).scale2(end.exponent)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::number::rational::ratio;
+
+    #[test]
+    fn half_turns_are_counted_kick_by_kick_within_the_budget_alone() {
+        let clocks = TwoClocks::with_rho("7/3".parse().unwrap(), ratio(19, 8), ratio(1, 25));
+        let label = |verdict, kicks| counted(&clocks, verdict, &Limits { kicks }).unwrap();
+        assert_eq!(label(Verdict::Hyperbolic(Side::Plus), 100), Some(4));
+        assert_eq!(label(Verdict::Hyperbolic(Side::Plus), 4), None);
+        assert_eq!(label(Verdict::Elliptic, 100), None);
+    }
 }

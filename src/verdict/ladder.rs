@@ -1,5 +1,6 @@
 //! filter → refine → exact.
 
+use std::cell::Cell;
 use std::ops::RangeInclusive;
 use std::sync::OnceLock;
 
@@ -22,6 +23,9 @@ use crate::schedule::Schedule;
 /// The precisions of the refine tier in bits, as far as the exact tier is expected to cost more.
 const PRECISIONS: [u32; 3] = [128, 256, 512];
 
+/// The least precision in which kicks of any strength are followed.
+const PAST_THE_BOUND: u32 = 1024;
+
 /// The binary digits of the longest period that is tried: a power of one step takes as many squarings of numbers with three times as
 /// many digits, half a second here.
 const LONGEST_RATIO: u64 = 1 << 12;
@@ -41,6 +45,11 @@ pub fn decide<S: Decidable>(clocks: &TwoClocks<S>, limits: &Limits) -> Result<An
 /// As [`decide`].
 pub fn decide_from<S: Decidable>(first: Tier, clocks: &TwoClocks<S>, limits: &Limits) -> Result<Answer<S>> {
     let mut runs = Runs::default();
+    if first == Tier::Filter
+        && let Some(verdict) = lone::verdict(clocks)
+    {
+        return Ok(answer(verdict, Tier::Filter, clocks, limits, runs));
+    }
     if first != Tier::Exact && returns::is_worth(clocks.ratio(), 53) {
         let least = if first == Tier::Filter { 53 } else { 106 };
         if let Some((verdict, bits)) = by_returns(clocks, least..=256, &mut runs)? {
@@ -202,15 +211,12 @@ fn by_filter<S: Decidable>(
     Ok(ends.and_then(|ends| ends.signs().verdict()))
 }
 
-/// One clock alone in closed form, or kick by kick.
+/// Kick by kick.
 fn without_floquet<S: Decidable>(
     clocks: &TwoClocks<S>,
     limits: &Limits,
     runs: &mut Runs,
 ) -> Result<Option<Verdict>> {
-    if let Some(verdict) = lone::verdict(clocks) {
-        return Ok(Some(verdict));
-    }
     let schedule = Schedule::two_clocks(clocks.ratio())?;
     limits.allow(schedule.strikes() / 2, Tier::Filter)?;
     let ends = plain::run(clocks, &schedule);
@@ -233,14 +239,18 @@ fn by_refine<S: Decidable>(
     }
     let schedule = Schedule::two_clocks(ratio)?;
     limits.allow(refine::kicks(ratio), Tier::Refine)?;
+    let has_room = Cell::new(false);
     let mut verdict = |bits: u32| {
         let ends = refine::run_at_any(clocks, &schedule, bits)?;
+        has_room.set(true);
         let verdict = ends.signs().verdict();
         runs.refined = Some((ends, bits));
         verdict
     };
     let found = PRECISIONS.into_iter().find_map(&mut verdict);
     go_on()?;
+    // Kicks so strong that the bound has no room are decided by balls as a rule, and exact numbers are as long as they are strong.
+    let found = found.or_else(|| if has_room.get() { None } else { verdict(PAST_THE_BOUND) });
     if found.is_some() || !S::surely_nonzero(clocks) {
         return Ok(found);
     }

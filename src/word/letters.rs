@@ -63,7 +63,7 @@ pub struct Place {
     pub mirrored: String,
 }
 
-/// The cost of a step. Kicks without a drift between them share one evaluation, those at both ends of the step too.
+/// The cost of a step. Kicks without a drift between them share one evaluation and one gradient, those at both ends of the step too.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Cost {
     /// Evaluations of each force; the whole force is one where the word does not name two.
@@ -298,29 +298,20 @@ impl Word {
     /// The cost of a step.
     pub fn cost(&self) -> Cost {
         let (all, mut cost) = (self.joined(), Cost::default());
-        // A force evaluated at the end of a step is known at the beginning of the next one.
-        let mut known = fresh_at_end(&all);
+        // What is evaluated at the end of a step is known at the beginning of the next one.
+        let mut known = Known::at_end(&all, self.names_forces());
         for letter in &all {
             match letter {
-                Letter::Friction(_) => (),
-                Letter::Drift(_) => known = [false; 2],
-                Letter::Midpoint { .. } => {
-                    known = [false; 2];
-                    cost.solves += 1;
-                }
-                Letter::Flow { .. } => {
-                    known = [false; 2];
-                    cost.flows += 1;
-                }
-                Letter::Kick { filter, .. } if filter.zero => (),
-                Letter::Kick { force, powers, .. } => {
-                    cost.gradients += u64::from(powers.iter().skip(1).any(|c| !c.is_zero()));
-                    for i in indices(*force, self.names_forces()) {
-                        cost.evaluations[i] += u64::from(!known[i]);
-                        known[i] = true;
-                    }
-                }
+                Letter::Midpoint { .. } => cost.solves += 1,
+                Letter::Flow { .. } => cost.flows += 1,
+                _ => (),
             }
+            if letter.moves() {
+                known = Known::default();
+            }
+            let [first, second, gradients] = known.kicked(letter, self.names_forces());
+            cost.evaluations = [cost.evaluations[0] + first, cost.evaluations[1] + second];
+            cost.gradients += gradients;
         }
         cost
     }
@@ -335,22 +326,42 @@ fn indices(force: Force, named: bool) -> std::ops::Range<usize> {
     }
 }
 
-/// Which forces are known at the end of a step, x not having moved since; none where x never moves.
-fn fresh_at_end(all: &[Letter]) -> [bool; 2] {
-    let mut known = [false; 2];
-    if !all.iter().any(Letter::moves) {
-        return known;
-    }
-    for letter in all.iter().rev().take_while(|letter| !letter.moves()) {
-        if let Letter::Kick { force, .. } = letter {
-            match force {
-                Force::All => known = [true; 2],
-                Force::First => known[0] = true,
-                Force::Second => known[1] = true,
-            }
+/// The forces and the gradients that were evaluated since x moved.
+#[derive(Default)]
+struct Known {
+    forces: [bool; 2],
+    gradients: Vec<(Force, Filter)>,
+}
+
+impl Known {
+    /// Those at the end of a step; none where x never moves.
+    fn at_end(all: &[Letter], named: bool) -> Known {
+        let mut known = Known::default();
+        if all.iter().any(Letter::moves) {
+            let since = all.iter().rev().take_while(|letter| !letter.moves());
+            since.for_each(|letter| {
+                known.kicked(letter, named);
+            });
         }
+        known
     }
-    known
+
+    /// Evaluations of either force and gradients that a letter asks for beyond what is known, which is known from then on.
+    fn kicked(&mut self, letter: &Letter, named: bool) -> [u64; 3] {
+        let (Letter::Kick { force, filter, powers }, mut new) = (letter, [0; 3]) else { return [0; 3] };
+        if filter.zero {
+            return new;
+        }
+        for i in indices(*force, named) {
+            new[i] = u64::from(!std::mem::replace(&mut self.forces[i], true));
+        }
+        let key = (*force, *filter);
+        if powers.iter().skip(1).any(|c| !c.is_zero()) && !self.gradients.contains(&key) {
+            self.gradients.push(key);
+            new[2] = 1;
+        }
+        new
+    }
 }
 
 /// Adds a letter at the end, joined to what it touches.

@@ -358,3 +358,61 @@ fn the_readme_is_short() {
     let readme = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/README.md")).unwrap();
     assert!(readme.lines().count() <= 150);
 }
+
+#[test]
+fn digits_asked_for_shorten_the_numbers_of_a_text_that_is_all_summary() {
+    let whole = stdout(&words(UNSTABLE, &[]));
+    let short = stdout(&words(UNSTABLE, &["--digits", "4"]));
+    let longest = |text: &str| {
+        let uncertain = text.split_whitespace().filter(|word| word.contains('(') && word.contains('.'));
+        uncertain.map(|word| word.chars().filter(char::is_ascii_digit).count()).max()
+    };
+    // Four digits, one of their error.
+    assert!(longest(&whole) > Some(12) && longest(&short) <= Some(5), "{whole}{short}");
+    assert_eq!(whole.lines().count(), short.lines().count());
+}
+
+/// 1/100 is no double: its nearest one is the one point.
+#[test]
+fn a_range_of_one_step_has_one_point_of_each_curve() {
+    let line = "curves --h1-range 1/100..1/100 --a 0..1 --b 1..2 --format csv";
+    let points: Vec<String> = stdout(&words(line, &[])).lines().skip(1).map(String::from).collect();
+    assert_eq!(points.len(), 2, "{points:?}");
+    assert!(points.iter().all(|row| row.split(',').nth(2) == Some("0.01")), "{points:?}");
+}
+
+/// h2 at a thousand places of curves far from the resonance, where 1e-14 is less than doubles can hold.
+#[test]
+fn points_of_curves_are_the_nearest_doubles_and_hold_the_curve_to_what_doubles_can() {
+    let curves = json(&words("curves --a 900..901 --b -3..-2 --samples 9", &[]));
+    let mut seen = 0;
+    for curve in curves["curves"].as_array().unwrap() {
+        let (a, b) = (curve["a"].as_f64().unwrap(), curve["b"].as_f64().unwrap());
+        for point in curve["points"].as_array().unwrap() {
+            let [h1, h2, share] = ["h1", "h2", "theta_over_pi"].map(|key| point[key].as_f64().unwrap());
+            // b h1/h2 in doubles has two more roundings of a number of size a.
+            assert!((share - (a + b * h1 / h2)).abs() <= f64::EPSILON * (2.0 * a + 2.0), "{point}");
+            seen += 1;
+        }
+    }
+    assert!(seen > 4, "{seen}");
+}
+
+#[test]
+fn what_is_refused_for_its_cost_names_a_budget_that_is_taken() {
+    let refused = |line: &str| run(&words(line, &[])).stderr;
+    // 10^10 kicks: hours.
+    let told = refused("compare --max-sum 500 --samples 999 --rho 1/25");
+    assert!(told.contains("kicks") && told.contains("--budget "), "{told}");
+    let told = refused("compare --max-sum 6 --rho 1/25 --samples 10 --budget 1000");
+    let budget = told.split("--budget ").nth(1).unwrap().split(',').next().unwrap().to_string();
+    let taken = run(&words("compare --max-sum 6 --rho 1/25 --samples 10 --quiet --budget", &[&budget]));
+    assert_eq!(taken.code, Some(0), "{}", taken.stderr);
+    // Beyond what any budget counts.
+    let [p, q, most] = ["4611686018427387903", "4611686018427387902", "18446744073709551615"];
+    for line in ["polynomial", "half --s 1 --rho 1"] {
+        let ended = run(&words(&format!("{line} --ratio {p}/{q} --budget {most}"), &[]));
+        assert_eq!(ended.code, Some(2), "{}", ended.stderr);
+        assert!(ended.stderr.contains("choose") && !ended.stderr.contains("--budget"), "{}", ended.stderr);
+    }
+}

@@ -60,7 +60,7 @@ fn texts_that_are_no_numbers() {
         ("2^(1/2)", ["lambda2 = 2^(1/2): ", "integer"]),
         ("9^9^9", ["lambda2 = 9^9^9: ", "parentheses"]),
         ("9^999999999", ["lambda2 = 9^999999999: ", "smaller power"]),
-        ("1+\nx", ["lambda2 = 1+ x: ", "no name but pi"]),
+        ("1+\nx", ["lambda2 = 1+ x: ", "have none but pi"]),
         ("\u{1b}[31m", ["lambda2 = ", "unexpected"]),
     ] {
         refused(&desk, &verdict("10", text, "1", "1"), &parts);

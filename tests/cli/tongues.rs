@@ -286,3 +286,48 @@ fn traces_and_widths_are_drawn() {
         );
     }
 }
+
+#[test]
+fn a_window_of_steps_ends_where_it_is_said_to_end() {
+    let count = |h1: &str, h2: &str| {
+        let line = format!("tongues --ratio 2/1 --rho 1 --lambda1 2/3 {h1} {h2}");
+        rows(&line).len()
+    };
+    // The first tongue begins at h1 = 1, h2 = 2 exactly.
+    assert_eq!(count("--h1-range 0..0.9999999999999999", ""), 0);
+    assert_eq!(count("--h1-range 0..1", ""), 1);
+    assert_eq!(count("", "--h2-range 0..1.99999999999999999999"), 0);
+    assert_eq!(count("", "--h2-range 0..2"), 1);
+}
+
+/// 3/2, m = 1: s = 4 sin²(pi/6) = 1. And the law at rho = 1e-9, whose tongue is not known to the digits that it misses.
+#[test]
+fn points_and_laws_are_the_nearest_doubles_and_what_they_miss_is_enclosed() {
+    let line = "tongues --ratio 3/2 --rho 2/3 --columns predicted,first-order";
+    let [first, second] = [0, 1].map(|k| rows(line)[k].clone());
+    assert_eq!(first["predicted"]["s"], 1.0);
+    assert_eq!(second["predicted"]["s"], 3.0);
+    // By hand: s (1 - rho S0) and 2 s rho |S| with S0 = 7/8, |S| = 1/8.
+    assert_eq!(first["first_order"]["centre"], 5.0 / 12.0);
+    assert_eq!(first["first_order"]["width"], 1.0 / 6.0);
+    let law = &rows("tongues --ratio 3/2 --rho 1e-9 --columns first-order")[0]["first_order"];
+    let ends = |key: &str| ["lo", "hi"].map(|end| law[key][end].as_f64().unwrap());
+    // To second order the tongue of 3/2 is off by some rho², far below what the edges' doubles tell.
+    for key in ["centre_error", "width_error"] {
+        let [lo, hi] = ends(key);
+        assert!(lo < 0.0 && 0.0 < hi && hi - lo < 1e-14, "{key}: {law}");
+    }
+    let [lo, hi] = ends("width_ratio");
+    assert!(lo <= 1.0 && 1.0 <= hi && hi - lo < 1e-5, "{law}");
+}
+
+#[test]
+fn the_survey_in_csv_has_the_digits_of_json() {
+    let line = "tongues --survey --max-sum 9 --rho 1/25";
+    let document = json(&words(line, &[]));
+    let table = stdout(&words(line, &["--format", "csv"]));
+    let medians: Vec<f64> =
+        table.lines().skip(1).map(|row| row.split(',').nth(4).unwrap().parse().unwrap()).collect();
+    let told = document["width_ratios"].as_array().unwrap().iter().map(|row| row["median"].as_f64().unwrap());
+    assert_eq!(medians, told.collect::<Vec<f64>>());
+}

@@ -258,6 +258,39 @@ fn a_lie_is_one_line_on_standard_error() {
     assert_eq!(ended.stderr.lines().count(), 1, "{}", ended.stderr);
 }
 
+/// A document of one row has no other rows to count, and is named itself.
+#[test]
+fn a_lie_in_a_document_without_rows_names_the_document_and_counts_its_values() {
+    let desk = Desk::new();
+    let mut document = write(&desk, "verdict --lambda1 10 --lambda2 2/5 --h1 1/100 --h2 9/10", "d.json");
+    (document["p"], document["q"]) = (json!(5), json!(7));
+    desk.write("d.json", &document.to_string());
+    let told = desk.run(&["verify", "d.json"]).stderr;
+    assert!(
+        told.starts_with("kickdrift: document = ") && told.contains("(2 values of d.json differ)"),
+        "{told}"
+    );
+    assert!(!told.contains("rows") && !told.contains("= :"), "{told}");
+}
+
+#[test]
+fn a_file_of_another_kind_names_the_command_that_reads_it() {
+    let desk = Desk::new();
+    desk.write("scene.json", r#"{"schema": "kickdrift/scene/1", "want": []}"#);
+    desk.write("system.json", r#"{"schema": "kickdrift/system/1", "masses": []}"#);
+    write(&desk, "half --ratio 5/3 --s 11/4 --rho 1/25", "half.json");
+    for (line, part) in [
+        ("run system.json", "is a system: kickdrift system FILE"),
+        ("system scene.json", "is a scene: kickdrift run FILE"),
+        ("advise scene.json", "is a scene: kickdrift run FILE"),
+        ("run half.json", "is an answer of kickdrift: kickdrift verify FILE"),
+        ("system half.json", "is an answer of kickdrift: kickdrift verify FILE"),
+    ] {
+        let ended = desk.run(&words(line, &[]));
+        assert!(ended.code == Some(2) && ended.stderr.contains(part), "{line}: {}", ended.stderr);
+    }
+}
+
 /// An enclosure moved as a whole.
 fn by_both(enclosure: &Value, moved: &dyn Fn(&Value, f64) -> Value, by: f64) -> Value {
     json!({"lo": moved(&enclosure["lo"], by), "hi": moved(&enclosure["hi"], by)})
@@ -268,12 +301,16 @@ fn what_cannot_be_rechecked_is_told() {
     let desk = Desk::new();
     desk.write("verify.json", r#"{"schema": "kickdrift/verify/1"}"#);
     desk.write("text.json", "no JSON");
+    desk.write("scene.json", r#"{"schema": "kickdrift/scene/1", "want": []}"#);
+    desk.write("system.json", r#"{"schema": "kickdrift/system/1", "masses": []}"#);
     desk.write("bare.json", r#"{"schema": "kickdrift/tongues/1"}"#);
     for (file, parts) in [
         ("verify.json", &["kickdrift/verify/1", "one of tongues, closings, survey"][..]),
         ("text.json", &["document = no JSON", "as kickdrift wrote them"]),
         ("bare.json", &["document = not as kickdrift writes it: missing field `input`"]),
         ("none.json", &["none.json", "cannot read it"]),
+        ("scene.json", &["is a scene: kickdrift run FILE"]),
+        ("system.json", &["is a system: kickdrift system FILE"]),
     ] {
         let ended = desk.run(&["verify", file]);
         assert_eq!((ended.code, ended.stdout.as_str()), (Some(2), ""), "{file}");

@@ -243,3 +243,79 @@ fn exact_arithmetic_tells_what_many_powers_of_pi_cost() {
             .is_some_and(|cost| cost > limits.kicks)
     );
 }
+
+/// Half turns a period, kick by kick in doubles: after one period any start has turned into the solution that grows, if it grows much,
+/// and x is linear between kicks, so each change of its sign shows at the next kick.
+fn half_turns(p: u64, q: u64, fast: f64, slow: f64) -> u64 {
+    let (mut x, mut v, mut changes) = (1.0_f64, 0.3_f64, 0);
+    for _ in 0..2 {
+        let (mut now, mut next, mut changed) = (0, [0, 0], 0);
+        while now < p * q {
+            // In ticks of 1/q the fast clock strikes every q, the slow one every p.
+            v -= x * (if next[0] == now { fast } else { 0.0 } + if next[1] == now { slow } else { 0.0 });
+            next = [(now / q + 1) * q, (now / p + 1) * p];
+            let until = next[0].min(next[1]);
+            let before = x;
+            x += v * (until - now) as f64 / q as f64;
+            changed += u64::from(x * before < 0.0);
+            now = until;
+            let size = x.hypot(v);
+            (x, v) = (x / size, v / size);
+        }
+        changes = changed;
+    }
+    changes
+}
+
+/// Both clocks beyond their own limits, or the fast one, or none: labels of long periods come from return maps, or from kicks where these
+/// lose the turns.
+#[test]
+fn hyperbolic_pairs_of_long_periods_have_the_label_that_their_kicks_count() {
+    let mut seed = 7u64;
+    let mut random = |n: u64| {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 33) % n
+    };
+    let mut seen = 0;
+    while seen < 40 {
+        let (p, q) = (16_384 + random(9000), 16_384 + random(9000));
+        let (s, rho) = (ratio(1 + random(160) as i64, 10), ratio(1 + random(30) as i64, 10));
+        if p.gcd(&q) != 1 {
+            continue;
+        }
+        let clocks = TwoClocks::with_rho(Ratio::new(p, q).unwrap(), s, rho);
+        let answer = decide(&clocks, &Limits::default()).unwrap();
+        let growth = answer.growth().unwrap();
+        // By e^50 and more, so that what decays is below a rounding after one period.
+        if growth.ln_multiplier.as_ref().is_none_or(|ln| ln.mid_f64() < 50.0) {
+            continue;
+        }
+        let [fast, slow] = [clocks.fast(), clocks.slow()].map(|k| k.enclosure(64).mid_f64());
+        assert_eq!(growth.label, Some(half_turns(p, q, fast, slow)), "{p}/{q} {clocks:?}");
+        seen += 1;
+    }
+    let at = |p, q| TwoClocks::with_rho(Ratio::new(p, q).unwrap(), ratio(8, 1), ratio(1, 8));
+    assert_eq!(decide(&at(16411, 16421), &Limits::default()).unwrap().label().unwrap(), Some(16411));
+}
+
+/// Strengths of 83,000 bits: balls tell the signs, and exact arithmetic says what their digits cost before it begins.
+#[test]
+fn long_strengths_cost_what_their_digits_do() {
+    let x = |text| parse::parse("x", text).unwrap();
+    let clocks =
+        Oscillator::new(x("1e25000"), x("1e25000"), x("1"), x("1001/1000")).unwrap().clocks().unwrap();
+    let answer = decide(&clocks, &Limits::default()).unwrap();
+    assert_eq!((answer.verdict.kind(), answer.decided_by), (Kind::Hyperbolic, Tier::Refine));
+    let error = decide_from(Tier::Exact, &clocks, &Limits::default()).unwrap_err();
+    assert!(error.needed() > Some(Limits::default().kicks), "{error}");
+}
+
+/// 10^8 kicks of one clock, whose period is no longer for the other one.
+#[test]
+fn a_clock_beside_one_that_does_nothing_is_decided_in_closed_form() {
+    let at = |p, q, s| kind_at(p, q, ratio(s, 1), ratio(0, 1));
+    assert_eq!(at(49_999_991, 49_999_989, 4), (Kind::Parabolic, -1));
+    assert_eq!(at(600_000, 100_003, 1), (Kind::Coexistence, 1));
+    assert_eq!(at(600_001, 100_003, 1), (Kind::Elliptic, 0));
+    assert_eq!(at(600_001, 100_003, 0), (Kind::Parabolic, 1));
+}

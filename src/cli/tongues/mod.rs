@@ -137,7 +137,9 @@ impl Args {
         common.apart_from_output("certificate", path)?;
         let rho = self.stiffness()?.rho;
         let one = |remedy| Error::input("--certificate", path.display(), remedy);
-        let [ratio] = self.ratios()?.list()[..] else { return Err(one("is for one ratio")) };
+        let [ratio] = self.ratios()?.list()[..] else {
+            return Err(one("is for one ratio: give --ratio P/Q"));
+        };
         within(ratio.kicks(), EDGES_WORTH_CERTIFYING, common.budget)?;
         let gaps = Tongues::new(ratio, &rho)?
             .select(&Selection { m: self.asked.m.clone(), ..Selection::default() })?;
@@ -214,7 +216,11 @@ impl Args {
 
     fn ratios(&self) -> Result<Ratios> {
         match (&self.ratio[..], self.max_sum) {
-            ([_, second, ..], None) => Err(Error::input("ratio", second, "is one too many: give one")),
+            ([_, second, ..], None) => Err(Error::input(
+                "ratio",
+                second,
+                "is a second ratio, and tables are of one: ask for each alone, or for all by --max-sum",
+            )),
             (named, max_sum) => Ratios::of(named.first().copied(), max_sum)?.within(MOST_SUM),
         }
     }

@@ -240,3 +240,22 @@ fn what_is_below_the_least_exponent_becomes_a_ball_about_zero() {
     let long = Ball::from_integer(&((BigInt::one() << 200) - 1)).scale2(-MAX_EXPONENT - 100);
     assert!(long.top().unwrap() >= -MAX_EXPONENT + 100);
 }
+
+/// A third, its double's neighbours, and the middle between two doubles with an error on either side of it.
+#[test]
+fn the_nearest_double_is_that_of_the_number_and_not_the_one_below() {
+    let third = |bits| Ball::from_rational(&ratio(2, 3), bits);
+    assert_eq!(Ball::nearest_f64(third), 2.0 / 3.0);
+    assert_eq!(third(200).mid_f64(), 2.0 / 3.0);
+    assert_eq!(third(200).neg().mid_f64(), -2.0 / 3.0);
+    // 1 + 2^-53 + 2^-200: bits up to 192 leave it open, and it lies nearer to the double above.
+    let one = BigInt::from(1);
+    let number = Rational::new((&one << 200usize) + (&one << 147usize) + 1, &one << 200usize);
+    let seen = std::cell::Cell::new(0);
+    let nearest = Ball::nearest_f64(|bits| {
+        seen.set(bits);
+        Ball::from_rational(&number, bits)
+    });
+    assert_eq!((nearest, seen.get() > 192), (1f64.next_up(), true));
+    assert_eq!(Ball::from_rational(&ratio(1, 1), 64).scale2(5000).mid_f64(), f64::MAX);
+}

@@ -194,7 +194,7 @@ impl Parser<'_> {
         Err(match name.to_lowercase().as_str() {
             "nan" | "inf" | "infinity" => "is not a number; write a finite one such as 3/10".into(),
             _ => format!(
-                "knows no name but pi, found {}; write digits and pi, as in pi^2/25",
+                "has the name {}, and numbers have none but pi; write digits and pi, as in pi^2/25",
                 name.chars().take(20).collect::<String>()
             ),
         })

@@ -2,7 +2,8 @@
 //!
 //! The angle is kept as whole turns and the direction in which the vector now points, so it is exact however large it is.
 //! Lifts compose: G after F turns (1, 0) by φ_F + φ_G + δ, δ the difference between how far G turns F(1, 0) and how far it
-//! turns (1, 0). A lift is increasing and commutes with half turns, so |δ| < π, and δ is known from directions alone.
+//! turns (1, 0). A lift is increasing and commutes with half turns, so −ψ < δ < π − ψ, ψ the direction of F(1, 0) less half
+//! turns, and δ is known from directions alone.
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
 
@@ -64,10 +65,19 @@ impl Turn {
     pub fn then(self, later: Turn, angle: f64) -> Option<Turn> {
         let difference = principal(angle - self.angle - later.angle);
         // Three directions, each within CERTAIN.
-        (difference.abs() < PI - 4.0 * CERTAIN).then(|| {
-            let turn = self.on(later.angle + difference, angle);
-            Turn { whole: turn.whole + later.whole, ..turn }
-        })
+        let is_certain = difference.abs() < PI - 4.0 * CERTAIN;
+        let difference = if is_certain { difference } else { self.nearly_opposite(difference)? };
+        let turn = self.on(later.angle + difference, angle);
+        Some(Turn { whole: turn.whole + later.whole, ..turn })
+    }
+
+    /// The difference δ, known but for a whole turn, where it is nearly a half turn: δ + ψ lies between 0 and π. `None` where ψ is next to
+    /// one of them.
+    #[cold]
+    fn nearly_opposite(self, difference: f64) -> Option<f64> {
+        let psi = self.angle.rem_euclid(PI);
+        let is_apart = (4.0 * CERTAIN..PI - 4.0 * CERTAIN).contains(&psi);
+        is_apart.then(|| principal(difference + psi - FRAC_PI_2) + FRAC_PI_2 - psi)
     }
 
     /// After a shear, which turns by less than π, and clockwise where that is said.
@@ -98,5 +108,37 @@ mod tests {
             let lost = principal(angle([3.0 * x, 3.0 * y]) - turn).abs();
             assert!(lost < NEAR - 3e-5, "{turn}: {lost}");
         }
+    }
+
+    /// A hyperbolic matrix draws nearly every direction to one axis, those beside the other axis to either end of it.
+    #[test]
+    fn lifts_compose_where_directions_are_nearly_opposite() {
+        let mut decided = 0;
+        for first in (1..314).map(|k| f64::from(k) / 100.0) {
+            // The axis that repels stands between (1, 0) and the vector, or beyond it.
+            for repelling in (1..314).map(|k| f64::from(k) / 100.0) {
+                let image = |angle: f64| {
+                    let ((y, x), (sine, cosine)) = (angle.sin_cos(), repelling.sin_cos());
+                    let (along, across) = (x * cosine + y * sine, y * cosine - x * sine);
+                    (across * 1e6).atan2(along * 1e-6)
+                };
+                // A symmetric positive matrix turns nothing by a right angle, and as much on the way from the identity.
+                let turned = |angle: f64| principal(image(angle) + repelling - angle);
+                let (start, end) = (turned(0.0), turned(first));
+                if [start, end].iter().any(|turn| turn.abs() > FRAC_PI_2 - 1e-9) {
+                    continue;
+                }
+                let [one, later] = [first, start].map(|angle| Turn { whole: 0, angle });
+                let total = first + end;
+                let Some(found) = one.then(later, principal(total)) else { continue };
+                assert!(
+                    (TAU * found.whole as f64 + found.angle - total).abs() < 1e-9,
+                    "{first}, {repelling}"
+                );
+                decided += 1;
+            }
+        }
+        // All but those beside the first axis.
+        assert!(decided > 90_000, "{decided}");
     }
 }

@@ -53,13 +53,19 @@ impl Question for Word {
             if let (Some(h), Some(lambda1)) = (&self.h, &self.lambda1) {
                 let friction = self.friction.clone().unwrap_or_else(Laurent::zero);
                 let at = Enclosed::new(&word, lambda1, &lambda2, &friction).at(h);
-                found = Some(at.ok_or_else(|| Error::input("h", h, "a filter has a pole at this step"))?);
+                found = Some(at.ok_or_else(|| {
+                    Error::input("h", h, "a filter has a pole at this step: choose another one")
+                })?);
             }
         } else if let Some(rho) = &rho {
             let product = word.polynomials(&Forces::ratio(rho));
             stability = Some(Stability::of(&product));
             let pole = |h: &Laurent| {
-                Error::input("h", h, "a midpoint has no solution at this step: its force is negative")
+                Error::input(
+                    "h",
+                    h,
+                    "a midpoint has no solution at this step, its force being negative: choose another one",
+                )
             };
             found = match (&s, &self.h) {
                 (Some(s), Some(h)) => Some(at(&product, s).ok_or_else(|| pole(h))?),

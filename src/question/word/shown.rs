@@ -63,7 +63,7 @@ impl Linted {
     /// What its letters alone say.
     fn identity(&self) -> Vec<Line> {
         let sums: Vec<String> =
-            self.sums.iter().map(|(name, sum)| format!("{name} {}", shown(sum))).collect();
+            self.sums.iter().map(|(name, sum)| format!("{name} {}", beside_one(sum))).collect();
         let consistent = if self.word.is_consistent() { "yes" } else { "no" };
         let consistent = format!("{consistent}: the coefficients sum to {}", sums.join(", "));
         let palindrome = self.word.asymmetry().map_or("yes".into(), |place| {
@@ -207,6 +207,17 @@ fn shown(x: &Radical) -> String {
     const SHORT: usize = 24;
     let text = x.text(ToString::to_string);
     if text.len() <= SHORT { text } else { format!("{:.6e}", x.enclosure(64).mid_f64()) }
+}
+
+/// A sum that should be 1: what it lacks, where that is little.
+fn beside_one(sum: &Radical) -> String {
+    const LITTLE: f64 = 1e-5;
+    let rest = Ball::nearest_f64(|bits| sum.enclosure(bits).sub(&Ball::one(), bits));
+    match rest {
+        0.0 => shown(sum),
+        rest if rest.abs() < LITTLE => format!("1 {} {:.1e}", if rest < 0.0 { '-' } else { '+' }, rest.abs()),
+        _ => shown(sum),
+    }
 }
 
 /// The entries of a word's document.

@@ -64,7 +64,11 @@ impl Recheck for Claim {
 
     fn check(&self, SystemAnswer { scene, found }: SystemAnswer, context: &Context) -> Result<Outcome> {
         let Found::Intervals(found) = found else {
-            return Err(Error::input("input.intervals", "missing", "a document of intervals has some"));
+            return Err(Error::input(
+                "input.intervals",
+                "missing",
+                "a document of intervals says of what: whole documents, as kickdrift wrote them, can be rechecked",
+            ));
         };
         let of = self.stretches.len() as u64;
         let (mut failures, mut stretches) = (Vec::new(), Vec::new());

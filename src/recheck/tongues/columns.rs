@@ -180,32 +180,40 @@ impl FirstOrder {
         };
         let here = at(near_s.clone(), Rational::zero());
         let (beside, stronger) = (at(&near_s + &small, Rational::zero()), at(near_s.clone(), small));
-        let slope = |k: usize| -rational::to_f64(&((&stronger[k] - &here[k]) / (&beside[k] - &here[k])));
-        let (rho, s) = (rational::to_f64(rho), rational::to_f64(&near_s));
+        let slope = |k: usize| -((&stronger[k] - &here[k]) / (&beside[k] - &here[k]));
         let shifts = [rho * slope(0), rho * slope(1)];
-        let (centre, law) = (s + 0.5 * (shifts[0] + shifts[1]), (shifts[0] - shifts[1]).abs());
-        let reach = shifts[0].abs() + shifts[1].abs();
-        // The law is the sum of q terms of size 1 in doubles.
-        let off = 1e-12 * reach;
-        let ulps = 8.0 * f64::EPSILON * s;
+        let two = Rational::from_integer(2.into());
+        let (centre, law) = (&near_s + (&shifts[0] + &shifts[1]) / &two, (&shifts[0] - &shifts[1]).abs());
+        // What the slopes leave open.
+        let off = (shifts[0].abs() + shifts[1].abs()) * fraction(1, 1 << 60);
+        let [s, width_of_law, slack] = [&near_s, &law, &off].map(rational::to_f64);
         let close = |said: f64, truth: f64, by: f64| (said - truth).abs() <= by;
-        holds(close(self.centre, centre, off + ulps), || format!("the law's centre is {centre}"))?;
-        holds(close(self.width, law, off), || format!("the law's width is {law}"))?;
+        let middle = rational::to_f64(&centre);
+        holds(close(self.centre, middle, f64::EPSILON * s), || format!("the law's centre is {middle}"))?;
+        let by = slack + f64::EPSILON * width_of_law;
+        holds(close(self.width, width_of_law, by), || format!("the law's width is {width_of_law}"))?;
         // Half the width in p θ: ds = 2 sin θ dθ.
         let turn = p as f64 / (4.0 * (PI * m as f64 / p as f64).sin());
-        let ln = law * turn;
-        holds(close(self.ln_multiplier, ln, off * turn + ROUNDED * ln), || {
+        let ln = width_of_law * turn;
+        holds(close(self.ln_multiplier, ln, slack * turn + ROUNDED * ln), || {
             format!("the law's growth is {ln}")
         })?;
-        let middle =
-            0.25 * [&lower.zero, &upper.zero].iter().map(|z| rational::to_f64(&(&z.lo + &z.hi))).sum::<f64>();
-        let error = middle - self.centre;
-        holds(close(self.centre_error, error, ulps), || format!("the centre is off by {error}"))?;
-        // The tongue's own width lies in its enclosure.
-        let (lo, hi, slack) = (width.lo, width.hi, ROUNDED * (width.hi + self.width));
-        let error = (lo - self.width - slack..=hi - self.width + slack).contains(&self.width_error);
-        holds(error, || "width_error is not width - law".into())?;
-        let ratio = ((lo - slack) / self.width..=(hi + slack) / self.width).contains(&self.width_ratio);
-        holds(ratio, || "width_ratio is not width/law".into())
+        // What is enclosed meets what this route finds, and is no wider than the edges and the width are known.
+        let meets = |name: &str, said: Ends, [least, most]: [Rational; 2], widest: f64| {
+            let (lo, hi) = said.exact()?;
+            let is_close = said.hi - said.lo <= widest;
+            holds(lo <= most && least <= hi && is_close, || {
+                format!("{name} lies between {} and {}", rational::to_f64(&least), rational::to_f64(&most))
+            })
+        };
+        let [lower, upper] = [&lower.zero, &upper.zero];
+        let middles = [(&lower.lo + &upper.lo) / &two, (&lower.hi + &upper.hi) / &two];
+        let [least, most] = middles.map(|middle| middle - &centre);
+        meets("centre_error", self.centre_error, [least - &off, most + &off], 16.0 * f64::EPSILON * s)?;
+        let (lo, hi) = width.exact()?;
+        let widest = (width.hi - width.lo) + 4.0 * f64::EPSILON * (width.hi + width_of_law);
+        meets("width_error", self.width_error, [&lo - &law - &off, &hi - &law + &off], widest)?;
+        let ends = [lo / (&law + &off), hi / (&law - &off)];
+        meets("width_ratio", self.width_ratio, ends, 2.0 * widest / width_of_law)
     }
 }

@@ -90,8 +90,8 @@ impl Claim {
         Ok(met.iter().map(|gap| gap.m).filter(|m| labels.binary_search(m).is_ok()).collect())
     }
 
-    /// The window of s = h1² L1, its ends rounded outward: h1 = h2 q/p.
-    fn window(&self, ratio: Ratio) -> Option<(f64, f64)> {
+    /// The window of s = h1² L1: h1 = h2 q/p.
+    fn window(&self, ratio: Ratio) -> Option<StepRange> {
         let lambda1 = self.input.lambda1.as_ref()?;
         let back = Laurent::from_rational(ratio.inverse().into());
         let of_h1 = self.input.h1_range.clone();
@@ -102,9 +102,9 @@ impl Claim {
         };
         let zero = Laurent::from_integer(0);
         if hi < lo || hi < zero {
-            return Some((1.0, 0.0)); // empty
+            return Some((Laurent::from_integer(1), zero)); // empty
         }
         let s = |h1: Laurent| &(&h1 * &h1) * lambda1;
-        Some((s(lo.max(zero)).enclose_f64().0, s(hi).enclose_f64().1))
+        Some((s(lo.max(zero)), s(hi)))
     }
 }

@@ -77,8 +77,8 @@ rows! {
         pub centre: f64,
         pub width: f64,
         pub ln_multiplier: f64,
-        pub centre_error: f64,
-        pub width_error: f64,
-        pub width_ratio: f64,
+        pub centre_error: Ends,
+        pub width_error: Ends,
+        pub width_ratio: Ends,
     }
 }

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use plot::palette::{CAUTION, INK, PARABOLIC, SAFE, SAMPLED, UNSTABLE, WHITE};
-use plot::{Anchor, Axis, Figure, Foot, Hatch, Layer, Note, Panel, Place, Shape, Stroke, Tick};
+use plot::{Anchor, Axis, Figure, Foot, Hatch, Layer, Note, Panel, Place, Shape, Stroke, Tick, literal};
 
 use crate::advise::unit::{TimeUnit, decimal};
 use crate::advise::{
@@ -120,7 +120,7 @@ fn mode(advice: &Advice, answer: &Answer, own: &Row) -> Line {
     let first = own.first.iter().filter(|of| alone || of.upper.is_some());
     let ends = |of: &Unstable| [of.lower.0, of.upper.map_or(f64::INFINITY, |upper| upper.1)];
     Line {
-        label: advice.modes[own.mode].name.clone(),
+        label: literal(&advice.modes[own.mode].name),
         published: cap(&advice.caps, band),
         band,
         unstable: first.chain(&own.inside).chain(&own.intervals).map(ends).collect(),
@@ -131,7 +131,7 @@ fn mode(advice: &Advice, answer: &Answer, own: &Row) -> Line {
 /// A pair is proven stable as far as all couplings are.
 fn pair(advice: &Advice, answer: &Answer, own: &Pair) -> Line {
     Line {
-        label: own.modes.map(|i| advice.modes[i].name.as_str()).join(" + "),
+        label: literal(&own.modes.map(|i| advice.modes[i].name.as_str()).join(" + ")),
         published: cap(&advice.caps, answer.band_edge.0),
         band: answer.band_edge.0,
         near: Some(own.near),
@@ -248,6 +248,7 @@ pub fn levers(levers: &Levers, title: &str, unit: TimeUnit) -> Figure {
         };
         layers.add(&line, at, right);
         let name = if own.is_free { format!("{} (none)", own.name) } else { own.name.clone() };
+        let name = literal(&name);
         ticks.push(Tick { at, label: Some(name) });
     }
     layers.beyond.clear();

@@ -7,7 +7,7 @@
 //! | `tier` | u1 \[columns, rows\] | the deciding tier, a position in `tier_names` |
 //! | `verdict_names` | S12 \[7\] | kind, and sign of the trace where it is ±2 or beyond |
 //! | `tier_names` | S6 \[3\] | filter, refine, exact |
-//! | `m`, `a`, `b` | i8 \[columns, rows\] | with labels: m and its dominant family; -1, 0, 0 where there is none |
+//! | `m`, `a`, `b` | i8 \[columns, rows\] | with labels: m and its dominant family; -1, 0, 0 where there is none, or none was counted within the budget |
 //! | `growth_rate` | f8 \[columns, rows\] | with growth: per unit time; NaN unless hyperbolic |
 //! | `growth_rate_error` | f8 \[columns, rows\] | with growth: `growth_rate` is off by at most that, proven |
 

@@ -1,7 +1,7 @@
 //! A run of Algorithm 1 drawn.
 
 use plot::palette::{GREY, family};
-use plot::{Axis, Figure, Layer, Panel, Place, Stroke};
+use plot::{Axis, Figure, Layer, Panel, Place, Stroke, literal};
 
 use crate::avi::{Run, Sample};
 use crate::report::decimal;
@@ -18,8 +18,11 @@ pub fn figure(run: &Run, title: &str) -> Figure {
     let momentum = panel(run, "momentum Σ *p*", |s| s.momentum, 4);
     let amplitude = panel(run, "amplitude max |Δ*x*|", |s| s.amplitude, 1);
     let figure = Figure::double_column(165.0).columns(1);
-    let figure =
-        if title.chars().count() <= LONGEST_TITLE { figure.headed(title) } else { figure.named(title) };
+    let figure = if title.chars().count() <= LONGEST_TITLE {
+        figure.headed(&literal(title))
+    } else {
+        figure.named(title)
+    };
     figure.with(energy).with(momentum).with(with_prediction(run, amplitude))
 }
 

@@ -1,7 +1,7 @@
 //! The row of a tongue.
 
 use crate::error::Result;
-use crate::report::decimal::{concise, outward, rounded};
+use crate::report::decimal::{concise, outward, rounded, shortened};
 use crate::report::record::Record;
 use crate::report::table::{Cell, Choice, Column};
 use crate::tongue::{Bounds, Law, Request, Side, Tongue, TongueEdge, Wanted};
@@ -197,26 +197,28 @@ fn wanted<'a>(mut record: Record<'a, Tongue>, request: &'a Request, short: bool)
         fn law(of: &Tongue) -> Option<&Law> {
             of.row.first_order.as_ref()
         }
-        let width = move |of: &Tongue| float(law(of).map(|own| own.law.width));
+        let width = move |of: &Tongue| float(law(of).map(|own| own.width));
         if !short {
-            let its_error = |key| titled(key, "its error");
+            let its_error = |key| titled(key, "its error").enclosure();
             record = record
                 .at("first_order.centre", titled("first_order_centre", "centre to first order"), move |of| {
-                    float(law(of).map(|own| own.law.centre))
+                    float(law(of).map(|own| own.centre))
                 })
                 .json("first_order.width", width)
-                .json("first_order.ln_multiplier", move |of| float(law(of).map(|own| own.law.ln_multiplier)))
+                .json("first_order.ln_multiplier", move |of| float(law(of).map(|own| own.ln_multiplier)))
                 .at("first_order.centre_error", its_error("centre_error"), move |of| {
-                    float(law(of).map(|own| own.centre_error))
+                    law(of).map(|own| own.centre_error).into()
                 })
                 .column(titled("first_order_width", "width to first order"), width)
                 .at("first_order.width_error", its_error("width_error"), move |of| {
-                    float(law(of).map(|own| own.width_error))
+                    law(of).map(|own| own.width_error).into()
                 });
         }
+        let title = titled("width_ratio", "width/first order").enclosure();
         record =
-            record.at("first_order.width_ratio", titled("width_ratio", "width/first order"), move |of| {
-                float(law(of).map(|own| own.width_ratio))
+            record.at("first_order.width_ratio", title, move |of| match law(of).map(|own| own.width_ratio) {
+                Some((lo, hi)) if short => Cell::Decimal(shortened(lo, hi, DIGITS as u32).to_string()),
+                ends => ends.into(),
             });
     }
     record

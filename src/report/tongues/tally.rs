@@ -39,7 +39,7 @@ impl TongueTally {
         }
         if let Some(law) = &row.first_order {
             let (least, largest) = self.ratios.unwrap_or((f64::INFINITY, 0.0));
-            self.ratios = Some((least.min(law.width_ratio), largest.max(law.width_ratio)));
+            self.ratios = Some((least.min(law.width_ratio.0), largest.max(law.width_ratio.1)));
         }
     }
 

@@ -77,6 +77,7 @@ use crate::error::{Error, Result};
 use crate::number::Rational;
 use crate::number::rational::to_f64;
 use crate::scene::json;
+use crate::scene::kind::of_another_kind;
 use crate::system::friction::Friction;
 use crate::system::levels::Method;
 use crate::system::{ElementSteps, Limits, Model, OwnOrbit, Potential, Scheme as LocalScheme, System};
@@ -207,6 +208,7 @@ impl SystemScene {
     }
 
     fn parsed(arrays: Arrays, source: Value, text: Option<&str>) -> Result<SystemScene> {
+        source.get("schema").and_then(Value::as_str).map_or(Ok(()), check_schema)?;
         if measured::is_by_reference(&source) {
             check_schema(source["schema"].as_str().unwrap_or_default())?;
             let document = measured::parse(&source)?;
@@ -414,7 +416,7 @@ fn check_schema(schema: &str) -> Result<()> {
     if schema == SCHEMA {
         return Ok(());
     }
-    Err(Error::input("schema", schema, format!("this version reads {SCHEMA}")))
+    Err(of_another_kind(schema, SCHEMA))
 }
 
 /// A model, the bonds at whose equilibrium it is, and labels of its degrees of freedom, where the file implies some.

@@ -86,6 +86,9 @@ pub(in crate::system) fn decide_beside(
     Ok(judge(&program.half_period(system, frame)))
 }
 
+/// Roots may cost so many times what the polynomial may: corrections of long roots are most of it.
+const TIMES_TO_REFINE: u64 = 8;
+
 /// Roots are refined where there are no more of them.
 const MOST_REFINED: usize = 24;
 
@@ -109,7 +112,7 @@ pub(in crate::system) fn multipliers(
     // Each round finds the roots that are left as often as that.
     while rest.len() > 1 {
         let simple = squarefree(&rest);
-        found.extend(refined::multipliers(&simple, &blocks.scale)?);
+        found.extend(refined::multipliers(&simple, &blocks.scale, TIMES_TO_REFINE.saturating_mul(most))?);
         rest = refined::quotient(rest, &simple);
     }
     Some(found)

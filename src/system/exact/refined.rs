@@ -27,10 +27,15 @@ const MOST_BITS: u32 = 1 << 13;
 /// Corrections at one precision: from far, each takes away some n-th part of the distance.
 const MOST_ROUNDS: usize = 1_000;
 
+/// Products of words over n³ times those of one number: n² steps of Horner's scheme and n² factors, n words of each, in complex numbers.
+const PRODUCTS: u64 = 6;
+
 /// Relative bits of the largest excess that a double's digits of its growth need.
 const ACCURACY: u32 = 58;
 
 struct Roots<'a> {
+    /// Products of machine words that may still be spent.
+    left: u64,
     /// The coefficients of a monic polynomial in z = d μ, the lowest first.
     f: &'a [BigInt],
     d: &'a BigInt,
@@ -47,9 +52,9 @@ struct Correction {
 }
 
 /// The roots μ = z/d of a monic squarefree polynomial in z, each with an enclosure of its growth; the largest to a double's digits.
-/// `None` where that takes more than [`MOST_BITS`].
-pub(in crate::system) fn multipliers(f: &[BigInt], d: &BigInt) -> Option<Vec<Multiplier>> {
-    let mut roots = Roots::start(f, d);
+/// `None` where that takes more than [`MOST_BITS`], or more than `most` products of machine words.
+pub(in crate::system) fn multipliers(f: &[BigInt], d: &BigInt, most: u64) -> Option<Vec<Multiplier>> {
+    let mut roots = Roots { left: most, ..Roots::start(f, d) };
     loop {
         roots.settle()?;
         if let Some(found) = roots.are_apart().then(|| roots.accurate()).flatten() {
@@ -84,7 +89,14 @@ impl<'a> Roots<'a> {
                 |x: f64| shifted(&BigInt::from((x * 2f64.powi(52)) as i64), i64::from(bits) - 52 + size);
             Complex::new(part(angle.cos()), part(angle.sin()))
         };
-        Roots { points: (0..n).map(point).collect(), radii: vec![BigInt::zero(); n], f, d, bits }
+        Roots {
+            points: (0..n).map(point).collect(),
+            radii: vec![BigInt::zero(); n],
+            f,
+            d,
+            bits,
+            left: u64::MAX,
+        }
     }
 
     /// The places of coefficients: a cluster of roots takes as many more as its product of distances is small.
@@ -111,10 +123,22 @@ impl<'a> Roots<'a> {
         Some(())
     }
 
-    /// Corrects until only what is not known of the corrections moves; `None` where two approximations meet.
+    /// The products of words that one correction of every root takes: Horner's scheme, and the distances to the others, whose product
+    /// becomes n times as long as one of them.
+    fn spend(&mut self) -> Option<()> {
+        let parts = self.points.iter().map(|z| z.re.bits().max(z.im.bits())).max().unwrap_or(0);
+        let (n, words) = (self.points.len() as u64, (parts.max(self.bits.into()) / 64 + 1));
+        let (cube, square) = (n.saturating_pow(3), words.saturating_mul(words));
+        self.left = self.left.checked_sub(cube.saturating_mul(square).saturating_mul(PRODUCTS))?;
+        Some(())
+    }
+
+    /// Corrects until only what is not known of the corrections moves; `None` where two approximations meet, and where they cost too
+    /// much.
     fn settle(&mut self) -> Option<()> {
         let (n, coefficients) = (BigInt::from(self.points.len()), self.coefficients());
         for round in 0..=MOST_ROUNDS {
+            self.spend()?;
             let all = (0..self.points.len()).map(|i| self.correction(&coefficients, i));
             let all = all.collect::<Option<Vec<Correction>>>()?;
             let size = |own: &Correction| own.w.re.abs() + own.w.im.abs();
@@ -209,7 +233,7 @@ mod tests {
 
     fn of(coefficients: &[i64], d: i64) -> Vec<Multiplier> {
         let f: Vec<BigInt> = coefficients.iter().map(|&c| c.into()).collect();
-        let mut found = multipliers(&f, &d.into()).unwrap();
+        let mut found = multipliers(&f, &d.into(), u64::MAX).unwrap();
         found.sort_by(|a, b| a.mu.re.total_cmp(&b.mu.re).then(a.mu.im.total_cmp(&b.mu.im)));
         found
     }
@@ -229,12 +253,19 @@ mod tests {
     }
 
     #[test]
+    fn roots_that_cost_more_than_is_allowed_are_not_found() {
+        let f: Vec<BigInt> = [-20, -23, -5, -1, 1].map(BigInt::from).to_vec();
+        assert!(multipliers(&f, &2.into(), 1 << 10).is_none());
+        assert!(multipliers(&f, &2.into(), 1 << 20).is_some());
+    }
+
+    #[test]
     fn a_root_beside_the_edge_is_told_from_its_neighbours() {
         // z = 10^15 μ: μ = 10^-15, −10^-15, and −1/2 − 10^-15.
         let d = BigInt::from(10u64.pow(15));
         let third: BigInt = &d / 2u8 + 1u8;
         let f = [-third.clone(), -BigInt::one(), third, BigInt::one()];
-        let found = multipliers(&f, &d).unwrap();
+        let found = multipliers(&f, &d, u64::MAX).unwrap();
         let (lo, hi) = rate::largest(found.iter().filter_map(|own| own.growth));
         let want = 2.0 * 1e-15f64.sqrt().asinh();
         assert!(lo <= want * (1.0 + 1e-15) && want * (1.0 - 1e-15) <= hi && hi / lo - 1.0 < 1e-15);

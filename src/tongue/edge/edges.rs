@@ -1,8 +1,9 @@
 //! The edges of one ratio, in doubles where these prove them and by more bits elsewhere.
 
+use std::cmp::Ordering;
 use std::ops::RangeInclusive;
 use std::sync::OnceLock;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 use num_bigint::BigInt;
 use num_traits::Zero;
@@ -13,7 +14,7 @@ use super::fine_count::{self, TWO_DOUBLES};
 use super::function::{By, EntryFunction};
 use super::{exact_count, long, precise};
 use crate::error::{Error, Result};
-use crate::number::{Ball, Ratio, Rational};
+use crate::number::{Ball, Laurent, Ratio, Rational, Real};
 use crate::orbit::returns;
 use crate::parallel::go_on;
 use crate::tongue::string::{Entry, HalfString, Indices, MOST_KICKS};
@@ -97,7 +98,7 @@ impl Edges {
 
     /// The work done so far.
     pub fn effort(&self) -> Effort {
-        let [doubles, precise] = [&self.doubles, &self.precise].map(|count| count.load(Ordering::Relaxed));
+        let [doubles, precise] = [&self.doubles, &self.precise].map(|count| count.load(Relaxed));
         Effort { doubles, precise }
     }
 
@@ -162,7 +163,7 @@ impl Edges {
         // Without a new list where all are there already.
         let narrow = |edge: &Option<Edge>| edge.is_some_and(|edge| edge.is_narrow());
         let good = found.iter().filter(|edge| narrow(edge)).count();
-        self.doubles.fetch_add(good as u64, Ordering::Relaxed);
+        self.doubles.fetch_add(good as u64, Relaxed);
         if good == found.len() {
             return Ok(found.into_iter().map(|edge| edge.expect("a narrow one")).collect());
         }
@@ -175,7 +176,7 @@ impl Edges {
 
     /// An edge that doubles could not certify, or left wide.
     fn by_more_bits(&self, string: &HalfString, entry: Entry, index: usize, wide: Option<Edge>) -> Edge {
-        self.precise.fetch_add(1, Ordering::Relaxed);
+        self.precise.fetch_add(1, Relaxed);
         let seen = wide.map(|edge| (edge.lo, edge.hi)).or_else(|| sighting(string, entry, index));
         let (lo, hi) = fine_count::enclose(string, entry, index, seen).to_f64();
         Edge { entry, index: index as u32, lo, hi }
@@ -187,7 +188,7 @@ impl Edges {
         let narrow = Rational::new(1.into(), BigInt::from(1u64 << DIGITS_OF_DOUBLES));
         let found = long::isolate(&function, index);
         let found = found.and_then(|alone| precise::shrink(&function, &alone, &narrow, true));
-        self.doubles.fetch_add(u64::from(found.is_some()), Ordering::Relaxed);
+        self.doubles.fetch_add(u64::from(found.is_some()), Relaxed);
         Ok(found.map(|found| {
             let (lo, hi) = found.to_f64();
             Edge { entry, index: index as u32, lo, hi }
@@ -205,7 +206,7 @@ impl Edges {
     /// The edge to `digits` significant digits, from an enclosure that may be narrower than the edge's own. Where it holds another zero, or one on its
     /// end, proven counts identify the edge.
     pub fn sharpened(&self, edge: &Edge, start: &Enclosure, digits: u32) -> Result<Enclosure> {
-        self.precise.fetch_add(1, Ordering::Relaxed);
+        self.precise.fetch_add(1, Relaxed);
         let (entry, index, around) = (edge.entry, edge.index as usize, Some((edge.lo, edge.hi)));
         if let Some(found) = self.by_returns(edge, start, digits)? {
             return Ok(found);
@@ -231,6 +232,41 @@ impl Edges {
         }
         let function = EntryFunction::new(self.ratio, &self.rho, edge.entry, By::Returns)?;
         Ok(precise::shrink(&function, start, &tenth_power(digits), false))
+    }
+
+    /// How an edge compares with a number, decided. An enclosure as narrow as it takes holds one zero, so a rational zero in it is the edge;
+    /// powers of π are no edges.
+    ///
+    /// # Errors
+    /// Where the schedule is too long.
+    pub fn compare(&self, edge: &Edge, s: &Laurent) -> Result<Ordering> {
+        let exact = s.as_rational();
+        let order = |own: &Enclosure, bits: u32| {
+            let [least, most] = match &exact {
+                Some(s) => [s.clone(), s.clone()],
+                None => {
+                    let s = s.enclosure(bits);
+                    [s.lower(), s.upper()]
+                }
+            };
+            let beyond = || (own.lo > most).then_some(Ordering::Greater);
+            if own.hi < least { Some(Ordering::Less) } else { beyond() }
+        };
+        let mut near = Enclosure::from(edge);
+        let mut digits = TWO_DOUBLES;
+        loop {
+            if let Some(order) = order(&near, 4 * digits) {
+                return Ok(order);
+            }
+            near = self.sharpened(edge, &near, digits)?;
+            let holds = |s: &Rational| near.lo <= *s && *s <= near.hi;
+            if let Some(s) = exact.as_ref().filter(|s| holds(s))
+                && self.function(edge.entry)?.is_zero_at(s)
+            {
+                return Ok(Ordering::Equal);
+            }
+            digits *= 2;
+        }
     }
 
     /// An entry as a function of s.

@@ -14,14 +14,14 @@
 mod exact;
 mod predicted;
 
-use num_traits::{ToPrimitive, Zero};
+use num_traits::Zero;
 
 use exact::exact_edge;
 pub use exact::{ExactEdge, Resonance};
 pub use predicted::{Predicted, Side};
 
 use crate::error::Result;
-use crate::number::Ratio;
+use crate::number::{Ball, Ratio, rational};
 use crate::resonance::{FirstOrder, dominant_family, first_order};
 use crate::tongue::edge::Edges;
 use crate::tongue::gap::Gap;
@@ -49,15 +49,17 @@ impl Wanted {
     }
 }
 
-/// The first-order law and what it misses; rounded.
+/// The first-order law, the nearest doubles of it, and what it misses, enclosed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Law {
-    pub law: FirstOrder,
+    pub centre: f64,
+    pub width: f64,
+    pub ln_multiplier: f64,
     /// Tongue minus law.
-    pub centre_error: f64,
-    pub width_error: f64,
+    pub centre_error: (f64, f64),
+    pub width_error: (f64, f64),
     /// Tongue's width over the law's.
-    pub width_ratio: f64,
+    pub width_ratio: (f64, f64),
 }
 
 /// A tongue and the columns asked for; `None` where not asked, or where there is none (said beside each).
@@ -103,16 +105,25 @@ impl Row {
 
 impl Law {
     fn new(edges: &Edges, gap: &Gap) -> Option<Law> {
-        let rho = edges.rho().to_f64().filter(|_| !edges.rho().is_zero())?;
-        let law = first_order(edges.ratio(), gap.m, rho)?;
+        const BITS: u32 = 128;
+        let rho = Some(edges.rho()).filter(|rho| !rho.is_zero())?;
+        let FirstOrder { centre, width, ln_multiplier } = first_order(edges.ratio(), gap.m, rho)?;
+        let between = |(lo, hi): (f64, f64)| {
+            let [lo, hi] =
+                [lo, hi].map(|x| rational::from_f64_exact(x).map(|x| Ball::from_rational(&x, BITS)));
+            lo.zip(hi).map(|(lo, hi)| lo.union(&hi, BITS))
+        };
         let upper = gap.upper.as_ref()?;
-        let width = 0.5 * (gap.width.0 + gap.width.1);
-        let centre = 0.25 * (gap.lower.lo + gap.lower.hi + upper.lo + upper.hi);
+        let middle =
+            between((gap.lower.lo, gap.lower.hi))?.add(&between((upper.lo, upper.hi))?, BITS).scale2(-1);
+        let found = between(gap.width)?;
         Some(Law {
-            law,
-            centre_error: centre - law.centre,
-            width_error: width - law.width,
-            width_ratio: width / law.width,
+            centre_error: middle.sub(&centre, BITS).to_f64_enclosure(),
+            width_error: found.sub(&width, BITS).to_f64_enclosure(),
+            width_ratio: found.div(&width, BITS)?.to_f64_enclosure(),
+            centre: centre.mid_f64(),
+            width: width.mid_f64(),
+            ln_multiplier: ln_multiplier.mid_f64(),
         })
     }
 }

@@ -26,7 +26,7 @@ named! {
 /// The paper's point p θ = m π (eq. (9)) and the tongue that belongs to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Predicted {
-    /// The double next to s = 4 sin²(m π/(2p)).
+    /// The double nearest to s = 4 sin²(m π/(2p)).
     pub s: f64,
     /// Decided, not estimated.
     pub side: Side,
@@ -43,7 +43,7 @@ impl Predicted {
     pub(crate) fn new(edges: &Edges, gap: &Gap) -> Result<Option<Predicted>> {
         let Some(upper) = gap.upper.filter(|_| gap.m < edges.ratio().p()) else { return Ok(None) };
         let s = edges.resonance(gap.m, 128);
-        let (nearest, lower) = (s.mid_f64(), gap.lower);
+        let lower = gap.lower;
         let side = match (compare(&s, &lower), compare(&s, &upper)) {
             _ if edges.rho().is_zero() => Side::OnLower,
             (Some(Sign::Negative), _) => Side::Below,
@@ -57,7 +57,7 @@ impl Predicted {
             Side::OnLower | Side::OnUpper => 0.0,
             Side::Inside => -distance(edges, gap.m, &lower)?.min(distance(edges, gap.m, &upper)?),
         };
-        Ok(Some(Predicted { s: nearest, side, distance }))
+        Ok(Some(Predicted { s: Ball::nearest_f64(|bits| edges.resonance(gap.m, bits)), side, distance }))
     }
 }
 
