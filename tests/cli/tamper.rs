@@ -337,7 +337,6 @@ fn no_change_to_a_verdict_a_map_or_a_curve_passes() {
         "curves --samples 12 --a 0..2 --b -2..2",
         "polynomial --ratio 5/4",
         "half --ratio 5/4 --s 3/2 --rho 1/7",
-        "state --lambda1 10 --lambda2 1/3 --h1 1/7 --h2 2/9 --steps 11 --v 1/2",
         "bands --lambda1 pi^2 --lambda2 pi^2/25 --h1-range 1/5..1/4 --h2-range 9/10..1 --sectors 60",
         "proposition --max 5",
         "word --method 2mn-velocity --lambda1 1 --h 2",
