@@ -16,7 +16,7 @@
 //! | curves | arcsines | arctangents; the samples again in doubles |
 //! | polynomial | products of polynomials | the full period at rational points |
 //! | system-verdict, system-map, simulate | signs, discs, simulation | exact arithmetic; the dense full period |
-//! | system-intervals | cells of signs, counts and discs | half periods at steps in the stretches, and the order of Krein's signs between; large schemes run; exact arithmetic where there is no gradient |
+//! | system-intervals | cells of signs, counts and discs | half periods at steps in the stretches, and the order of Krein's signs between; large schemes run |
 //! | bands | a common cone of return maps, in doubles with bounds | pairs in the boxes, worst placed, by the ladder |
 //! | compare-methods | polynomials in s, balls over y = h w/2 | traces letter by letter in doubles; those of trigonometric integrators by their formula |
 //! | word, methods | polynomials in s, Sturm chains | letter by letter, in numbers of the field, at a step of each interval; halved steps |

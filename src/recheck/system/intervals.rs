@@ -11,7 +11,7 @@ use faer::Mat;
 use num_traits::One;
 
 use super::{ALONE, LEFT, RUN, local, outcome, run, seen};
-use crate::error::{Error, Kind as Reason, Result};
+use crate::error::{Error, Result};
 use crate::number::Rational;
 use crate::number::rational::{from_f64_exact, to_f64};
 use crate::parallel::try_map;
@@ -23,7 +23,7 @@ use crate::scene::{OUTER, SystemScene};
 use crate::system::levels::Method;
 use crate::system::stretches::Stretch;
 use crate::system::vary::Intervals;
-use crate::system::{Holds, Jacobians, Limits, Model, Route, SparseSystem, half_period};
+use crate::system::{Holds, Limits, Model, Route, SparseSystem, half_period};
 
 /// Stretches that are looked at, unless all are asked for; all of measured levels where it costs no more than is allowed.
 const MOST: u64 = 24;
@@ -121,7 +121,6 @@ impl Claim {
                 decided.by_half_periods(&Places::of(scene, &found.number, width)?, &seed)
             }
             Model::Sparse(own) => decided.sampled(&seed).by_running(own),
-            Model::NoGradient(own) | Model::Subcycled(own, _) => decided.sampled(&seed).exactly(model, own),
             _ => outcome(context, ALONE, Ok(())),
         }
     }
@@ -181,20 +180,6 @@ impl Decided<'_> {
         let Some(steps) = model.local_steps() else { return outcome(self.context, ALONE, Ok(())) };
         let found = seen(steps, outcome(self.context, RUN, Ok(()))?);
         self.look(found, |own| local::stretch(steps, own))
-    }
-
-    fn exactly(self, model: &Model, own: &Jacobians) -> Result<Outcome> {
-        let (limits, longest) = (self.context.work().products(), model.outer_step());
-        let route = "the verdict in the middle of a random sample of stretches in exact arithmetic";
-        self.look(outcome(self.context, route, Ok(()))?, |stretch| {
-            let middle = stretch.lo + (stretch.hi - stretch.lo) / 2.0;
-            let Some(middle) = from_f64_exact(middle) else { return Ok(()) };
-            let model = Model::NoGradient(Box::new(own.slowed(&(middle / &longest))?));
-            match model.exact_kind(&limits) {
-                Err(error) if error.kind() == Reason::Budget => Ok(()),
-                truth => same("verdict", stretch.verdict.name(), Holds::from(Some(truth?)).name()),
-            }
-        })
     }
 }
 

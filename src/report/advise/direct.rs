@@ -173,7 +173,7 @@ fn line(findings: &DirectFindings, own: &DirectFinding) -> String {
 fn looked_at(best: &DirectFinding) -> Option<String> {
     let (first, last) = (best.ladder.first()?, best.ladder.last()?);
     Some(format!(
-        "  looked at  {} points: the multiples from {} to {}, for the Jacobians given; `kickdrift system FILE --intervals outer=LO..HI` looks between them",
+        "  looked at  {} points: the multiples from {} to {}, for the Jacobians given; `kickdrift system FILE --scan outer=LO..HI:BY` looks between them",
         best.ladder.len(),
         fs(&first.outer),
         fs(&last.outer)

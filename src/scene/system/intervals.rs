@@ -252,11 +252,21 @@ impl SystemScene {
             | Model::Measured(_)
             | Model::LocalSteps(_)
             | Model::Implicit(_)
-            | Model::NoGradient(_)
-            | Model::Subcycled(..)
             | Model::Elements(..)
             | Model::Sparse(_)
                 if self.is_linear() => {}
+            Model::NoGradient(_) | Model::Subcycled(..) => {
+                return refused(
+                    "of kicks that are no gradients",
+                    "are not told: decide steps one by one, as --scan outer=LO..HI:BY does",
+                );
+            }
+            Model::Pi(_) => {
+                return refused(
+                    "with pi in the stiffnesses of several degrees of freedom",
+                    "are for rational numbers: write them without pi, or decide steps one by one, as --scan outer=LO..HI:BY does",
+                );
+            }
             Model::Along(_) => {
                 return refused(
                     "along an orbit",

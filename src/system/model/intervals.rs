@@ -52,11 +52,10 @@ impl Model {
                 Family { linear: Linear::Number, at: &at }.stretches(range, width, limits)
             }
             (_, Model::LocalSteps(own)) => own.stretches(range, limits),
-            (_, Model::Along(_)) => Err(self.no_intervals()),
+            (_, Model::Along(_) | Model::NoGradient(_) | Model::Subcycled(..)) => Err(self.no_intervals()),
             (_, Model::Sparse(own)) => {
                 own.stretches(range, width).unwrap_or_else(|| Err(self.no_intervals()))
             }
-            (_, Model::NoGradient(own) | Model::Subcycled(own, _)) => own.stretches(range, width),
             (_, Model::Measured(own)) => own.stretches(range, width, own.accuracy),
             _ => self.over_outer_steps(|family| family.stretches(range, width, limits)),
         }
@@ -110,8 +109,7 @@ impl Model {
             }
             (_, Model::Measured(own)) => own.cost_of_stretches(range, width),
             (_, Model::LocalSteps(own)) => Ok(own.cost()),
-            (_, Model::NoGradient(own) | Model::Subcycled(own, _)) => Ok(own.cost_of_stretches(range, width)),
-            (_, Model::Along(_)) => Err(self.no_intervals()),
+            (_, Model::Along(_) | Model::NoGradient(_) | Model::Subcycled(..)) => Err(self.no_intervals()),
             (_, Model::Sparse(own)) => own.cost_of_stretches(range).ok_or_else(|| self.no_intervals()),
             _ => self.over_outer_steps(|family| family.cost(range, width, limits)),
         }
@@ -153,13 +151,6 @@ impl Model {
         if let Model::Sparse(_) = self {
             let all = self.stretches(&Number::Outer, Nearest::reach(step), width, limits)?;
             return Ok(Nearest::of(step, &all));
-        }
-        let is_decided_by_jacobians = matches!(self, Model::NoGradient(_) | Model::Subcycled(..));
-        if self.measured().is_none() && !is_decided_by_jacobians {
-            let exactly = |family: &Family| family.exactly(Nearest::reach(step), limits);
-            if let Some(all) = self.over_outer_steps(exactly)? {
-                return Ok(Nearest::of(step, &all));
-            }
         }
         let own = self.holds(limits)?;
         Nearest::search((step, own), |range| self.stretches(&Number::Outer, range, width, limits))
