@@ -14,12 +14,13 @@
 //! | file | what |
 //! |---|---|
 //! | `scheme` | the levels, the effective stiffness |
-//! | `intervals` | all unstable intervals of dt, exactly |
+//! | `intervals`, `edges` | all unstable intervals of dt, exactly: roots of two determinants, and what lies between |
 //! | `split` | subcycling with held velocities, AVI: the same levels as kicks and drifts |
 //! | `sparse` | many thousands of degrees of freedom: f in sparse doubles, its verdicts, what grows fastest |
 //! | `gaps` | the unstable intervals of dt of these |
 //! | `held` | subcycling of as many: its first stable region |
 
+mod edges;
 mod gaps;
 mod held;
 mod intervals;
