@@ -111,14 +111,7 @@ impl Piece {
         let blocks = float::half_period(&self.system, &self.frame);
         let signed = || asked.is_none().then(|| signs::proven(&blocks)).flatten();
         let (signed, spectrum) = both(blocks.m >= SIDE_BY_SIDE, signed, || Spectrum::new(&blocks));
-        let sharper = || {
-            let is_plain = self.frame.rigid.is_empty() && self.coefficients.is_none();
-            spectrum.as_ref().filter(|_| is_plain)?.sharper(&self.system, &blocks.scales)
-        };
-        let certified = || {
-            let kind = spectrum.as_ref()?.certified(&blocks).or_else(sharper);
-            Some((kind?, Evidence::Discs))
-        };
+        let certified = || Some((spectrum.as_ref()?.certified(&blocks)?, Evidence::Discs));
         let (kind, evidence, roots) = match asked {
             Some((kind, roots)) => (Some(kind), Evidence::Exact, Some(roots)),
             None => match signed.map(|kind| (kind, Evidence::Signs)).or_else(certified) {
