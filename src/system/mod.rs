@@ -74,7 +74,7 @@ pub use linear::system::{Potential, System};
 pub use linear::{builders, mesh};
 pub use lts::{Growth, Level, LocalSteps, Scheme, SchemeSummary, SparseSteps, SparseSubcycles, Subcycles};
 pub use model::{Body, ManyLevels, MeasuredSystem, Model, Number, Oscillator, SparseSystem, TwoLevels};
-pub use pi::{PiPotential, PiSystem};
+pub use pi::{PiPotential, beside_pi};
 pub use single::clocks::{ManyClocks, families, shortest_families, shortest_family};
 pub use single::decide::decide_oscillator;
 pub use spectrum::modes::{Origin, Resonance};

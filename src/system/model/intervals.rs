@@ -12,7 +12,7 @@ use crate::system::vary::family::{Family, Linear};
 use crate::system::vary::nearest::Nearest;
 use crate::system::vary::stretches::{Stretch, check_width};
 use crate::system::verdict::analysis::Analysis;
-use crate::system::verdict::decide::decide_by;
+use crate::system::verdict::decide::{decide_around, decide_by};
 use crate::system::verdict::limits::{Limits, Route};
 use crate::system::verdict::measured::Holds;
 
