@@ -14,6 +14,7 @@ use crate::named::named;
 use crate::number::rational::{enclose_f64, from_f64_exact, to_f64};
 use crate::number::{Ball, Laurent, Ratio, Rational};
 use crate::system::Limits;
+use crate::system::friction::Masked;
 
 const BITS: u32 = 128;
 
@@ -52,8 +53,8 @@ pub struct Row {
     pub inside: Option<Unstable>,
     /// Open intervals from the first one on, up to some way beyond the scheme and the first of them; at most 32.
     pub intervals: Vec<Unstable>,
-    /// Where it grows: the friction per fs above which that is masked (BAOAB), enclosed.
-    pub masking: Option<(f64, f64)>,
+    /// Where it grows: the frictions per fs that mask that (BAOAB).
+    pub masking: Option<Masked>,
     /// Whether the friction given keeps it bounded.
     pub is_damped: Option<bool>,
     /// With two clocks, where it grows: with the inner step every ratio of steps from lo to hi, rational or not, is unstable; `None` where

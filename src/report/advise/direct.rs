@@ -156,7 +156,7 @@ fn line(findings: &DirectFindings, own: &DirectFinding) -> String {
         (Some(true), _) => "; masked by the friction given (proven)".into(),
         (Some(false), Some(mask)) => {
             format!(
-                "; only a friction of {}/ps masks it (proven), the one given does not",
+                "; a friction of {}/ps masks it (proven), the one given does not",
                 nearest((1000.0 * mask, 1000.0 * mask), 3)
             )
         }

@@ -7,6 +7,7 @@ use crate::advise::{Advice, Answer, Origin, Pair, Row, SLOW, Scheme, Slow, Statu
 use crate::number::Rational;
 use crate::number::rational::to_f64;
 use crate::report::decimal::few;
+use crate::report::friction;
 
 /// Limits of every linear analysis of given periods; the first is left out where these are the periods of all modes.
 const UNKNOWN: [&str; 3] = [
@@ -154,12 +155,11 @@ fn unstable(answer: &Answer, worst: Option<&Row>) -> String {
     let rate = (1000.0 * row.found.rate.0, 1000.0 * row.found.rate.1);
     let inside =
         row.inside.as_ref().map_or_else(String::new, |inside| format!(", within {}", interval(inside)));
-    let mask = row.masking.map(|(lo, hi)| nearest((1000.0 * lo, 1000.0 * hi), 3));
-    let friction = match (row.is_damped, mask) {
+    let friction = match (row.is_damped, &row.masking) {
         (Some(true), _) => " (masked by the friction given, which hides it and does not cure it)".into(),
         (given, Some(mask)) => {
             let own = if given.is_some() { ", the one given does not" } else { "" };
-            format!(" (only a friction above {mask}/ps masks it{own})")
+            format!(" ({} it{own})", friction::masking(mask, 1000.0, "/ps"))
         }
         (_, None) => String::new(),
     };

@@ -17,7 +17,8 @@ use super::table::{Cell, Column, Table};
 use crate::advise::engine::Reading;
 use crate::advise::unit::decimal;
 use crate::advise::{Advice, Answer, DirectFindings, Findings, Mode, Pair, Row, Unstable};
-use crate::number::Rational;
+use crate::number::{Rational, outward};
+use crate::system::friction::Masked;
 
 #[cfg(feature = "figure")]
 pub use chart::levers as levers_figure;
@@ -138,7 +139,13 @@ fn row_table(advice: &Advice, all: bool) -> Table {
         .field(enclosed("growth_rate", "growth").in_unit("1/ps"), |of| per_ps(of.row.found.rate).into())
         .field(enclosed("tenfold_steps", "tenfold in steps"), |of| of.row.tenfold_steps.into())
         .field(enclosed("masked_above", "masked above a friction").in_unit("1/ps"), |of| {
-            of.row.masking.map(per_ps).into()
+            of.row.masking.as_ref().map(|own| per_ps((own.grows, own.least()))).into()
+        })
+        .field(Column::new("masked_below").in_words("masked below").in_unit("1/ps"), |of| {
+            let end = |own: &Masked| {
+                Some((1000.0 * own.ranges[0].1).next_down()).filter(|end| end.is_finite() && !own.stays())
+            };
+            of.row.masking.as_ref().and_then(end).into()
         })
         .field(Column::new("damped"), |of| of.row.is_damped.into());
     let ratios: [(&str, Ratio); 2] = [("ratios_lower", |(lo, _)| lo), ("ratios_upper", |(_, hi)| hi)];
@@ -172,8 +179,10 @@ fn row_table(advice: &Advice, all: bool) -> Table {
         return table;
     }
     let masked = named.iter().any(|of| of.row.masking.is_some());
+    let bounded = named.iter().any(|of| of.row.masking.as_ref().is_some_and(|own| !own.stays()));
     for_people(&table, |key| match key {
         "masked_above" => masked,
+        "masked_below" => bounded,
         "damped" => advice.friction.is_some(),
         _ => true,
     })

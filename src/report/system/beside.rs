@@ -94,7 +94,7 @@ pub(super) fn no_gradient_lines(own: &NoGradient, analysis: &Analysis, per: &str
         Some(0.0) => lines.push("  no friction is needed".into()),
         Some(friction) => {
             let friction = decimal::few(friction, 5);
-            lines.push(format!("  friction from about {friction} per {per} on masks what grows (rounded)"))
+            lines.push(format!("  a friction of about {friction} per {per} masks what grows (rounded)"))
         }
         None => {}
     }
