@@ -52,6 +52,8 @@ pub(crate) use bisect::bisected;
 pub use cyclotomic::{Cyclotomic, CyclotomicField};
 pub use element::{Element, NumberField};
 pub(crate) use enclosed::Enclosed;
+#[cfg(any(feature = "advise", feature = "system"))]
+pub(crate) use float::outward;
 pub use laurent::Laurent;
 pub use polynomial::Polynomial;
 pub(crate) use prime_field::Lift;

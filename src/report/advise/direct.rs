@@ -6,7 +6,8 @@ use super::words::{fs, nearest, percent, within};
 use crate::advise::engine::Reading;
 use crate::advise::unit::decimal;
 use crate::advise::{Adds, DirectFinding, DirectFindings, Rung, TIMES};
-use crate::number::Rational;
+use crate::number::{Rational, outward};
+use crate::report::decimal::is_nothing;
 use crate::report::document::{Document, enclosure};
 use crate::report::record::Record;
 use crate::report::table::{Cell, Column, Table};
@@ -48,9 +49,9 @@ pub(super) fn document(findings: &DirectFindings, reading: Option<&Reading>, not
 
 const FASTEST: &str = "the fastest motion of the innermost forces";
 
-/// Rounded outward; what is 0 is so exactly.
+/// Rounded outward.
 fn per_ps((lo, hi): (f64, f64)) -> (f64, f64) {
-    ((1000.0 * lo).next_down().max(0.0), if hi == 0.0 { 0.0 } else { (1000.0 * hi).next_up() })
+    outward((1000.0 * lo, 1000.0 * hi))
 }
 
 /// "0.0200/ps", "no growth".
@@ -145,6 +146,9 @@ fn line(findings: &DirectFindings, own: &DirectFinding) -> String {
         }
     };
     let of_steps = own.added.filter(|_| own.rate != Some((0.0, 0.0))).map_or_else(String::new, |(lo, hi)| {
+        if is_nothing((lo, hi), own.rate) {
+            return ", of which the steps add nothing within rounding".into();
+        }
         format!(", of which the steps add {}/ps", nearest((1000.0 * lo, 1000.0 * hi), 3))
     });
     let tenfold = own.tenfold_steps.map_or_else(String::new, |steps| {
@@ -205,9 +209,7 @@ fn rows(findings: &DirectFindings) -> Table {
         .field(column("status", "the steps add").left(), |own| own.adds.name().into())
         .field(column("in_band", "in the band").left(), |own| own.in_band.name().into())
         .field(rates("growth_rate", "growth"), |own| own.rate.map(per_ps).into())
-        .field(rates("added_by_steps", "of which by steps"), |own| {
-            own.added.map(|(lo, hi)| ((1000.0 * lo).next_down(), (1000.0 * hi).next_up())).into()
-        })
+        .field(rates("added_by_steps", "of which by steps"), |own| own.added.map(per_ps).into())
         .field(rates("within_accuracy", "within the accuracy"), |own| own.within_accuracy.map(per_ps).into())
         .field(enclosed("tenfold_steps", "tenfold in steps"), |own| own.tenfold_steps.into())
         .field(column("atoms", "moving most").left(), |own| own.atoms.as_deref().into())

@@ -205,7 +205,7 @@ fn interval_table(advice: &Advice) -> Table {
 
 /// A rate per fs as one per ps, rounded outward.
 fn per_ps((lo, hi): (f64, f64)) -> (f64, f64) {
-    if (lo, hi) == (0.0, 0.0) { (lo, hi) } else { ((1000.0 * lo).next_down(), (1000.0 * hi).next_up()) }
+    outward((1000.0 * lo, 1000.0 * hi))
 }
 
 fn pair_table(advice: &Advice) -> Table {

@@ -17,6 +17,7 @@ use num_integer::Integer;
 use num_traits::{One, Signed, Zero};
 
 use crate::error::Result;
+use crate::number::Rational;
 use crate::number::polynomial::squarefree;
 use crate::system::exact::integers::{IntegerBlocks, IntegerProgram, product};
 use crate::system::exact::modular;
@@ -36,24 +37,24 @@ pub struct ExactVerdict {
     /// Elliptic: stable. Coexistence: stable with a multiplier ±1. Parabolic: all |λ| = 1, with a Jordan block.
     /// Hyperbolic: some |λ| > 1.
     pub kind: Kind,
-    /// The eigenvalues μ of Bᵀ C by place, each counted once.
+    /// The eigenvalues μ of Bᵀ C by place.
     pub roots: MuCount,
 }
 
-/// The eigenvalues μ of Bᵀ C by place: λ + 1/λ = 2 + 4 μ.
+/// The eigenvalues μ of Bᵀ C by place, each as often as it is one: λ + 1/λ = 2 + 4 μ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MuCount {
-    /// Distinct μ in (−1, 0): λ on the unit circle.
+    /// μ in (−1, 0): λ on the unit circle.
     pub inside: usize,
-    /// The multiplicity of μ = 0: λ = 1.
+    /// μ = 0: λ = 1.
     pub at_zero: usize,
-    /// The multiplicity of μ = −1: λ = −1.
+    /// μ = −1: λ = −1.
     pub at_minus_one: usize,
-    /// Distinct μ > 0: real λ > 1.
+    /// μ > 0: real λ > 1.
     pub above: usize,
-    /// Distinct μ < −1: real λ < −1.
+    /// μ < −1: real λ < −1.
     pub below: usize,
-    /// Distinct μ that are not real: quadruples λ, 1/λ and their conjugates.
+    /// μ that are not real: quadruples λ, 1/λ and their conjugates.
     pub complex: usize,
 }
 
