@@ -203,6 +203,17 @@ fn what_no_force_sees_is_set_apart() {
     assert!((own - other).abs() < 1e-12, "{own} {other}");
 }
 
+/// Two oscillators that do not grow, with steps and without: nothing is added, and no double beside 0.
+#[test]
+fn steps_that_add_nothing_to_what_does_not_grow_add_zero() {
+    let file = r#"{"schema": "kickdrift/system/1", "symmetric": false, "masses": [1, 1],
+        "potentials": [{"step": "1/10", "stiffness": [["4", "1/10"], ["1/5", "1"]]}]}"#;
+    let scene = SystemScene::read(file).unwrap();
+    let analysis = scene.model().decide(Route::Cheapest, &Limits::default()).unwrap();
+    assert!(analysis.is_stable());
+    assert_eq!(scene.model().jacobians().unwrap().no_gradient().added_by_steps(&analysis), Some((0.0, 0.0)));
+}
+
 #[test]
 fn what_needs_gradients_is_refused() {
     let (scene, _) = learned(0.03, 8);

@@ -316,6 +316,8 @@ mod tests {
                 "{:?} {parts:?} {system:?}",
                 analysis.kind.unwrap()
             );
+            let MuCount { inside, at_zero, at_minus_one, above, below, complex } = exact.roots;
+            assert_eq!(inside + at_zero + at_minus_one + above + below + complex, frame.kept.len());
             let mut blocks = IntegerProgram::new(&system).half_period(&system, &frame);
             // Where forms decide, they do so without the trace, too.
             if grows_by_trace(&blocks) {

@@ -16,7 +16,7 @@ pub enum Mask {
 /// The frictions that mask the resonances of a system.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Masked {
-    /// At this one something is proven to grow.
+    /// At this one something is proven to grow; 0 where that is known without friction alone.
     pub grows: f64,
     /// Ranges of frictions that are proven to mask, increasing, at least one. The last has no end where all larger ones are proven to.
     pub ranges: Vec<(f64, f64)>,
@@ -117,7 +117,8 @@ impl Search<'_> {
     /// Neighbours of which something grows at the first and nothing at the second.
     fn bisected(&self, mut lo: f64, mut hi: f64) -> (f64, f64) {
         while hi > lo * (1.0 + self.width) {
-            let middle = if hi > 4.0 * lo { (lo * hi).sqrt() } else { lo + (hi - lo) / 2.0 };
+            let is_far = lo > 0.0 && hi > 4.0 * lo;
+            let middle = if is_far { (lo * hi).sqrt() } else { lo + (hi - lo) / 2.0 };
             match (self.side)(middle) {
                 Some(Damping::Growing) => lo = middle,
                 Some(Damping::Damped) => hi = middle,

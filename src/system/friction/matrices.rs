@@ -18,8 +18,7 @@ use crate::system::linear::sparse::Symmetric;
 use crate::system::linear::system::{Potential, System};
 use crate::system::verdict::decide::decide_by;
 use crate::system::verdict::limits::{Limits, Route, degrees_of_freedom};
-use crate::system::verdict::measured::Holds;
-use crate::verdict::{self, Tier};
+use crate::verdict::{self, Kind, Tier};
 
 /// The effect of friction on a system.
 #[derive(Clone, Debug, PartialEq)]
@@ -227,13 +226,16 @@ impl<'a> Damped<'a> {
         let side = |rate: f64| self.at(&exact(rate)).0;
         // A friction that is next to none: does anything grow?
         let least = 1e-6 / self.period;
-        match side(least) {
-            Some(Damping::Growing) => {}
-            None if decide_by(Route::Cheapest, part, limits)?.holds() != Holds::Stable => {
-                return Ok(Mask::NotTold);
-            }
+        let grows = match side(least) {
+            Some(Damping::Growing) => least,
+            None => match decide_by(Route::Cheapest, part, limits)?.kind {
+                Some(kind) if kind.is_stable() => return Ok(Mask::NotNeeded),
+                // Without any.
+                Some(Kind::Hyperbolic) => 0.0,
+                _ => return Ok(Mask::NotTold),
+            },
             _ => return Ok(Mask::NotNeeded),
-        }
+        };
         let end = |rate: f64| rate.is_finite().then(|| exact(rate));
         let masks = |lo: f64, hi: f64| {
             let own = self.ranged.as_ref();
@@ -250,7 +252,7 @@ impl<'a> Damped<'a> {
             per_octave: if self.part.size() <= FEW && self.ranged.is_some() { 4 } else { 1 },
             width: if is_one { 1e-10 } else { 1e-4 },
         };
-        Ok(search.above(least))
+        Ok(search.above(grows))
     }
 }
 
