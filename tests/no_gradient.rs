@@ -2,7 +2,7 @@
 
 use kickdrift::number::Rational;
 use kickdrift::number::rational::{ratio, to_f64};
-use kickdrift::scene::SystemScene;
+use kickdrift::scene::{Axis, Scan, SystemScene};
 use kickdrift::system::{Analysis, Jacobians, Limits, Model, Potential, Route, Symmetric, System, middle};
 use kickdrift::verdict::Kind;
 use nalgebra::DMatrix;
@@ -203,72 +203,15 @@ fn what_no_force_sees_is_set_apart() {
     assert!((own - other).abs() < 1e-12, "{own} {other}");
 }
 
+/// Two oscillators that do not grow, with steps and without: nothing is added, and no double beside 0.
 #[test]
-fn stretches_of_outer_steps_hold_what_exact_arithmetic_says_of_steps_in_them() {
-    let (mut numbers, mut seen) = (Numbers(17), [0, 0]);
-    let (mut told, mut whole) = (0.0, 0.0);
-    for _ in 0..40 {
-        let n = 1 + numbers.below(4) as usize;
-        let masses: Vec<_> = (0..n).map(|_| ratio(1 + numbers.below(3), 1)).collect();
-        let (fast, slow) = (numbers.jacobian(n, 4, 2), numbers.jacobian(n, 0, 2));
-        let (inner, times) = (ratio(1, 20), ratio(1 + numbers.below(4), 1));
-        let given = [(fast, inner.clone(), ratio(0, 1)), (slow, &inner * &times, ratio(0, 1))];
-        let own = Jacobians::rational(&masses, &given).unwrap();
-        let (lo, hi) = (0.2, 3.0);
-        let found = own.stretches((lo, hi), 1e-3).unwrap();
-        assert!((found[0].lo, found.last().unwrap().hi) == (lo, hi));
-        assert!(found.windows(2).all(|pair| pair[0].hi == pair[1].lo), "{found:?}");
-        let longest = if times > ratio(1, 1) { &inner * &times } else { inner };
-        for stretch in &found {
-            whole += stretch.hi - stretch.lo;
-            let Some(stable) = stretch.verdict.is_stable() else { continue };
-            told += stretch.hi - stretch.lo;
-            for k in 1..4 {
-                let step = stretch.lo + (stretch.hi - stretch.lo) * f64::from(k) / 4.0;
-                // As a rational with few digits, where one is in the stretch.
-                let step = ratio((step * 1e4).round() as i64, 10_000);
-                if !(stretch.lo..=stretch.hi).contains(&to_f64(&step)) {
-                    continue;
-                }
-                let exact = own.slowed(&(&step / &longest)).unwrap();
-                let exact = exact.decide(Route::Exact, &Limits::default()).unwrap();
-                assert_eq!(exact.is_unstable(), !stable, "{step} in {stretch:?} {given:?}");
-                seen[usize::from(stable)] += 1;
-            }
-        }
-    }
-    assert!(seen.iter().all(|&n| n > 50), "{seen:?}");
-    assert!(told > 0.9 * whole, "{told} of {whole}");
-}
-
-#[test]
-fn the_first_unstable_step_of_a_direct_force_is_beside_the_one_of_its_symmetric_part() {
-    // Two oscillators that the slow force turns into each other: apart enough to stand it at short steps.
-    let file = |turn: i64, symmetric: bool| {
-        let mut file = json!({
-            "schema": "kickdrift/system/1", "masses": [1, 1],
-            "potentials": [
-                {"step": "1/50", "stiffness": [[400, 0], [0, 100]]},
-                {"step": "4/25", "stiffness": [["20", turn.to_string()], [(if symmetric { turn } else { -turn }).to_string(), "20"]]},
-            ],
-        });
-        if !symmetric {
-            file["symmetric"] = false.into();
-        }
-        SystemScene::read(&file.to_string()).unwrap()
-    };
-    let span = "outer=1/10..1/5".parse().unwrap();
-    let first = |scene: &SystemScene| {
-        scene.intervals(&span, 1e-4, &Limits::default()).unwrap().first_unstable().expect("some")
-    };
-    let (direct, gradient) = (first(&file(1, false)), first(&file(0, true)));
-    assert!(
-        direct.1 - direct.0 < 1e-4 && (direct.0 / gradient.0 - 1.0).abs() < 1e-2,
-        "{direct:?} {gradient:?}"
-    );
-    // Both are asked about one step, too.
-    let nearest = file(1, false).nearest_unstable(1e-3, &Limits::default()).unwrap();
-    assert!(nearest.above.is_some() || nearest.own.is_some(), "{nearest:?}");
+fn steps_that_add_nothing_to_what_does_not_grow_add_zero() {
+    let file = r#"{"schema": "kickdrift/system/1", "symmetric": false, "masses": [1, 1],
+        "potentials": [{"step": "1/10", "stiffness": [["4", "1/10"], ["1/5", "1"]]}]}"#;
+    let scene = SystemScene::read(file).unwrap();
+    let analysis = scene.model().decide(Route::Cheapest, &Limits::default()).unwrap();
+    assert!(analysis.is_stable());
+    assert_eq!(scene.model().jacobians().unwrap().no_gradient().added_by_steps(&analysis), Some((0.0, 0.0)));
 }
 
 #[test]
@@ -282,6 +225,16 @@ fn what_needs_gradients_is_refused() {
     ];
     assert!(errors.iter().all(|error| !error.to_string().contains('\n')), "{errors:?}");
     assert!(matches!(scene.model(), Model::NoGradient(_)));
+    // What is named instead of intervals answers.
+    let span = "outer=1/10..1/5".parse().unwrap();
+    let error = scene.intervals(&span, 1e-2, &limits).unwrap_err().to_string();
+    assert!(error.contains("--scan outer=LO..HI:BY"), "{error}");
+    assert_eq!(scene.nearest_unstable(1e-2, &limits).unwrap_err().field(), "nearest");
+    let axis: Axis = "outer=1/10..1/5:1/20".parse().unwrap();
+    let (outer, scan) = (axis.values(), Scan::new(scene, axis, None).unwrap());
+    let decides =
+        |outer: &Rational| scan.at(outer, outer).unwrap().model().decide(Route::Cheapest, &limits).is_ok();
+    assert!(outer.iter().all(decides));
 }
 
 /// Two oscillators alike of 10 fs and one of 13 fs, cheap forces every 1/2 fs; a correction whose Jacobian is not symmetric every `outer` fs.

@@ -79,7 +79,6 @@ const LINES: [&str; 72] = [
     "polynomial --ratio 7/4",
     "polynomial --ratio 1",
     "half --ratio 5/3 --s 11/4 --rho -1/25",
-    "state --lambda1 pi^2 --lambda2 pi^2/25 --h1 1/100 --h2 0.333 --steps 1000000000000000000",
     "map --label --growth --lambda1 10 --lambda2 -2/5 --step 1/10 --h1-range 1/10..1/2 --h2-range 1/10..3",
     "map --lambda1 pi^2 --lambda2 pi^2/25 --step1 1/10 --step2 1/7 --h1-range 1/10..2/pi --h2-range 1/20..7/2",
     "system data/scenes/diatomic-tether.json",

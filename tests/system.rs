@@ -477,6 +477,14 @@ proptest! {
     }
 }
 
+/// Waves around a ring of five come in pairs: each multiplier is there twice.
+#[test]
+fn counts_of_multipliers_have_their_multiplicities() {
+    let system = ring(5, [&ratio(1, 1), &ratio(1, 1)], [ratio(1, 4), ratio(1, 4)], ratio(0, 1));
+    let exact = decide_exact(&system, &Limits::default()).unwrap();
+    assert_eq!((exact.roots.inside, exact.kind), (4, Kind::Elliptic));
+}
+
 #[test]
 fn the_exact_route_counts_every_root_or_tells_its_cost() {
     let system = ring(8, [&ratio(4, 1), &ratio(1, 1)], [ratio(1, 4), ratio(3, 5)], ratio(1, 2));

@@ -809,8 +809,9 @@ class SystemVerdict(Document):
 
     @property
     def friction(self) -> Mapping[str, Any] | None:
-        """What the friction asked for does: ``rate``, ``damping``, ``growth_rate`` with it, and ``masking``, the
-        smallest rate that masks the growth."""
+        """What the friction asked for does: ``rate``, ``damping``, ``growth_rate`` with it, and ``masking``: at
+        ``lo`` something grows still, at ``hi`` nothing does, ``ranges`` of rates are proven to mask all growth, and
+        ``stays`` says whether every larger rate is."""
         return self._beside("friction")
 
     @property

@@ -127,8 +127,9 @@ class Verdict:
 
     @property
     def friction(self) -> Mapping[str, Any] | None:
-        """What the friction asked for does: ``rate``, ``damping``, ``growth_rate`` with it, and ``masking``, the
-        smallest rate that masks the growth.
+        """What the friction asked for does: ``rate``, ``damping``, ``growth_rate`` with it, and ``masking``: at
+        ``lo`` it grows still, at ``hi`` it does not, ``ranges`` of rates are proven to mask the growth, and
+        ``stays`` says whether every larger rate is.
 
         Examples
         --------

@@ -17,6 +17,7 @@ use crate::named::named;
 use crate::number::rational::{enclose_f64, from_f64_exact, to_f64};
 use crate::number::{Ball, Laurent, Ratio, Rational};
 use crate::system::Limits;
+use crate::system::friction::Masked;
 
 const BITS: u32 = 128;
 
@@ -55,10 +56,8 @@ pub struct Row {
     pub inside: Option<Unstable>,
     /// Open intervals from the first one on, up to some way beyond the scheme and the first of them; at most 32.
     pub intervals: Vec<Unstable>,
-    /// Where it grows: the friction per fs just above which that is masked (BAOAB), no smaller one doing so, enclosed.
-    pub masking: Option<(f64, f64)>,
-    /// Whether every larger one is proven to mask it, too.
-    pub masking_stays: Option<bool>,
+    /// Where it grows: the frictions per fs that mask that (BAOAB).
+    pub masking: Option<Masked>,
     /// Whether the friction given keeps it bounded.
     pub is_damped: Option<bool>,
     /// With two clocks, where it grows: with the inner step every ratio of steps from lo to hi, rational or not, is unstable; `None` where
@@ -233,12 +232,11 @@ impl Question {
         let levels = Levels { scheme, stiffness: self.with(mode) };
         let found = levels.decide(&Limits::default())?;
         let tenfold_steps = (found.rate.0 > 0.0).then(|| tenfold(found.rate, scheme.outer()));
-        let (masking, masking_stays) = tenfold_steps.and_then(|_| levels.masking()).unzip();
+        let masking = tenfold_steps.and_then(|_| levels.masking());
         let mut row = Row {
             mode,
             tenfold_steps,
             masking,
-            masking_stays,
             is_damped: self.friction.as_ref().and_then(|rate| levels.is_damped_by(rate)),
             found,
             ratios: None,

@@ -16,8 +16,8 @@ use super::names::Names;
 use super::question::{check_band, check_friction, check_length};
 use crate::error::{Error, Result};
 use crate::named::named;
-use crate::number::Rational;
 use crate::number::rational::to_f64;
+use crate::number::{Rational, outward};
 use crate::system::friction::Damping;
 use crate::system::{Jacobians, Limits};
 
@@ -282,7 +282,7 @@ impl Direct {
             rate,
             adds,
             in_band,
-            added: added.map(|((lo, hi), (least, most))| ((lo - most).next_down(), (hi - least).next_up())),
+            added: added.map(|((lo, hi), (least, most))| outward((lo - most, hi - least))),
             within_accuracy: at.within_accuracy().map(|own| self.per_fs(own)),
             tenfold_steps,
             atoms: at.fastest().filter(|_| tenfold_steps.is_some()).map(|own| self.atoms(&own)),

@@ -21,7 +21,7 @@ use crate::error::{Error, Result};
 use crate::number::rational::{enclose_f64, from_f64_exact};
 use crate::number::{Ball, ExactSign, Laurent, Rational, Real, Sign, bisected};
 use crate::schedule::{KickDrift, Kicks, Schedule};
-use crate::system::friction::{Damping, damped, masking};
+use crate::system::friction::{Damping, Friction, Mask, Masked, damped_oscillator};
 use crate::system::{Limits, ManyClocks, Potential, Symmetric, System, decide_oscillator};
 use crate::verdict::Kind;
 
@@ -172,18 +172,23 @@ impl Levels<'_> {
         (0..self.stiffness.len()).collect()
     }
 
-    /// The friction per fs just above which a resonance is masked, enclosed, and whether all larger ones are proven to mask it; `None` where nothing
-    /// grows or the period is too long to decide.
-    pub fn masking(&self) -> Option<((f64, f64), bool)> {
-        let found = masking(&self.clocks(&self.all()).ok()?).ok()??;
-        let first = Ball::from_rational(self.scheme.inner(), BITS);
-        Some((found.rate.div(&first, BITS)?.to_f64_enclosure(), found.stays))
+    /// The frictions per fs that mask a resonance; `None` where nothing grows or none was found.
+    pub fn masking(&self) -> Option<Masked> {
+        // Any friction: the answer on those that mask is the same.
+        match self.with_friction(&self.scheme.inner().recip())?.masking {
+            Mask::At(own) => Some(own),
+            _ => None,
+        }
     }
 
     /// Whether this friction per fs keeps all bounded; `None` where that is not proven either way.
     pub fn is_damped_by(&self, rate: &Rational) -> Option<bool> {
-        let rate = rate * self.scheme.inner();
-        Some(damped(&self.clocks(&self.all()).ok()?, &rate).ok()?.damping == Damping::Damped)
+        Some(self.with_friction(rate)?.damping? == Damping::Damped)
+    }
+
+    fn with_friction(&self, rate: &Rational) -> Option<Friction> {
+        let first = Laurent::from_rational(self.scheme.inner().clone());
+        damped_oscillator(&self.clocks(&self.all()).ok()?, &first, rate).ok()
     }
 
     fn clocks(&self, heard: &[usize]) -> Result<ManyClocks<Laurent>> {

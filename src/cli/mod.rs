@@ -34,7 +34,7 @@ use clap::{Command as Program, CommandFactory, FromArgMatches, Parser, Subcomman
 
 use crate::error::Result;
 use crate::format::Format;
-use crate::question::{Closings, Curves, Half, Polynomial, Proposition, Question, State};
+use crate::question::{Closings, Curves, Half, Polynomial, Proposition, Question};
 #[cfg(unix)]
 use crate::report::file::abandon;
 use crate::report::file::{captured, is_captured, stdout_is_closed, writable, write_output};
@@ -68,8 +68,6 @@ enum Command {
     Polynomial(Asked<Polynomial>),
     /// The half period of one ratio in numbers: its four entries, exact and enclosed.
     Half(Asked<Half>),
-    /// Position and velocity after any number of steps, 10^18 too, without following them.
-    State(Asked<State>),
     /// The verdicts of a grid of step pairs: counts, and the unstable pairs as a table.
     Map(map::Args),
     /// Joins the parts of a map that map --shard K/N --resume DIR has computed.
@@ -232,7 +230,6 @@ fn run(cli: &Cli) -> Result<u8> {
         Command::Compare(args) => args.run(common)?,
         Command::Proposition(args) => args.run(common, Default::Text)?,
         Command::Half(args) => args.run(common, Default::Text)?,
-        Command::State(args) => args.run(common, Default::Text)?,
         Command::Polynomial(args) => args.run(common, Default::Text)?,
         Command::Map(args) => args.run(common)?,
         Command::Merge(args) => args.run(common)?,

@@ -104,7 +104,7 @@ impl Args {
 
     /// 0 or 1.
     fn code(&self, holds: Holds) -> Result<u8> {
-        let remedy = "doubles do not prove whether it is stable: choose another step, or --exact if its stiffnesses are dense";
+        let remedy = "doubles do not prove whether it is stable: choose another step, or --exact if its stiffnesses are dense and written without pi";
         let stable = holds.is_stable().ok_or_else(|| Error::input("file", self.file.display(), remedy))?;
         Ok(u8::from(!stable))
     }

@@ -8,6 +8,12 @@ use num_bigint::{BigInt, BigUint, Sign as IntSign};
 use num_integer::Integer;
 use num_traits::{Float, ToPrimitive, Zero};
 
+/// Ends of doubles that one sum or one product rounded, moved outward: what is 0 is so exactly, unless a product vanished.
+#[cfg(any(feature = "advise", feature = "system"))]
+pub(crate) fn outward((lo, hi): (f64, f64)) -> (f64, f64) {
+    (if lo == 0.0 { 0.0 } else { lo.next_down() }, if hi == 0.0 { 0.0 } else { hi.next_up() })
+}
+
 /// A positive number x with `lead 2^exp <= x < (lead + 1) 2^exp`, where lead has 64 significant bits.
 struct Leading {
     lead: u64,

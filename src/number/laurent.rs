@@ -12,11 +12,6 @@
 
 mod display;
 mod enclose;
-#[cfg(feature = "system")]
-mod integral;
-
-#[cfg(feature = "system")]
-pub(crate) use integral::PiInteger;
 
 use std::cmp::Ordering;
 use std::collections::BTreeMap;

@@ -29,8 +29,6 @@ pub mod ball;
 #[cfg(any(feature = "advise", feature = "system"))]
 mod bisect;
 pub mod cyclotomic;
-#[cfg(feature = "system")]
-mod domain;
 mod element;
 mod enclosed;
 mod float;
@@ -52,13 +50,11 @@ pub use ball::Ball;
 #[cfg(any(feature = "advise", feature = "system"))]
 pub(crate) use bisect::bisected;
 pub use cyclotomic::{Cyclotomic, CyclotomicField};
-#[cfg(feature = "system")]
-pub(crate) use domain::Domain;
 pub use element::{Element, NumberField};
 pub(crate) use enclosed::Enclosed;
+#[cfg(any(feature = "advise", feature = "system"))]
+pub(crate) use float::outward;
 pub use laurent::Laurent;
-#[cfg(feature = "system")]
-pub(crate) use laurent::PiInteger;
 pub use polynomial::Polynomial;
 pub(crate) use prime_field::Lift;
 pub use prime_field::{PrimeField, prime_fields};

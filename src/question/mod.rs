@@ -35,7 +35,6 @@ mod scene;
 mod side;
 #[cfg(feature = "system")]
 mod simulate;
-mod state;
 mod survey;
 #[cfg(feature = "system")]
 mod system;
@@ -62,7 +61,6 @@ pub use scene::{FAMILIES, LONGEST_SCENE, Scene};
 pub use side::{CompareMethods, Side};
 #[cfg(feature = "system")]
 pub use simulate::{Answer as Simulated, Displacement, Simulate};
-pub use state::State;
 pub use survey::{Survey, THINNEST};
 #[cfg(feature = "system")]
 pub use system::{Answer as SystemAnswer, Found, System};
@@ -132,7 +130,6 @@ fn named(name: &str) -> Result<&'static Named> {
         Named::of::<Proposition>(),
         Named::of::<Polynomial>(),
         Named::of::<Half>(),
-        Named::of::<State>(),
         Named::of::<Closings>(),
         Named::of::<Survey>(),
         Named::of::<Bands>(),

@@ -16,12 +16,11 @@
 //! | curves | arcsines | arctangents; the samples again in doubles |
 //! | polynomial | products of polynomials | the full period at rational points |
 //! | system-verdict, system-map, simulate | signs, discs, simulation | exact arithmetic; the dense full period |
-//! | system-intervals | cells of signs, counts and discs | half periods at steps in the stretches, and the order of Krein's signs between; large schemes run; exact arithmetic where there is no gradient |
+//! | system-intervals | cells of signs, counts and discs | half periods at steps in the stretches, and the order of Krein's signs between; large schemes run |
 //! | bands | a common cone of return maps, in doubles with bounds | pairs in the boxes, worst placed, by the ladder |
 //! | compare-methods | polynomials in s, balls over y = h w/2 | traces letter by letter in doubles; those of trigonometric integrators by their formula |
 //! | word, methods | polynomials in s, Sturm chains | letter by letter, in numbers of the field, at a step of each interval; halved steps |
 //! | half | the half period, kick by kick | its determinant; the trace of the full period |
-//! | state | a power of the period and return maps | kick by kick |
 //! | run | the names of the products | none |
 //! | proposition | Bézout's identity | eqs. (9) and (10) in integers |
 //! | advise-direct | half periods in doubles, discs of eigenvalues | the dense full period in doubles |
@@ -86,7 +85,6 @@ mod proposition;
 mod run;
 mod sample;
 mod side;
-mod state;
 mod survey;
 #[cfg(feature = "system")]
 mod system;
@@ -162,7 +160,6 @@ claims! {
     "proposition" Proposition proposition::Claim;
     "run" Run run::Claim;
     "half" Half half::Claim;
-    "state" State state::Claim;
     "bands" Bands bands::Claim;
     "word" Word word::Claim;
     "methods" Methods word::Listed;

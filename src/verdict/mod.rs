@@ -25,7 +25,6 @@ mod kind;
 mod label;
 mod ladder;
 mod lone;
-mod state;
 mod tier;
 
 pub use crate::propagator::{HalfSigns, PartialSigns};
@@ -35,5 +34,4 @@ pub use growth::{Growth, filter_trace, growth, long_growth};
 pub use kind::{Kind, Side, Verdict};
 pub(crate) use label::label;
 pub use ladder::{decide, decide_anew, decide_from, decide_long, decide_steps, decide_with_growth};
-pub use state::propagator_after;
 pub use tier::{Limits, Tier};

@@ -201,11 +201,27 @@ fn friction_masks_a_resonance_from_where_it_is_told() {
         let question = Question::new(modes.clone(), vec![scheme("0.48,4.8")], ratio(1, 20)).unwrap();
         question.with_friction(rate).unwrap().answer().unwrap().schemes.remove(0).rows.remove(0)
     };
-    let (lo, hi) = ask(ratio(1, 1000)).masking.unwrap();
-    // Between 38 and 39/ps (THEORY).
-    assert!(0.038 < lo && hi < 0.039 && hi - lo < 1e-12, "{lo} {hi}");
+    let mask = ask(ratio(1, 1000)).masking.unwrap();
+    let (lo, hi) = (mask.grows, mask.least());
+    // Between 38 and 39/ps (THEORY), bisected to 10^-10.
+    assert!(mask.stays() && 0.038 < lo && hi < 0.039 && hi - lo < 1e-11, "{mask:?}");
     let at = |x: f64| ask(from_f64_exact(x).unwrap()).is_damped;
     assert_eq!([at(0.999 * lo), at(1.001 * hi)], [Some(false), Some(true)]);
+}
+
+/// Periods of 1 and 1.0733 ps with steps of 310 and 2,480 fs are damped at 0.0393 to 0.066/ps, and at no larger friction.
+#[test]
+fn a_friction_beyond_those_that_mask_is_not_said_to() {
+    let modes = ["bead=1ps", "slow=1.0733ps"].map(|text| Mode::from_period(text).unwrap()).to_vec();
+    let question = Question::new(modes, vec![scheme("310,2480")], ratio(1, 20)).unwrap();
+    let answer = question.with_friction(ratio(3, 1000)).unwrap().answer().unwrap();
+    let masked: Vec<_> = answer.schemes[0].rows.iter().filter_map(|row| row.masking.as_ref()).collect();
+    assert!(!masked.is_empty() && masked.iter().any(|mask| !mask.stays()), "{masked:?}");
+    let rows =
+        answer.schemes[0].rows.iter().filter(|row| row.masking.as_ref().is_some_and(|mask| !mask.stays()));
+    assert!(rows.into_iter().all(|row| row.is_damped == Some(false)));
+    let text = kickdrift::report::advise::text(&answer);
+    assert!(text.contains("frictions of") && !text.contains("only a friction"), "{text}");
 }
 
 #[test]
@@ -372,12 +388,12 @@ fn a_silent_clock_damps_as_one_that_is_hardly_heard() {
         let question = Question::new(modes, vec![scheme], ratio(1, 20)).unwrap();
         let answer = question.with_friction(ratio(1, 2)).unwrap().answer().unwrap();
         let row = &answer.schemes[0].rows[0];
-        (row.is_damped, row.masking)
+        (row.is_damped, row.masking.clone())
     };
     let ((alone, mask), (heard, near)) = (damped(""), damped("x=1000000000fs"));
     assert_eq!(alone, heard);
     if let (Some(a), Some(b)) = (mask, near) {
-        assert!((a.0 / b.0 - 1.0).abs() < 1e-6, "{a:?} {b:?}");
+        assert!((a.least() / b.least() - 1.0).abs() < 1e-6, "{a:?} {b:?}");
     }
 }
 

@@ -310,7 +310,6 @@ fn every_command_explains_itself() {
         "proposition",
         "polynomial",
         "half",
-        "state",
         "map",
         "run",
         "tongues",

@@ -4,7 +4,7 @@ use kickdrift::number::rational::ratio;
 use kickdrift::number::{Laurent, Ratio, Rational};
 use kickdrift::propagator::{LongClocks, Oscillator, TwoClocks};
 use kickdrift::tongue::Tongues;
-use kickdrift::verdict::{Kind, Limits, Tier, decide_from, decide_long, propagator_after};
+use kickdrift::verdict::{Kind, Limits, Tier, decide_from, decide_long};
 
 /// Numbers that repeat, below `end`.
 struct Numbers(u64);
@@ -93,45 +93,6 @@ fn verdicts_change_at_edges_however_near() {
         }
     }
     assert!(tested > 60, "{tested}");
-}
-
-/// Kick by kick in exact arithmetic, for numbers of steps within periods and beyond them.
-#[test]
-fn states_after_many_steps_are_what_kicks_give() {
-    let mut numbers = Numbers(17);
-    for _ in 0..200 {
-        let steps = Ratio::new(1 + numbers.next(9), 1 + numbers.next(9)).unwrap();
-        let s = ratio(1 + numbers.next(60) as i64, 10);
-        let k = ratio(numbers.next(40) as i64 - 15, 10);
-        let (n, zero) = (numbers.next(25), Rational::default());
-        let clocks = TwoClocks::new(steps, s.clone(), k.clone());
-        let found = propagator_after(&LongClocks::from(&clocks), n).unwrap();
-        let slow = |j: u64| Rational::new((j * steps.p()).into(), steps.q().into());
-        let end = slow(n);
-        let mut kicks: Vec<_> = (0..=n).map(|j| (slow(j), &k)).collect();
-        kicks.extend(
-            (0u64..).map(|i| Rational::from_integer(i.into())).take_while(|t| *t <= end).map(|t| (t, &s)),
-        );
-        kicks.sort();
-        let mut columns = [[ratio(1, 1), ratio(0, 1)], [ratio(0, 1), ratio(1, 1)]];
-        let mut now = zero.clone();
-        for (time, strength) in kicks.into_iter().filter(|_| n > 0) {
-            let weight = if time == zero || time == end { ratio(1, 2) } else { ratio(1, 1) };
-            for [x, v] in &mut columns {
-                *x += (&time - &now) * &*v;
-                *v -= strength * &weight * &*x;
-            }
-            now = time;
-        }
-        let [[xx, vx], [xv, vv]] = columns;
-        for (ball, exact) in found.iter().zip([xx, xv, vx, vv]) {
-            assert!(ball.contains(&exact), "{clocks:?}, {n} steps: {ball:?} {exact}");
-            // Beside the largest entry: the others may nearly cancel.
-            let size = found.iter().map(|own| own.mid_f64().abs()).fold(0.0, f64::max);
-            let width = ball.radius_log2().map_or(i64::MIN, |log2| log2 - size.log2() as i64);
-            assert!(width < -150, "{clocks:?}, {n} steps: {ball:?}");
-        }
-    }
 }
 
 /// Steps that are doubles of any exponents, subnormal ones too, with kicks of ordinary strength.

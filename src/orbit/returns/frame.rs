@@ -277,7 +277,7 @@ impl<T: Coefficient> Frame<T> {
     }
 
     fn half<P: Coefficient>(&self) -> Option<Half<T::Enclosure>> {
-        let (mut journey, _) = self.kicked::<P>(self.beat.q / 2)?;
+        let mut journey = self.kicked::<P>(self.beat.q / 2)?;
         self.close(&mut journey)?;
         let (exponent, turn) = (journey.exponent, journey.turn);
         let entries = journey.entries()?;
@@ -285,13 +285,12 @@ impl<T: Coefficient> Frame<T> {
         Some(Half { entries, exponent, nodes })
     }
 
-    /// From t = 0 through the first n kicks of the other clock, the last one whole, and the place reached.
-    fn kicked<P: Coefficient>(&self, n: u128) -> Option<(Journey<'_, T>, i128)> {
-        let (mut middle, mut place) = (Map::<P>::identity(), 0);
+    /// From t = 0 through the first n kicks of the other clock, the last one whole.
+    fn kicked<P: Coefficient>(&self, n: u128) -> Option<Journey<'_, T>> {
+        let mut middle = Map::<P>::identity();
         if n > 0 {
             let [left, right] = self.branches()?;
-            let reached = euclid::walk(left, right, n, middle, &mut Budget::of::<T>())?;
-            (middle, place) = (reached.product, reached.x);
+            middle = euclid::walk(left, right, n, middle, &mut Budget::of::<T>())?.product;
         }
         let (zero, one) = (self.zero(), self.one());
         // Half a kick of the other clock at t = 0.
@@ -303,28 +302,7 @@ impl<T: Coefficient> Frame<T> {
             exponent: middle.exponent,
         };
         journey.go(&middle.enclosures::<T>(self.bits), |turn, angle| turn.then(middle.turn?, angle));
-        Some((journey, place))
-    }
-
-    /// From the middle of the kicks at t = 0 to the middle of the other clock's kick after n steps, and the power of two that the
-    /// entries are to be multiplied by: whole periods as a power, and the rest.
-    pub fn after(&self, n: &BigUint) -> Option<(Matrix<T::Enclosure>, i128)> {
-        let (periods, rest) = n.div_rem(&BigUint::from(self.beat.q));
-        let rest = rest.to_u128()?;
-        let Half { entries: [a, b, c, d], exponent, .. } = self.half::<T>()?;
-        // The second half is the first one backwards.
-        let period = product(&[d.clone(), b.clone(), c.clone(), a.clone()], &[a, b, c, d]);
-        let (whole, scaled) = power(&period, &self.identity(), &periods);
-        let exponent = exponent.checked_mul(2)?.checked_mul(periods.to_i128()?)?.checked_add(scaled)?;
-        if rest == 0 {
-            return Some((whole, exponent));
-        }
-        let (mut journey, place) = self.kicked::<T>(rest)?;
-        let at = self.quotient(place, self.beat.q);
-        self.take_back_half(&mut journey, &at);
-        self.drift_from_kick(&mut journey, self.unit.times(&at))?;
-        let exponent = exponent.checked_add(journey.exponent)?;
-        Some((product(&journey.entries()?, &whole), exponent))
+        Some(journey)
     }
 
     /// The rest from the last kick of the other clock up to T/2, or half a kick less.
@@ -332,7 +310,7 @@ impl<T: Coefficient> Frame<T> {
         let Beat { whole, rest, q } = &self.beat;
         let p = self.beat.p();
         if q % 2 == 0 {
-            self.take_back_half(journey, &self.one().scale2(-1));
+            self.take_back_half(journey);
         } else {
             let passed = whole * (q / 2) + BigUint::from(q / 2) * *rest / *q;
             let rotation = self.rotation(&((&p >> 1u32) - passed))?;
@@ -345,21 +323,21 @@ impl<T: Coefficient> Frame<T> {
         }
         if p.bit(0) {
             // T/2 is half way between two strikes of the base.
-            self.drift_from_kick(journey, self.unit.scale2(-1))?;
+            self.drift_half(journey)?;
         }
         Some(())
     }
 
-    /// Half of the other clock's last kick, at this offset, taken back.
-    fn take_back_half(&self, journey: &mut Journey<T>, at: &T::Enclosure) {
-        let [undo, ..] = self.nilpotent(at, &self.zero());
+    /// Half of the other clock's last kick, half way between two of the base's, taken back.
+    fn take_back_half(&self, journey: &mut Journey<T>) {
+        let [undo, ..] = self.nilpotent(&self.one().scale2(-1), &self.zero());
         let [undo] = self.shear(&[undo], &self.k.scale2(-1).negative());
         journey.go(&undo, |turn, angle| Some(turn.sheared(!self.is_clockwise(), angle)));
     }
 
-    /// From the middle of a kick of the base through its second half and a drift by so many units of the velocity.
-    fn drift_from_kick(&self, journey: &mut Journey<T>, drift: T::Enclosure) -> Option<()> {
-        let (zero, one) = (self.zero(), self.one());
+    /// From the middle of a kick of the base through its second half and half a drift.
+    fn drift_half(&self, journey: &mut Journey<T>) -> Option<()> {
+        let (zero, one, drift) = (self.zero(), self.one(), self.unit.scale2(-1));
         let is_attracting = self.s.sign() != Some(Sign::Negative);
         let kick = self.s.over(&self.unit)?.scale2(-1).negative();
         journey.go(&[one.clone(), zero.clone(), kick, one.clone()], |turn, angle| {

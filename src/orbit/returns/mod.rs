@@ -29,14 +29,11 @@ mod series;
 mod slow;
 mod turn;
 
-use num_bigint::BigUint;
-
 use super::ends::Ends;
 use crate::number::rational::to_f64;
 use crate::number::{Ball, Ratio, Rational, Real, Twofold};
 use crate::propagator::{LongClocks, PartialSigns};
-use enclosure::Enclosure;
-use frame::{Found, Frame, exponent_of_balls};
+use frame::{Found, Frame};
 use number::{Coefficient, Long};
 
 /// The precisions, in bits.
@@ -73,12 +70,6 @@ pub fn run<S: Real>(clocks: &LongClocks<S>, bits: u32, wanted: Wanted) -> Option
 /// The signs alone: of entries, too, whose logarithms no exponent of a ball holds.
 pub fn signs<S: Real>(clocks: &LongClocks<S>, bits: u32) -> Option<PartialSigns> {
     Some(better(clocks, bits, Wanted::Entries)?.signs)
-}
-
-/// The propagator over n steps of the slow clock, from the middle of the kicks at t = 0 to the middle of its kick there, in the time
-/// unit h1; `None` where the bound loses all digits, a product costs too much or the entries have more than 2^58 binary digits.
-pub fn after<S: Real>(clocks: &LongClocks<S>, n: &BigUint) -> Option<[Ball; 4]> {
-    walked_to(&Frame::<Long>::new(clocks, false)?, n)
 }
 
 /// As [`run`], over the clock that distorts more alone: another route to the same numbers.
@@ -145,13 +136,6 @@ impl Walk for Long {
             _ => frame.found::<Long>(),
         }
     }
-}
-
-/// As [`Walk`], of the propagator over n kicks.
-fn walked_to(frame: &Frame<Long>, n: &BigUint) -> Option<[Ball; 4]> {
-    let (entries, exponent) = frame.after(n)?;
-    let exponent = exponent_of_balls(exponent)?;
-    Some(entries.map(|x| x.ball().scale2(exponent)))
 }
 
 /// Whether the slow clock's kicks distort the fast one's turn no more than the other way round, about.

@@ -63,7 +63,7 @@ rows! {
         pub growth_rate: Ends,
         pub tenfold_steps: Ends | null,
         pub masked_above: Ends | null,
-        pub masked_stays: bool | null,
+        pub masked_below: f64 | null,
         pub damped: bool | null,
         pub ratios_lower: Written<Rational> | null,
         pub ratios_upper: Written<Rational> | null,

@@ -72,26 +72,21 @@ impl Claim {
         })
     }
 
-    /// Damped just above the friction that masks, not just below it.
+    /// Damped by the frictions that are said to mask, some larger ones where all are, and not by the one that is said not to.
     fn friction(&self, row: &Row, own: &Mass) -> Checked {
-        let per_fs =
-            |per_ps: f64, by: Rational| exact(per_ps) * by / Rational::from_integer(self.per().into());
-        let beside = |n: i64| Rational::new((1_000_000 + n).into(), 1_000_000.into());
+        let per_fs = |per_ps: f64| exact(per_ps) / Rational::from_integer(self.per().into());
         if let Some(masked) = row.masked_above {
             let grows = *row.kind == Kind::Hyperbolic && masked.lo > 0.0;
-            let right = grows
-                && own.is_damped(&per_fs(masked.hi, beside(1)))? != Some(false)
-                && own.is_damped(&per_fs(masked.lo, beside(-1)))? != Some(true);
+            let right = grows && own.is_damped(&per_fs(masked.lo))? != Some(true);
             holds(right, || "masked_above is not the friction that masks it".into())?;
-            // One of all the larger ones that are said to mask it too.
-            let larger = row.masked_stays == Some(true);
-            holds(!larger || own.is_damped(&per_fs(10.0 * masked.hi, beside(0)))? != Some(false), || {
-                "a larger friction does not mask it".into()
-            })?;
+            let (lo, hi) = (masked.hi, row.masked_below);
+            let others =
+                hi.map_or([2.0, 30.0, 1e3].map(|times| times * lo), |hi| [hi, lo + (hi - lo) / 2.0, lo]);
+            for friction in [lo].into_iter().chain(others) {
+                let masks = own.is_damped(&per_fs(friction))? != Some(false);
+                holds(masks, || format!("a friction of {friction}/ps does not mask it"))?;
+            }
         }
-        holds(row.masked_stays.is_some() == row.masked_above.is_some(), || {
-            "masked_stays is of the friction that masks".into()
-        })?;
         match (row.damped, &self.input.friction) {
             (Some(said), Some(friction)) => {
                 let truth = own.is_damped(friction)?;

@@ -11,7 +11,7 @@ use faer::Mat;
 use num_traits::One;
 
 use super::{ALONE, LEFT, outcome};
-use crate::error::{Error, Kind as Reason, Result};
+use crate::error::{Error, Result};
 use crate::number::Rational;
 use crate::number::rational::{from_f64_exact, to_f64};
 use crate::parallel::try_map;
@@ -23,7 +23,7 @@ use crate::scene::{OUTER, SystemScene};
 use crate::system::levels::Method;
 use crate::system::stretches::Stretch;
 use crate::system::vary::Intervals;
-use crate::system::{Holds, Jacobians, Limits, Model, Route, half_period};
+use crate::system::{Holds, Limits, Model, Route, half_period};
 
 /// Stretches that are looked at, unless all are asked for; all of measured levels where it costs no more than is allowed.
 const MOST: u64 = 24;
@@ -110,23 +110,15 @@ impl Claim {
         found: &Intervals,
         context: &Context,
     ) -> Result<Outcome> {
-        let model = scene.model();
         // Other systems are looked at by their steps alone.
-        let is_measured = matches!(model, Model::Measured(_));
-        if found.number != OUTER && !is_measured || found.is_discrete {
+        if !matches!(scene.model(), Model::Measured(_)) || found.is_discrete {
             return outcome(context, ALONE, Ok(()));
         }
         let all = (1..).zip(stretches).filter(|(_, own)| own.verdict != Holds::NotTold);
         let decided = Decided { of: stretches.len() as u64, drawn: all.collect(), context };
         let seed = scene.source().to_string();
-        match model {
-            Model::Measured(_) => {
-                let width = self.input.width().unwrap_or_default();
-                decided.by_half_periods(&Places::of(scene, &found.number, width)?, &seed)
-            }
-            Model::NoGradient(own) => decided.sampled(&seed).exactly(model, own),
-            _ => outcome(context, ALONE, Ok(())),
-        }
+        let width = self.input.width().unwrap_or_default();
+        decided.by_half_periods(&Places::of(scene, &found.number, width)?, &seed)
     }
 }
 
@@ -174,20 +166,6 @@ impl Decided<'_> {
         }
         found.not_rechecked.push(between.into());
         own.look(found, |stretch| places.stretch(stretch))
-    }
-
-    fn exactly(self, model: &Model, own: &Jacobians) -> Result<Outcome> {
-        let (limits, longest) = (self.context.work().products(), model.outer_step());
-        let route = "the verdict in the middle of a random sample of stretches in exact arithmetic";
-        self.look(outcome(self.context, route, Ok(()))?, |stretch| {
-            let middle = stretch.lo + (stretch.hi - stretch.lo) / 2.0;
-            let Some(middle) = from_f64_exact(middle) else { return Ok(()) };
-            let model = Model::NoGradient(Box::new(own.slowed(&(middle / &longest))?));
-            match model.exact_kind(&limits) {
-                Err(error) if error.kind() == Reason::Budget => Ok(()),
-                truth => same("verdict", stretch.verdict.name(), Holds::from(Some(truth?)).name()),
-            }
-        })
     }
 }
 

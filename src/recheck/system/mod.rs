@@ -103,7 +103,7 @@ fn verdict(
         scene.model().implicit().map_or(Ok(()), |own| implicit::in_doubles(own, analysis))?;
         dense::traces(scene, analysis)
     };
-    match exact_kind(scene, &context.work().products())? {
+    match exact_kind(scene, analysis.kind, &context.work().products())? {
         Some(truth) => {
             let route = match scene.model() {
                 Model::LocalSteps(_) => {
@@ -116,8 +116,13 @@ fn verdict(
             outcome(context, route, same_kind(analysis.kind, truth).and_then(|()| traces()))
         }
         None => {
-            let route = "multipliers by the traces of the dense full period and of its square (exact arithmetic would cost \
-                         more than is allowed)";
+            let route = match scene.model() {
+                Model::Pi(_) => "multipliers by the traces of the dense full period and of its square",
+                _ => {
+                    "multipliers by the traces of the dense full period and of its square (exact arithmetic would cost \
+                     more than is allowed)"
+                }
+            };
             outcome(context, route, traces())
         }
     }
@@ -135,8 +140,11 @@ fn seen(steps: &SparseSteps, mut outcome: Outcome) -> Outcome {
     outcome
 }
 
-/// `None` where the work exceeds the limits.
-fn exact_kind(scene: &SystemScene, limits: &Limits) -> Result<Option<Kind>> {
+/// `None` where the work exceeds the limits, and where stiffnesses are known within a bound only and no kind is claimed.
+fn exact_kind(scene: &SystemScene, claimed: Option<Kind>, limits: &Limits) -> Result<Option<Kind>> {
+    if matches!(scene.model(), Model::Pi(_)) && claimed.is_none() {
+        return Ok(None);
+    }
     match scene.model().exact_kind(limits) {
         Ok(value) => Ok(Some(value)),
         Err(error) if error.kind() == Reason::Budget => Ok(None),
@@ -158,7 +166,7 @@ impl Claim {
         for n in sample(&scene.source().to_string(), of, most) {
             let point = &map.points[n as usize];
             let (x, y) = &point.at;
-            let Some(truth) = exact_kind(&axes.at(x, y)?, &limits)? else { continue };
+            let Some(truth) = exact_kind(&axes.at(x, y)?, point.kind, &limits)? else { continue };
             decided += 1;
             let values = || map.names.iter().zip([x, y]).map(|(name, value)| format!("{name} = {value}"));
             let place = || values().collect::<Vec<_>>().join(", ");

@@ -7,7 +7,8 @@ use crate::advise::engine::Reading;
 use crate::advise::unit::TimeUnit;
 use crate::advise::unit::decimal;
 use crate::advise::{Adds, Caution, DirectFinding, DirectFindings, HEEDED, Place, Rung, TIMES};
-use crate::number::Rational;
+use crate::number::{Rational, outward};
+use crate::report::decimal::is_nothing;
 use crate::report::document::{Document, enclosure};
 use crate::report::record::Record;
 use crate::report::table::{Cell, Column, Table};
@@ -54,9 +55,9 @@ pub(super) fn document(findings: &DirectFindings, reading: Option<&Reading>, not
 
 const FASTEST: &str = "the fastest motion of the innermost forces";
 
-/// Rounded outward; what is 0 is so exactly.
+/// Rounded outward.
 fn per_ps((lo, hi): (f64, f64)) -> (f64, f64) {
-    ((1000.0 * lo).next_down().max(0.0), if hi == 0.0 { 0.0 } else { (1000.0 * hi).next_up() })
+    outward((1000.0 * lo, 1000.0 * hi))
 }
 
 /// "0.0200/ps", "no growth".
@@ -171,6 +172,9 @@ fn line(findings: &DirectFindings, own: &DirectFinding) -> String {
         }
     };
     let of_steps = own.added.filter(|_| own.rate != Some((0.0, 0.0))).map_or_else(String::new, |(lo, hi)| {
+        if is_nothing((lo, hi), own.rate) {
+            return ", of which the steps add nothing within rounding".into();
+        }
         format!(", of which the steps add {}/ps", nearest((1000.0 * lo, 1000.0 * hi), 3))
     });
     let tenfold = own.tenfold_steps.map_or_else(String::new, |steps| {
@@ -182,7 +186,7 @@ fn line(findings: &DirectFindings, own: &DirectFinding) -> String {
         (Some(true), _) => "; masked by the friction given (proven)".into(),
         (Some(false), Some(mask)) => {
             format!(
-                "; only a friction of {}/ps masks it (proven), the one given does not",
+                "; a friction of {}/ps masks it (proven), the one given does not",
                 nearest((1000.0 * mask, 1000.0 * mask), 3)
             )
         }
@@ -199,7 +203,7 @@ fn line(findings: &DirectFindings, own: &DirectFinding) -> String {
 fn looked_at(best: &DirectFinding) -> Option<String> {
     let (first, last) = (best.ladder.first()?, best.ladder.last()?);
     Some(format!(
-        "  looked at  {} points: the multiples from {} to {}, for the Jacobians given; `kickdrift system FILE --intervals outer=LO..HI` looks between them",
+        "  looked at  {} points: the multiples from {} to {}, for the Jacobians given; `kickdrift system FILE --scan outer=LO..HI:BY` looks between them",
         best.ladder.len(),
         fs(&first.outer),
         fs(&last.outer)
@@ -231,9 +235,7 @@ fn rows(findings: &DirectFindings) -> Table {
         .field(column("status", "the steps add").left(), |own| own.adds.name().into())
         .field(column("in_band", "in the band").left(), |own| own.in_band.name().into())
         .field(rates("growth_rate", "growth"), |own| own.rate.map(per_ps).into())
-        .field(rates("added_by_steps", "of which by steps"), |own| {
-            own.added.map(|(lo, hi)| ((1000.0 * lo).next_down(), (1000.0 * hi).next_up())).into()
-        })
+        .field(rates("added_by_steps", "of which by steps"), |own| own.added.map(per_ps).into())
         .field(rates("within_accuracy", "within the accuracy"), |own| own.within_accuracy.map(per_ps).into())
         .field(enclosed("tenfold_steps", "tenfold in steps"), |own| own.tenfold_steps.into())
         .field(column("atoms", "moving most").left(), |own| own.atoms.as_deref().into())

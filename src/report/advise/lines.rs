@@ -10,6 +10,7 @@ use crate::advise::{
 use crate::number::Rational;
 use crate::number::rational::to_f64;
 use crate::report::decimal::few;
+use crate::report::friction;
 
 /// Limits of every linear analysis of given periods; the first is left out where these are the periods of all modes.
 const UNKNOWN: [&str; 3] = [
@@ -197,18 +198,11 @@ fn unstable(answer: &Answer, worst: Option<&Row>, unit: TimeUnit) -> String {
     let rate = (per * row.found.rate.0, per * row.found.rate.1);
     let inside =
         row.inside.as_ref().map_or_else(String::new, |inside| format!(", within {}", interval(inside, unit)));
-    let mask = row.masking.map(|(lo, hi)| unit.rate(nearest((per * lo, per * hi), 3)));
-    let friction = match (row.is_damped, mask) {
+    let friction = match (row.is_damped, &row.masking) {
         (Some(true), _) => " (masked by the friction given, which hides it and does not cure it)".into(),
         (given, Some(mask)) => {
             let own = if given.is_some() { ", the one given does not" } else { "" };
-            let all = match row.masking_stays {
-                Some(true) => format!("only a friction above {mask} masks it"),
-                _ => format!(
-                    "no friction up to {mask} masks it, one just above does, not proven of larger ones"
-                ),
-            };
-            format!(" ({all}{own})")
+            format!(" ({} it{own})", friction::masking(mask, per, &unit.rate("")))
         }
         (_, None) => String::new(),
     };

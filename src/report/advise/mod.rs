@@ -19,7 +19,8 @@ use serde_json::Value;
 use crate::advise::engine::Reading;
 use crate::advise::unit::{TimeUnit, decimal};
 use crate::advise::{Advice, Answer, Caution, DirectFindings, Findings, Mode, Pair, Row, Unstable};
-use crate::number::Rational;
+use crate::number::{Rational, outward};
+use crate::system::friction::Masked;
 
 #[cfg(feature = "figure")]
 pub use chart::levers as levers_figure;
@@ -167,10 +168,14 @@ fn row_table(advice: &Advice, all: bool) -> Table {
         .field(enclosed("growth_rate", "growth").in_unit(rate), move |of| per(unit, of.row.found.rate).into())
         .field(enclosed("tenfold_steps", "tenfold in steps"), |of| of.row.tenfold_steps.into())
         .field(enclosed("masked_above", "masked above a friction").in_unit(rate), move |of| {
-            of.row.masking.map(|own| per(unit, own)).into()
+            of.row.masking.as_ref().map(|own| per(unit, (own.grows, own.least()))).into()
         })
-        .field(Column::new("masked_stays").in_words("and above any larger one"), |of| {
-            of.row.masking_stays.into()
+        .field(Column::new("masked_below").in_words("masked below").in_unit(rate), move |of| {
+            let end = |own: &Masked| {
+                Some((f64::from(unit.in_rates()) * own.ranges[0].1).next_down())
+                    .filter(|end| end.is_finite() && !own.stays())
+            };
+            of.row.masking.as_ref().and_then(end).into()
         })
         .field(Column::new("damped"), |of| of.row.is_damped.into());
     let ratios: [(&str, Ratio); 2] = [("ratios_lower", |(lo, _)| lo), ("ratios_upper", |(_, hi)| hi)];
@@ -204,8 +209,10 @@ fn row_table(advice: &Advice, all: bool) -> Table {
         return table;
     }
     let masked = named.iter().any(|of| of.row.masking.is_some());
+    let bounded = named.iter().any(|of| of.row.masking.as_ref().is_some_and(|own| !own.stays()));
     for_people(&table, |key| match key {
-        "masked_above" | "masked_stays" => masked,
+        "masked_above" => masked,
+        "masked_below" => bounded,
         "damped" => advice.friction.is_some(),
         _ => true,
     })
@@ -229,7 +236,7 @@ fn interval_table(advice: &Advice) -> Table {
 /// A rate per fs as one per ps, rounded outward.
 fn per(unit: TimeUnit, (lo, hi): (f64, f64)) -> (f64, f64) {
     let times = f64::from(unit.in_rates());
-    if (lo, hi) == (0.0, 0.0) { (lo, hi) } else { ((times * lo).next_down(), (times * hi).next_up()) }
+    outward((times * lo, times * hi))
 }
 
 fn pair_table(advice: &Advice) -> Table {

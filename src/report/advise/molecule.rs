@@ -312,9 +312,7 @@ fn rows(findings: &Findings) -> Table {
         .field(column("tenfold_steps", "tenfold in steps"), |own| own.tenfold_steps().into())
         .field(column("name", "growing").left(), |own| own.name.as_deref().into())
         .field(column("atoms", "moving most").left(), |own| own.atoms.as_deref().into())
-        .field(column("masked_above", "masked above a friction").in_unit("1/ps"), move |own| {
-            per_ps(own.masking)
-        })
+        .field(column("masked_above", "masked by a friction").in_unit("1/ps"), move |own| per_ps(own.masking))
         .field(Column::new("damped"), |own| own.is_damped.into())
         .field(column("band_edge", "stable below").in_unit("fs"), |own| own.band_edge.into())
         .field(Column::new("largest").in_unit("fs"), move |own| exact(&own.largest))

@@ -82,7 +82,11 @@ pub(super) fn no_gradient_lines(own: &NoGradient, analysis: &Analysis, per: &str
         format!("  without steps growth rate {}", rate_per(own.without_steps, per)),
     ];
     if let Some((lo, hi)) = own.added_by_steps(analysis) {
-        lines.push(format!("  the steps add {} per {per}", decimal::enclosure(lo, hi)));
+        lines.push(if decimal::is_nothing((lo, hi), analysis.growth_rate()) {
+            "  the steps add nothing within rounding".into()
+        } else {
+            format!("  the steps add {} per {per}", decimal::enclosure(lo, hi))
+        });
     }
     if let Some(ends) = own.within_accuracy {
         lines.push(format!(
@@ -94,7 +98,7 @@ pub(super) fn no_gradient_lines(own: &NoGradient, analysis: &Analysis, per: &str
         Some(0.0) => lines.push("  no friction is needed".into()),
         Some(friction) => {
             let friction = decimal::few(friction, 5);
-            lines.push(format!("  friction from about {friction} per {per} on masks what grows (rounded)"))
+            lines.push(format!("  a friction of about {friction} per {per} masks what grows (rounded)"))
         }
         None => {}
     }

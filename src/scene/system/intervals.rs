@@ -143,9 +143,9 @@ impl SystemScene {
                 self.allow_intervals("intervals", limits)?;
                 self.multiples_of(span)?.len() as f64 * self.model.cost() as f64
             }
-            _ => self.over(span, limits, |number| {
-                self.model.cost_of_stretches(number, span.ends(), width, limits)
-            })?,
+            _ => {
+                self.over(span, limits, |number| self.model.cost_of_stretches(number, span.ends(), width))?
+            }
         };
         self.allowed(cost, limits, || format!("intervals of {span}"))
     }
@@ -235,7 +235,7 @@ impl SystemScene {
     /// As [`SystemScene::nearest_unstable`].
     pub fn cost_of_nearest(&self, width: f64, limits: &Limits) -> Result<f64> {
         self.allow_intervals("nearest", limits)?;
-        self.allowed(self.model.cost_of_nearest(width, limits)?, limits, || NEAREST.into())
+        self.allowed(self.model.cost_of_nearest(width)?, limits, || NEAREST.into())
     }
 
     /// What has no intervals is refused, and what costs too much.
@@ -255,9 +255,20 @@ impl SystemScene {
             | Model::Measured(_)
             | Model::LocalSteps(_)
             | Model::Implicit(_)
-            | Model::NoGradient(_)
             | Model::Elements(..)
                 if self.is_linear() => {}
+            Model::NoGradient(_) => {
+                return refused(
+                    "of kicks that are no gradients",
+                    "are not told: decide steps one by one, as --scan outer=LO..HI:BY does",
+                );
+            }
+            Model::Pi(_) => {
+                return refused(
+                    "with pi in the stiffnesses of several degrees of freedom",
+                    "are for rational numbers: write them without pi, or decide steps one by one, as --scan outer=LO..HI:BY does",
+                );
+            }
             Model::Along(_) => {
                 return refused(
                     "along an orbit",

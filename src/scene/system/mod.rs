@@ -483,7 +483,7 @@ impl Document {
             }
             Ok(linear) => Ok((Model::Rational(System::new(mass, linear)?), None)),
             Err(error) if has_bonds => Err(error),
-            Err(error) => Ok((Model::Pi(self.with_pi(mass)?.ok_or(error)?), None)),
+            Err(error) => Ok((Model::Pi(self.beside_pi(mass)?.ok_or(error)?), None)),
         }
     }
 }

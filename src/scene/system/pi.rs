@@ -1,22 +1,22 @@
-//! Stiffnesses that involve π, by their rational coefficients.
+//! Stiffnesses of several masses that involve π.
 
 use std::collections::BTreeMap;
 
 use super::document::{Document, Number, PotentialDocument, ends};
 use crate::error::Result;
-use crate::number::{Laurent, Rational};
-use crate::system::{PiPotential, PiSystem, Symmetric};
+use crate::number::Laurent;
+use crate::system::{PiPotential, Symmetric, System, beside_pi};
 
 impl Document {
-    /// The system, where stiffnesses involve π; `None` where all numbers are rational.
-    pub fn with_pi(&self, mass: Symmetric) -> Result<Option<PiSystem>> {
+    /// The system with a rational in the place of π, where stiffnesses involve it; `None` where all numbers are rational.
+    pub fn beside_pi(&self, mass: Symmetric) -> Result<Option<System>> {
         let n = mass.size();
         let potentials = self.potentials()?.iter().enumerate().map(|(k, own)| own.with_pi(k, n));
         let potentials = potentials.collect::<Result<Vec<_>>>()?;
-        if potentials.iter().flat_map(|own| own.stiffness.keys()).all(|&power| power == 0) {
+        if potentials.iter().flat_map(|own| own.stiffness.values()).all(|x| x.as_rational().is_some()) {
             return Ok(None);
         }
-        PiSystem::new(mass, potentials).map(Some)
+        beside_pi(mass, &potentials).map(Some)
     }
 }
 
@@ -24,58 +24,43 @@ impl PotentialDocument {
     /// Springs and matrix on n degrees of freedom over ℚ\[π, 1/π\], with the clock.
     fn with_pi(&self, k: usize, n: usize) -> Result<PiPotential> {
         let field = |name: &str| format!("potentials[{k}].{name}");
-        let scale = self.scale.as_ref().map(|own| own.read_laurent(&field("scale"))).transpose()?;
+        let mut stiffness = BTreeMap::new();
+        let mut add = |i: usize, j: usize, x: Laurent| {
+            *stiffness.entry((i.max(j), i.min(j))).or_insert_with(Laurent::default) += x;
+        };
         let size = self.stiffness.as_ref().map_or(n, Vec::len);
-        let mut stiffness = Coefficients { size, scale, by_power: BTreeMap::new() };
-        if let Some(rows) = &self.stiffness {
-            stiffness.add_matrix(&field("stiffness"), rows)?;
+        for (i, row) in
+            numbers(&field("stiffness"), self.stiffness.as_deref().unwrap_or_default())?.iter().enumerate()
+        {
+            row[..=i].iter().enumerate().for_each(|(j, x)| add(i, j, x.clone()));
         }
         // A matrix of another size is refused with the system.
         for (s, (i, j, value)) in self.springs.iter().enumerate().filter(|_| size == n) {
             let field = field(&format!("springs[{s}]"));
             let (i, j) = ends(&field, i, j.as_ref(), n)?;
-            stiffness.add(&value.read_laurent(&field)?, |matrix, x| matrix.add_spring(i, j, x));
+            let value = value.read_laurent(&field)?;
+            if let Some(j) = j {
+                add(i, j, -value.clone());
+                add(j, j, value.clone());
+            }
+            add(i, i, value);
+        }
+        if let Some(scale) = &self.scale {
+            let scale = scale.read_laurent(&field("scale"))?;
+            stiffness.values_mut().for_each(|x| *x = &*x * &scale);
         }
         let [step, phase] = self.step_and_phase(k)?;
-        Ok(PiPotential { stiffness: stiffness.finish(), step, phase })
+        Ok(PiPotential { size, stiffness, step, phase })
     }
 }
 
-/// K_j by j, while it is being filled.
-struct Coefficients {
-    size: usize,
-    scale: Option<Laurent>,
-    by_power: BTreeMap<i32, Symmetric>,
-}
-
-impl Coefficients {
-    /// Adds what `add` does with a number to the matrices of its terms.
-    fn add(&mut self, x: &Laurent, add: impl Fn(&mut Symmetric, &Rational)) {
-        let scaled = self.scale.as_ref().map(|scale| scale * x);
-        for (power, c) in scaled.as_ref().unwrap_or(x).terms() {
-            add(self.by_power.entry(*power).or_insert_with(|| Symmetric::zero(self.size)), c);
-        }
-    }
-
-    fn add_matrix(&mut self, field: &str, rows: &[Vec<Number>]) -> Result<()> {
-        let row = |(i, row): (usize, &Vec<Number>)| {
-            let entry = |(j, x): (usize, &Number)| x.read_laurent(&format!("{field}[{i}][{j}]"));
-            row.iter().enumerate().map(entry).collect::<Result<Vec<_>>>()
-        };
-        let rows = rows.iter().enumerate().map(row).collect::<Result<Vec<_>>>()?;
-        Symmetric::check(field, &rows)?;
-        for (i, row) in rows.iter().enumerate() {
-            row[..=i].iter().enumerate().for_each(|(j, x)| self.add(x, |matrix, x| matrix.add(i, j, x)));
-        }
-        Ok(())
-    }
-
-    /// The coefficients that are not 0, or a single 0.
-    fn finish(mut self) -> BTreeMap<i32, Symmetric> {
-        self.by_power.retain(|_, matrix| !matrix.is_zero());
-        if self.by_power.is_empty() {
-            self.by_power.insert(0, Symmetric::zero(self.size));
-        }
-        self.by_power
-    }
+/// The rows of a symmetric matrix.
+fn numbers(field: &str, rows: &[Vec<Number>]) -> Result<Vec<Vec<Laurent>>> {
+    let row = |(i, row): (usize, &Vec<Number>)| {
+        let entry = |(j, x): (usize, &Number)| x.read_laurent(&format!("{field}[{i}][{j}]"));
+        row.iter().enumerate().map(entry).collect::<Result<Vec<_>>>()
+    };
+    let rows = rows.iter().enumerate().map(row).collect::<Result<Vec<_>>>()?;
+    Symmetric::check(field, &rows)?;
+    Ok(rows)
 }

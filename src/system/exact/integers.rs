@@ -8,20 +8,20 @@ use num_bigint::BigInt;
 use num_integer::Integer;
 use num_traits::{One, Zero};
 
-use crate::number::{Domain, Rational};
+use crate::number::Rational;
 use crate::schedule::Weight;
 use crate::system::half::compose::{Program, Row, State};
 use crate::system::linear::frame::Frame;
 use crate::system::linear::system::System;
 
 /// Positive multiples of the blocks of H, and the scale of B and C together.
-pub(in crate::system) struct IntegerBlocks<D = BigInt> {
-    pub a: DMatrix<D>,
-    pub b: DMatrix<D>,
-    pub c: DMatrix<D>,
-    pub d: DMatrix<D>,
+pub(in crate::system) struct IntegerBlocks {
+    pub a: DMatrix<BigInt>,
+    pub b: DMatrix<BigInt>,
+    pub c: DMatrix<BigInt>,
+    pub d: DMatrix<BigInt>,
     /// Bᵀ C of the true blocks is that of these divided by it.
-    pub scale: D,
+    pub scale: BigInt,
 }
 
 /// A program in integers over the denominator f.
@@ -171,19 +171,15 @@ fn add(row: &mut [BigInt], factor: &BigInt, other: &[BigInt]) {
     }
 }
 
-impl<D: Domain> IntegerBlocks<D> {
+impl IntegerBlocks {
     /// Bᵀ C times [`IntegerBlocks::scale`].
-    pub fn product(&self) -> DMatrix<D> {
+    pub fn product(&self) -> DMatrix<BigInt> {
         product(&self.b.transpose(), &self.c)
     }
 }
 
 /// a b.
-pub(in crate::system) fn product<D: Domain>(a: &DMatrix<D>, b: &DMatrix<D>) -> DMatrix<D> {
-    DMatrix::from_fn(a.nrows(), b.ncols(), |i, j| {
-        (0..a.ncols()).fold(D::zero(), |mut sum, k| {
-            sum += a[(i, k)].product(&b[(k, j)]);
-            sum
-        })
-    })
+pub(in crate::system) fn product(a: &DMatrix<BigInt>, b: &DMatrix<BigInt>) -> DMatrix<BigInt> {
+    let entry = |i: usize, j: usize| (0..a.ncols()).map(|k| &a[(i, k)] * &b[(k, j)]).sum();
+    DMatrix::from_fn(a.nrows(), b.ncols(), entry)
 }

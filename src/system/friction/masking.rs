@@ -1,251 +1,186 @@
-//! The smallest friction that masks a resonance of one oscillator.
-//!
-//! With c the factor of the velocity over one tick, det Q = c^N for N = T/tick, and Tr Q is a polynomial in c of degree N.
-//! Where the frictionless period grows, one of f± = 1 + c^N ∓ Tr Q(c) is negative at c = 1; ρ(Q) ≥ 1 until its first zero c*
-//! on the way down, and there the other one is 2 (1 + c^N) > 0, so just below c* both are positive and ρ(Q) < 1 (Jury). No zero
-//! lies where all Bernstein coefficients over an interval have one sign; one alone where they change it once. The
-//! coefficients are balls, so c* and γ* = −ln c*/tick are enclosed.
+//! The frictions that mask what grows: looked for by values, proven range by range.
 
-use super::scalar::precisions;
-use crate::error::{Error, Result};
-use crate::number::{Ball, Real, Sign};
-use crate::schedule::{KickDrift, Kicks};
-use crate::system::ManyClocks;
+use super::damping::Damping;
 
-/// The friction that masks a resonance.
-#[derive(Clone, Debug)]
-pub struct Masking {
-    /// γ* h_1: at every smaller rate ρ(Q) ≥ 1, and just above it ρ(Q) < 1.
-    pub rate: Ball,
-    /// Whether ρ(Q) < 1 is proven for all larger rates, too.
-    pub stays: bool,
+/// Whether there is something to mask, and by which frictions.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Mask {
+    /// Nothing grows without friction, which is proven (without one, or at one of 10^-6 a period).
+    NotNeeded,
+    /// Something does, and these mask it.
+    At(Masked),
+    /// Not found: no friction that is proven to mask, or doubles that cannot decide whether anything grows.
+    NotTold,
 }
 
-/// The highest degree in c: the work grows with its square.
-const HIGHEST: u64 = 4096;
-
-/// Halvings of \[0, 1\] before more bits are tried.
-const DEEPEST: u32 = 60;
-
-/// The smallest friction that masks the growth of K clocks on one oscillator; `None` where |Tr Q| ≤ 2 without friction, so
-/// that nothing grows exponentially.
-///
-/// # Errors
-/// A budget error where the period is longer than 4096 ticks, or where balls cannot decide.
-pub fn masking<S: Real>(clocks: &ManyClocks<S>) -> Result<Option<Masking>> {
-    let degree = clocks.schedule().period();
-    if degree > HIGHEST {
-        let work = format!("the masking friction of a period of {degree} ticks");
-        return Err(Error::budget(work, degree).or("choose steps with a simpler ratio"));
-    }
-    // A tenth of a second where bits are few, some seconds where they are many.
-    for bits in precisions(degree.saturating_mul(degree) / 4) {
-        let trace = trace(clocks, bits);
-        let side = match sides(&trace, bits) {
-            [Some(Sign::Negative), _] => 1,
-            [_, Some(Sign::Negative)] => -1,
-            [Some(_), Some(_)] => return Ok(None),
-            _ => continue,
-        };
-        let f = polynomial(&trace, side, bits);
-        let Some(near) = bracket(&f, bits) else { continue };
-        let own = Bernstein::of(f, bits);
-        // Most often the zero that values find is the last one: one change of signs behind it.
-        let changes = own.clone().split(&near.0)[1].changes();
-        let last = match changes {
-            None => continue,
-            Some(1) if near.0.sign() == Some(Sign::Positive) => Some(near),
-            Some(_) => own.clone().last_zero(),
-        };
-        let Some((lo, hi)) = last else { continue };
-        let tick = Ball::from_rational(clocks.schedule().tick(), bits);
-        let rate = |c: &Ball| c.ln(bits).and_then(|ln| ln.neg().div(&tick, bits));
-        let (Some(slow), Some(fast)) = (rate(&hi), rate(&lo)) else { continue };
-        let other = Bernstein::of(polynomial(&trace, -side, bits), bits);
-        let stays = [own, other].into_iter().all(|f| {
-            let [below, _] = f.split(&lo);
-            below.proves_positive()
-        });
-        return Ok(Some(Masking { rate: slow.union(&fast, bits), stays }));
-    }
-    Err(Error::budget("a resonance this weak", HIGHEST).or("choose steps nearer to its middle"))
+/// The frictions that mask the resonances of a system.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Masked {
+    /// At this one something is proven to grow; 0 where that is known without friction alone.
+    pub grows: f64,
+    /// Ranges of frictions that are proven to mask, increasing, at least one. The last has no end where all larger ones are proven to.
+    pub ranges: Vec<(f64, f64)>,
 }
 
-/// The signs of 2 ∓ Tr Q at c = 1.
-fn sides(trace: &[Ball], bits: u32) -> [Option<Sign>; 2] {
-    let whole = trace.iter().fold(Ball::zero(), |sum, x| sum.add(x, bits));
-    let two = Ball::from_integer(&2.into());
-    [two.sub(&whole, bits).sign(), two.add(&whole, bits).sign()]
-}
-
-/// 1 + c^N ∓ Tr Q, lowest coefficient first.
-fn polynomial(trace: &[Ball], side: i8, bits: u32) -> Vec<Ball> {
-    let mut f: Vec<Ball> = trace.iter().map(|x| if side > 0 { x.neg() } else { x.clone() }).collect();
-    for end in [0, trace.len() - 1] {
-        f[end] = f[end].add(&Ball::one(), bits);
-    }
-    f
-}
-
-/// Two places next to each other between which a polynomial that is negative at 1 changes its sign, the nearest to 1 of those that places
-/// 1 − 2^-k see: it is positive at the first. \[0, 1\] where none is; `None` where the balls cannot decide.
-fn bracket(f: &[Ball], bits: u32) -> Option<(Ball, Ball)> {
-    let sign = |c: &Ball| f.iter().rev().fold(Ball::zero(), |sum, a| sum.mul(c, bits).add(a, bits)).sign();
-    let (mut lo, mut hi) = (Ball::zero(), Ball::one());
-    for k in (1..=i64::from(DEEPEST)).rev() {
-        let place = Ball::one().sub(&Ball::one().scale2(-k), bits);
-        if sign(&place)? == Sign::Positive {
-            lo = place;
-            break;
-        }
-        hi = place;
-    }
-    if lo.sign() == Some(Sign::Zero) {
-        return Some((lo, Ball::one()));
-    }
-    for _ in 0..DEEPEST - 4 {
-        let middle = lo.add(&hi, bits).scale2(-1);
-        if sign(&middle)? == Sign::Positive { lo = middle } else { hi = middle }
-    }
-    Some((lo, hi))
-}
-
-/// The coefficients of Tr Q in c.
-fn trace<S: Real>(clocks: &ManyClocks<S>, bits: u32) -> Vec<Ball> {
-    let kicks = Kicks::of_clocks(clocks.strengths().iter().map(|k| k.enclosure(bits)), |k| [k.clone(), k]);
-    let tick = Ball::from_rational(clocks.schedule().tick(), bits);
-    let unit = |n: u8| if n == 1 { vec![Ball::one()] } else { Vec::new() };
-    let mut orbit = Polynomials { x: [1, 0].map(unit), v: [0, 1].map(unit), tick, bits };
-    kicks.lead(clocks.schedule().staggered_period(), &mut orbit);
-    let [mut trace, _] = orbit.x;
-    add(&mut trace, &orbit.v[1], None, bits);
-    trace
-}
-
-/// The rows of the propagator as polynomials in c, lowest coefficient first.
-struct Polynomials {
-    x: [Vec<Ball>; 2],
-    v: [Vec<Ball>; 2],
-    tick: Ball,
-    bits: u32,
-}
-
-/// sum += factor f, or f itself.
-fn add(sum: &mut Vec<Ball>, f: &[Ball], factor: Option<&Ball>, bits: u32) {
-    sum.resize(sum.len().max(f.len()), Ball::zero());
-    for (own, x) in sum.iter_mut().zip(f) {
-        *own = match factor {
-            Some(factor) => own.add(&factor.mul(x, bits), bits),
-            None => own.add(x, bits),
-        };
-    }
-}
-
-impl KickDrift<Ball> for Polynomials {
-    fn drift(&mut self, ticks: u64) {
-        let half = self.tick.mul(&Ball::from_integer(&ticks.into()), self.bits).scale2(-1);
-        for (x, v) in self.x.iter_mut().zip(&mut self.v) {
-            add(x, v, Some(&half), self.bits);
-            v.splice(0..0, std::iter::repeat_n(Ball::zero(), ticks as usize));
-            add(x, v, Some(&half), self.bits);
-        }
-    }
-
-    fn kick(&mut self, strength: &Ball) {
-        let minus = strength.neg();
-        self.x.iter().zip(&mut self.v).for_each(|(x, v)| add(v, x, Some(&minus), self.bits));
-    }
-}
-
-/// A polynomial over an interval \[lo, hi\] by its Bernstein coefficients, f(lo) first.
-#[derive(Clone)]
-struct Bernstein {
-    coefficients: Vec<Ball>,
-    lo: Ball,
-    hi: Ball,
-    bits: u32,
-}
-
-impl Bernstein {
-    /// Over \[0, 1\].
-    fn of(mut f: Vec<Ball>, bits: u32) -> Self {
-        let n = f.len() - 1;
-        // Σ_i C(j, i)/C(n, i) a_i: with a_i/C(n, i), n additions each.
-        let mut choose = num_bigint::BigInt::from(1);
-        for (i, a) in f.iter_mut().enumerate() {
-            *a = a.div(&Ball::from_integer(&choose), bits).expect("a binomial coefficient");
-            choose = choose * (n - i) / (i + 1);
-        }
-        for first in 0..n {
-            for j in (first + 1..=n).rev() {
-                f[j] = f[j].add(&f[j - 1], bits);
+impl Mask {
+    /// The frictions that mask both.
+    pub(super) fn and(self, other: Mask) -> Mask {
+        match (self, other) {
+            (Mask::NotNeeded, one) | (one, Mask::NotNeeded) => one,
+            (Mask::At(a), Mask::At(b)) => {
+                let common = |(lo, hi): &(f64, f64)| {
+                    b.ranges.iter().map(|own| (lo.max(own.0), hi.min(own.1))).collect::<Vec<_>>()
+                };
+                let ranges = a.ranges.iter().flat_map(common).filter(|(lo, hi)| lo <= hi).collect();
+                Mask::found(a.grows.max(b.grows), ranges)
             }
+            _ => Mask::NotTold,
         }
-        Bernstein { coefficients: f, lo: Ball::zero(), hi: Ball::one(), bits }
     }
 
-    /// Below and above the place lo + t (hi − lo), by de Casteljau's scheme.
-    fn split(self, t: &Ball) -> [Self; 2] {
-        let Bernstein { coefficients: mut f, lo, hi, bits } = self;
-        let place = lo.add(&hi.sub(&lo, bits).mul(t, bits), bits);
-        // A mean of two is as uncertain as both, their difference is more so.
-        let (rest, mut lower) = (Ball::one().sub(t, bits), Vec::new());
-        for last in (0..f.len()).rev() {
-            lower.push(f[0].clone());
-            for j in 0..last {
-                f[j] = rest.mul(&f[j], bits).add(&t.mul(&f[j + 1], bits), bits);
-            }
-        }
-        [
-            Bernstein { coefficients: lower, lo, hi: place.clone(), bits },
-            Bernstein { coefficients: f, lo: place, hi, bits },
-        ]
+    pub(in crate::system) fn found(grows: f64, ranges: Vec<(f64, f64)>) -> Mask {
+        if ranges.is_empty() { Mask::NotTold } else { Mask::At(Masked { grows, ranges }) }
+    }
+}
+
+impl Masked {
+    /// The least friction that is proven to mask.
+    pub fn least(&self) -> f64 {
+        self.ranges[0].0
     }
 
-    fn halves(self) -> [Self; 2] {
-        self.split(&Ball::one().scale2(-1))
+    /// Whether every friction above the least one is proven to mask.
+    pub fn stays(&self) -> bool {
+        self.ranges[0].1 == f64::INFINITY
     }
 
-    /// Sign changes of the coefficients; `None` where a sign is not decided.
-    fn changes(&self) -> Option<usize> {
-        let signs = self.coefficients.iter().map(Ball::sign).collect::<Option<Vec<_>>>()?;
-        let signs: Vec<_> = signs.into_iter().filter(|&sign| sign != Sign::Zero).collect();
-        Some(signs.windows(2).filter(|pair| pair[0] != pair[1]).count())
+    /// The same in another unit of time, `unit` of the old ones.
+    pub fn per(&self, unit: f64) -> Masked {
+        let ranges = self.ranges.iter().map(|(lo, hi)| (lo / unit, hi / unit)).collect();
+        Masked { grows: self.grows / unit, ranges }
     }
+}
 
-    /// An interval with the largest zero below 1 of a polynomial that is negative at 1, positive at its lower end; `None`
-    /// where the balls cannot decide.
-    fn last_zero(self) -> Option<(Ball, Ball)> {
-        let mut open = vec![(self, 0)];
-        while let Some((own, depth)) = open.pop() {
-            let first = own.coefficients[0].sign();
-            match own.changes() {
-                Some(0) => continue,
-                Some(1) if depth >= DEEPEST - 4 && first == Some(Sign::Positive) => {
-                    return Some((own.lo, own.hi));
-                }
-                _ if depth == DEEPEST => return None,
-                _ => {}
-            }
-            let [lower, upper] = own.halves();
-            open.extend([(lower, depth + 1), (upper, depth + 1)]);
-        }
-        None
-    }
+/// Frictions from 2^-4 to 2^20 a period are looked at.
+const OCTAVES: std::ops::Range<i32> = -4..20;
 
-    /// Whether it is proven to have no zero inside and no negative value.
-    fn proves_positive(self) -> bool {
-        let mut open = vec![(self, 0)];
-        while let Some((own, depth)) = open.pop() {
-            if own.coefficients.iter().all(|x| matches!(x.sign(), Some(Sign::Zero | Sign::Positive))) {
+/// Ranges that are tried for a proof of one.
+const MOST: usize = 300;
+
+/// What is known of frictions.
+pub(in crate::system) struct Search<'a> {
+    pub period: f64,
+    /// Where the spectral radius is proven to lie.
+    pub side: &'a dyn Fn(f64) -> Option<Damping>,
+    /// Whether all frictions of a range are proven to mask.
+    pub masks: &'a dyn Fn(f64, f64) -> bool,
+    /// The trace, of one oscillator.
+    pub trace: Option<&'a dyn Fn(f64) -> Option<f64>>,
+    /// Frictions that are looked at between one and its double.
+    pub per_octave: i32,
+    /// The relative width to which the least is bisected.
+    pub width: f64,
+}
+
+impl Search<'_> {
+    /// The ranges that are found above a friction at which something grows.
+    pub fn above(&self, grows: f64) -> Mask {
+        let (mut ranges, mut least): (Vec<(f64, f64)>, _) = (Vec::new(), grows);
+        let mut last = grows;
+        for k in OCTAVES.start * self.per_octave..OCTAVES.end * self.per_octave {
+            let at = 2f64.powf(f64::from(k) / f64::from(self.per_octave)) / self.period;
+            let end = ranges.last().map_or(0.0, |own| own.1);
+            if at <= last.max(end) {
                 continue;
             }
-            if depth == DEEPEST {
-                return false;
+            let side = (self.side)(at);
+            let found = match side {
+                // Nothing between the range before and this one is known to grow.
+                Some(Damping::Damped) if last < end => Some((last, at)),
+                Some(Damping::Damped) => Some(self.bisected(last, at)),
+                Some(Damping::Growing) => self.crossed(last, at),
+                _ => None,
+            };
+            if let Some((below, first)) = found {
+                if ranges.is_empty() {
+                    least = below;
+                }
+                ranges.push((first, self.up(first)));
             }
-            let [lower, upper] = own.halves();
-            open.extend([(upper, depth + 1), (lower, depth + 1)]);
+            if side == Some(Damping::Growing) {
+                last = at;
+            }
         }
-        true
+        Mask::found(least, ranges)
+    }
+
+    /// Neighbours of which something grows at the first and nothing at the second.
+    fn bisected(&self, mut lo: f64, mut hi: f64) -> (f64, f64) {
+        while hi > lo * (1.0 + self.width) {
+            let is_far = lo > 0.0 && hi > 4.0 * lo;
+            let middle = if is_far { (lo * hi).sqrt() } else { lo + (hi - lo) / 2.0 };
+            match (self.side)(middle) {
+                Some(Damping::Growing) => lo = middle,
+                Some(Damping::Damped) => hi = middle,
+                // So near to 1 that doubles cannot decide: the bracket is as narrow as it gets.
+                _ => break,
+            }
+        }
+        (lo, hi)
+    }
+
+    /// Where the trace of an oscillator that grows at both changes its sign: at some friction between it is 0, and nothing grows.
+    fn crossed(&self, mut lo: f64, mut hi: f64) -> Option<(f64, f64)> {
+        let trace = self.trace?;
+        let below = trace(lo)?;
+        if below * trace(hi)? >= 0.0 {
+            return None;
+        }
+        loop {
+            let middle = lo + (hi - lo) / 2.0;
+            match (self.side)(middle) {
+                Some(Damping::Damped) => return Some(self.edge(lo, middle)),
+                Some(Damping::Growing) if lo < middle && middle < hi => {
+                    *(if below * trace(middle)? > 0.0 { &mut lo } else { &mut hi }) = middle;
+                }
+                _ => return None,
+            }
+        }
+    }
+
+    /// As [`Search::bisected`], to a thousandth of what is between.
+    fn edge(&self, mut lo: f64, mut hi: f64) -> (f64, f64) {
+        let floor = 1e-3 * (hi - lo);
+        while hi - lo > floor {
+            let middle = lo + (hi - lo) / 2.0;
+            match (self.side)(middle) {
+                Some(Damping::Growing) => lo = middle,
+                Some(Damping::Damped) => hi = middle,
+                _ => break,
+            }
+        }
+        (lo, hi)
+    }
+
+    /// Up to where all frictions from this one on are proven to mask.
+    pub fn up(&self, from: f64) -> f64 {
+        let (mut at, mut part) = (from, 1e-3);
+        for _ in 0..MOST {
+            if part > 0.25 && (self.masks)(at, f64::INFINITY) {
+                return f64::INFINITY;
+            }
+            let next = at * (1.0 + part);
+            if next > at && (self.masks)(at, next) {
+                at = next;
+                part = (2.0 * part).min(16.0);
+            } else {
+                part /= 4.0;
+                // An end is known well enough to a thousandth of what is proven.
+                if part < 1e-3 * (at / from - 1.0).max(1e-10) {
+                    break;
+                }
+            }
+        }
+        at
     }
 }

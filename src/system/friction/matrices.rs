@@ -1,27 +1,24 @@
 //! Many degrees of freedom with friction: the eigenvalues of the whole period in doubles, within proven discs.
 
-use faer::Mat;
-
 use super::damping::Damping;
-use super::masking::masking;
-use super::scalar::damped;
+use super::masking::{Mask, Search};
+use super::radius::{Radius, damping};
+use super::range::Ranged;
+use super::tie::is_tie;
 use crate::error::{Error, Result};
 use crate::number::rational::{from_f64_exact, to_f64};
-use crate::number::{Ball, Laurent, Rational, Real, U};
+use crate::number::{Ball, Laurent, Rational, Real, Sign, U};
 use crate::propagator::Oscillator;
 use crate::system::ManyClocks;
 use crate::system::half::compose::{Kick, connected_parts};
 use crate::system::half::float::scaled_program;
-use crate::system::half::norm;
 use crate::system::half::period::{Drifts, Stiff, Stiffness, follow};
 use crate::system::linear::frame::Frame;
-use crate::system::linear::system::System;
-use crate::system::signs::inertia::is_definite;
-use crate::system::spectrum::discs::{components, residual};
+use crate::system::linear::sparse::Symmetric;
+use crate::system::linear::system::{Potential, System};
 use crate::system::verdict::decide::decide_by;
 use crate::system::verdict::limits::{Limits, Route, degrees_of_freedom};
-use crate::system::verdict::measured::Holds;
-use crate::verdict::{self, Tier};
+use crate::verdict::{self, Kind, Tier};
 
 /// The effect of friction on a system.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,48 +30,9 @@ pub struct Friction {
     /// ln ρ(Q)/T of the part where it is largest, enclosed, per unit time: below 0 the slowest decay, above 0 the growth;
     /// `None` where doubles bound nothing.
     pub growth: Option<(f64, f64)>,
-    /// The friction that masks every resonance.
+    /// The frictions that mask every resonance.
     pub masking: Mask,
 }
-
-/// Whether there is something to mask, and by which friction.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Mask {
-    /// Nothing grows without friction, which is proven (many degrees of freedom: without or at one of 10^-6 a period).
-    NotNeeded,
-    /// Something does, and this masks it.
-    At(Masked),
-    /// Not found: no friction that is proven to mask, a period too long for the polynomial in c, or doubles that cannot decide whether
-    /// anything grows.
-    NotTold,
-}
-
-impl Mask {
-    /// The friction that masks both.
-    fn and(self, other: Mask) -> Mask {
-        match (self, other) {
-            (Mask::NotNeeded, one) | (one, Mask::NotNeeded) => one,
-            (Mask::At(a), Mask::At(b)) => Mask::At(Masked {
-                rate: (a.rate.0.max(b.rate.0), a.rate.1.max(b.rate.1)),
-                stays: a.stays.zip(b.stays).map(|(a, b)| a && b),
-            }),
-            _ => Mask::NotTold,
-        }
-    }
-}
-
-/// The friction that masks the resonances of a system.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Masked {
-    /// One oscillator: γ* is in \[lo, hi\], every smaller friction leaves it growing. More of them: at lo something is proven
-    /// to grow, at hi nothing does.
-    pub rate: (f64, f64),
-    /// Whether every friction above hi is proven to mask, too; `None`: not asked (many degrees of freedom).
-    pub stays: Option<bool>,
-}
-
-/// The relative width to which a masking friction of many degrees of freedom is bisected: what linear theory is good for.
-const WIDTH: f64 = 1e-4;
 
 /// The effect of friction of the rate γ per unit time on a system, and the friction that masks its resonances.
 ///
@@ -105,24 +63,27 @@ pub fn damped_system(system: &System, rate: &Rational, limits: &Limits) -> Resul
         rate: rate.clone(),
         damping: worst(all.iter().map(|own| own.damping)),
         growth: growth.and_then(|all| all.into_iter().reduce(|a, b| (a.0.max(b.0), a.1.max(b.1)))),
-        masking: all.iter().map(|own| own.masking).fold(Mask::NotNeeded, Mask::and),
+        masking: all.into_iter().map(|own| own.masking).fold(Mask::NotNeeded, Mask::and),
     })
 }
 
 /// As [`damped_system`], for one part, which ticks with all clocks of the whole.
 fn damped_part(part: &System, ticking: &System, rate: &Rational, limits: &Limits) -> Result<Friction> {
-    if let Some(clocks) = ticking.as_many_clocks() {
-        let unit = Laurent::from_rational(ticking.clocks()[0].step.clone());
-        return damped_oscillator(&clocks, &unit, rate);
-    }
-    let (damping, growth) = at(ticking, rate);
-    Ok(Friction { rate: rate.clone(), damping, growth, masking: masked(part, ticking, limits)? })
+    let own = Damped::new(ticking);
+    let (damping, growth) = match own.at(rate) {
+        (None, _) if ticking.as_many_clocks().is_some_and(|own| is_tie(&own)) => TIE,
+        found => found,
+    };
+    Ok(Friction { rate: rate.clone(), damping, growth, masking: own.masked(part, limits)? })
 }
+
+/// The spectral radius is 1, whatever the friction.
+const TIE: At = (Some(Damping::Marginal), Some((0.0, 0.0)));
 
 /// As [`damped_system`], for a pair of steps.
 ///
 /// # Errors
-/// As [`damped`]; a period of more kicks than the limits allow.
+/// As [`damped_oscillator`]; a period of more kicks than the limits allow.
 pub fn damped_pair(oscillator: &Oscillator, rate: &Rational, limits: &verdict::Limits) -> Result<Friction> {
     let two = oscillator.clocks()?;
     limits.allow(two.ratio().kicks(), Tier::Refine)?;
@@ -136,31 +97,55 @@ pub fn damped_pair(oscillator: &Oscillator, rate: &Rational, limits: &verdict::L
 /// clocks, and γ is per unit of what `unit` is in.
 ///
 /// # Errors
-/// As [`damped`].
+/// A rate that is not positive.
 pub fn damped_oscillator<S: Real>(
     clocks: &ManyClocks<S>,
     unit: &Laurent,
     rate: &Rational,
 ) -> Result<Friction> {
-    let own = damped(clocks, &(unit * &Laurent::from_rational(rate.clone())))?;
-    let period = (unit * &Laurent::from_rational(clocks.period())).enclosure(BITS);
-    let ln = own.radius.ln(BITS).and_then(|ln| ln.div(&period, BITS));
-    let per_time =
-        |rate: &Ball| rate.div(&unit.enclosure(BITS), BITS).expect("a step > 0").to_f64_enclosure();
-    Ok(Friction {
-        rate: rate.clone(),
-        damping: Some(own.damping),
-        growth: ln.map(|ln| ln.to_f64_enclosure()),
-        masking: match masking(clocks) {
-            Ok(None) => Mask::NotNeeded,
-            Ok(Some(mask)) => Mask::At(Masked { rate: per_time(&mask.rate), stays: Some(mask.stays) }),
-            Err(_) => Mask::NotTold,
-        },
-    })
+    if *rate <= Rational::default() {
+        return Err(Error::input("friction", rate, "a rate of friction must be positive"));
+    }
+    if clocks.strengths().iter().all(|k| k.sign() == Sign::Zero) {
+        let (damping, growth) = TIE;
+        return Ok(Friction { rate: rate.clone(), damping, growth, masking: Mask::NotNeeded });
+    }
+    let own = near(&(unit * &Laurent::from_rational(rate.clone())));
+    let found = damped_system(&rounded(clocks)?, &own, &Limits::default())?;
+    let (damping, growth) = match found.damping {
+        None if is_tie(clocks) => TIE,
+        damping => (damping, found.growth),
+    };
+    let unit = unit.to_f64();
+    // A unit is rounded, and the quotient.
+    let per_time = |(lo, hi): (f64, f64)| {
+        (lo / unit - 4.0 * U * (lo / unit).abs(), hi / unit + 4.0 * U * (hi / unit).abs())
+    };
+    let masking = match found.masking {
+        Mask::At(own) => Mask::At(own.per(unit)),
+        other => other,
+    };
+    Ok(Friction { rate: rate.clone(), damping, growth: growth.map(per_time), masking })
 }
 
-/// Bits of the quotients that are given.
-const BITS: u32 = 128;
+/// Within 2^-100 of a number, so that its rounding to a double is all that counts.
+fn near(x: &impl Real) -> Rational {
+    let balls = (7..20).map(|log2| x.enclosure(1 << log2));
+    let found = balls.into_iter().find(|ball| ball.relative_accuracy_bits() > 100);
+    found.map_or_else(Rational::default, |ball| ball.lower())
+}
+
+/// K clocks on one oscillator as a system of mass 1 in the unit of time h_1.
+fn rounded<S: Real>(clocks: &ManyClocks<S>) -> Result<System> {
+    let (schedule, one) = (clocks.schedule(), Rational::from_integer(1.into()));
+    let potentials = schedule.clocks().iter().zip(clocks.strengths()).map(|(clock, strength)| {
+        let step = schedule.tick() * Rational::from_integer(clock.step().into());
+        let stiffness = Symmetric::diagonal(&[near(strength) / &step]);
+        let phase = Rational::new(clock.offset().into(), clock.step().into());
+        Potential { stiffness, step, phase }
+    });
+    System::new(Symmetric::diagonal(&[one]), potentials.collect())
+}
 
 /// Growing if any part is; else `None` if any part is undecided.
 fn worst(parts: impl Iterator<Item = Option<Damping>>) -> Option<Damping> {
@@ -188,110 +173,88 @@ fn parts(system: &System) -> Vec<System> {
 
 type At = (Option<Damping>, Option<(f64, f64)>);
 
-/// Where ρ lies, and ln ρ/T.
-fn at(part: &System, rate: &Rational) -> At {
-    let frame = Frame::whole(part.size());
-    let (program, _) = scaled_program(part, &frame);
-    // Entries within one rounding of the true ones are in the bound of [`follow`].
-    let stiff =
-        |kick: &Kick<f64>| Stiff { stiffness: Stiffness::Rows(kick.rows.clone()), off: 0.0, known: 0.0 };
-    let kicks: Vec<_> = program.kicks.iter().map(stiff).collect();
-    let drifts = Drifts { inverse_mass: &program.inverse_mass, decay: &(rate * part.tick()), off: 0.0 };
-    let q = follow(&drifts, part.schedule().symmetric_period(), |_, clock| &kicks[clock]);
-    let Some(error) = q.error else { return (None, None) };
-    let radius = Radius::of(&q.matrix(), error);
-    (damping(&q.matrix(), error, radius), radius.map(|own| own.growth(to_f64(&part.period()))))
+/// A part with friction.
+struct Damped<'a> {
+    part: &'a System,
+    /// For ranges of frictions, where these are not too costly.
+    ranged: Option<Ranged>,
+    period: f64,
 }
 
-/// Where the spectral radius of all matrices within `error` (2-norm) of q lies: by its enclosure, or, near double eigenvalues where that is
-/// wide, by a form that each of them shrinks.
-pub(in crate::system) fn damping(q: &Mat<f64>, error: f64, radius: Option<Radius>) -> Option<Damping> {
-    let by_radius = radius.and_then(Radius::damping);
-    by_radius.or_else(|| shrinks_a_form(q, error).then_some(Damping::Damped))
-}
-
-/// Whether P − Qᵀ P Q > 0 for some P > 0 and all Q within `error` (2-norm) of q, so that their spectral radius is below 1 (Stein): tried with
-/// P = Σ (qᵏ)ᵀ qᵏ, in doubles, for which it would be the identity less what the sum leaves out.
-fn shrinks_a_form(q: &Mat<f64>, error: f64) -> bool {
-    const DOUBLINGS: usize = 48;
-    let n = q.nrows();
-    let (mut power, mut p) = (q.clone(), Mat::<f64>::identity(n, n));
-    for _ in 0..DOUBLINGS {
-        let size = norm::frobenius(&power);
-        if !size.is_finite() || size < 0.5 {
-            break;
-        }
-        p = &p + power.transpose() * &p * &power;
-        power = &power * &power;
+impl<'a> Damped<'a> {
+    fn new(part: &'a System) -> Damped<'a> {
+        Damped { part, ranged: Ranged::new(part), period: to_f64(&part.period()) }
     }
-    let symmetric = |x: &Mat<f64>| Mat::from_fn(n, n, |i, j| (x[(i, j)] + x[(j, i)]) / 2.0);
-    let p = symmetric(&p);
-    let (size_q, size_p) = (norm::frobenius(q), norm::frobenius(&p));
-    let rounding = 1.1 * U * ((2 * n + 8) as f64 * size_q * size_q + 4.0) * size_p;
-    let slack = 1.01 * (rounding + error * (2.0 * size_q + error) * size_p);
-    let rest = symmetric(&(&p - q.transpose() * &p * q));
-    slack.is_finite() && is_definite(rest, slack) && is_definite(p, 0.0)
-}
 
-/// An enclosure of a spectral radius.
-#[derive(Clone, Copy, Debug)]
-pub(in crate::system) struct Radius {
-    lo: f64,
-    hi: f64,
-}
-
-impl Radius {
-    /// For all matrices within `error` (2-norm) of q: no eigenvalue lies outside the discs, and at least one in each of their connected
-    /// components. `None` where doubles bound nothing.
-    pub fn of(q: &Mat<f64>, error: f64) -> Option<Radius> {
-        let eigen = q.eigen().ok()?;
-        let values: Vec<_> = (0..q.nrows()).map(|i| eigen.S()[i]).collect();
-        let radius = 1.01 * residual(q, error + U * norm::frobenius(q), &values, &eigen.U().to_owned())?.norm;
-        let far = values.iter().map(|z| z.norm()).fold(0.0, f64::max);
-        let least = |component: &Vec<usize>| {
-            component.iter().map(|&i| values[i].norm()).fold(f64::INFINITY, f64::min)
+    /// Where ρ lies, and ln ρ/T.
+    fn at(&self, rate: &Rational) -> At {
+        let one = self.ranged.as_ref().filter(|_| self.part.size() == 1);
+        if let Some(found @ (Some(_), _)) =
+            one.map(|own| (own.damping(rate, Some(rate)), self.rate_of_one(own, rate)))
+        {
+            return found;
+        }
+        let frame = Frame::whole(self.part.size());
+        let (program, _) = scaled_program(self.part, &frame);
+        // Entries within one rounding of the true ones are in the bound of [`follow`].
+        let stiff =
+            |kick: &Kick<f64>| Stiff { stiffness: Stiffness::Rows(kick.rows.clone()), off: 0.0, known: 0.0 };
+        let kicks: Vec<_> = program.kicks.iter().map(stiff).collect();
+        let decay = rate * self.part.tick();
+        let drifts = Drifts { inverse_mass: &program.inverse_mass, decay: &decay, off: 0.0 };
+        let q = follow(&drifts, self.part.schedule().symmetric_period(), |_, clock| &kicks[clock]);
+        let (q, error) = match q.error {
+            Some(error) => (q.matrix(), error),
+            // Where velocities have all but stopped.
+            None => match self.ranged.as_ref().and_then(|own| own.around(rate, Some(rate))) {
+                Some(own) => (own.q, own.error),
+                None => return (None, None),
+            },
         };
-        let lower = components(&values, radius).iter().map(least).fold(0.0, f64::max);
-        Some(Radius { lo: (lower - radius).next_down(), hi: (far + radius).next_up() })
+        let radius = Radius::of(&q, error);
+        (damping(&q, error, radius), radius.map(|own| own.growth(self.period)))
     }
 
-    /// `None` where 1 lies inside.
-    pub fn damping(self) -> Option<Damping> {
-        if self.hi < 1.0 { Some(Damping::Damped) } else { (self.lo > 1.0).then_some(Damping::Growing) }
+    fn rate_of_one(&self, own: &Ranged, rate: &Rational) -> Option<(f64, f64)> {
+        let ln = own.around(rate, Some(rate))?.ln_radius()?;
+        Some(ln.div(&Ball::from_rational(&self.part.period(), 64), 64)?.to_f64_enclosure())
     }
 
-    /// ln ρ/T, the period within 4u: beside the quotient's, ln x is off by some roundings of |ln x| + 1.
-    pub fn growth(self, period: f64) -> (f64, f64) {
-        let [lo, hi] = [self.lo.max(f64::MIN_POSITIVE), self.hi].map(f64::ln);
-        ((lo - 10.0 * U * (lo.abs() + 1.0)) / period, (hi + 10.0 * U * (hi.abs() + 1.0)) / period)
+    /// The frictions that mask what grows in a part, which ticks with all clocks of the whole.
+    fn masked(&self, part: &System, limits: &Limits) -> Result<Mask> {
+        let exact = |rate: f64| from_f64_exact(rate).expect("finite");
+        let side = |rate: f64| self.at(&exact(rate)).0;
+        // A friction that is next to none: does anything grow?
+        let least = 1e-6 / self.period;
+        let grows = match side(least) {
+            Some(Damping::Growing) => least,
+            None => match decide_by(Route::Cheapest, part, limits)?.kind {
+                Some(kind) if kind.is_stable() => return Ok(Mask::NotNeeded),
+                // Without any.
+                Some(Kind::Hyperbolic) => 0.0,
+                _ => return Ok(Mask::NotTold),
+            },
+            _ => return Ok(Mask::NotNeeded),
+        };
+        let end = |rate: f64| rate.is_finite().then(|| exact(rate));
+        let masks = |lo: f64, hi: f64| {
+            let own = self.ranged.as_ref();
+            own.is_some_and(|own| own.damping(&exact(lo), end(hi).as_ref()) == Some(Damping::Damped))
+        };
+        let trace = |rate: f64| self.ranged.as_ref()?.rounded_trace(&exact(rate));
+        // Of one oscillator what doubles are good for, of others what linear theory is.
+        let is_one = self.part.size() == 1 && self.ranged.is_some();
+        let search = Search {
+            period: self.period,
+            side: &side,
+            masks: &masks,
+            trace: if is_one { Some(&trace) } else { None },
+            per_octave: if self.part.size() <= FEW && self.ranged.is_some() { 4 } else { 1 },
+            width: if is_one { 1e-10 } else { 1e-4 },
+        };
+        Ok(search.above(grows))
     }
 }
 
-/// The friction that masks what grows in a part, which ticks with all clocks of the whole.
-fn masked(part: &System, ticking: &System, limits: &Limits) -> Result<Mask> {
-    let side = |rate: f64| at(ticking, &from_f64_exact(rate).expect("finite")).0;
-    // A friction that is next to none: does anything grow?
-    let period = to_f64(&ticking.period());
-    let mut lo = 1e-6 / period;
-    match side(lo) {
-        Some(Damping::Growing) => {}
-        None if decide_by(Route::Cheapest, part, limits)?.holds() != Holds::Stable => {
-            return Ok(Mask::NotTold);
-        }
-        _ => return Ok(Mask::NotNeeded),
-    }
-    let mut all = (0..=40).map(|k| 2f64.powi(k) / period);
-    let Some(mut hi) = all.find(|&rate| side(rate) == Some(Damping::Damped)) else {
-        return Ok(Mask::NotTold);
-    };
-    while hi > lo * (1.0 + WIDTH) {
-        let middle = if hi > 4.0 * lo { (lo * hi).sqrt() } else { (lo + hi) / 2.0 };
-        match side(middle) {
-            Some(Damping::Growing) => lo = middle,
-            Some(Damping::Damped) => hi = middle,
-            // So near to 1 that doubles cannot decide: the bracket is as narrow as it gets.
-            _ => break,
-        }
-    }
-    Ok(Mask::At(Masked { rate: (lo, hi), stays: None }))
-}
+/// Degrees of freedom whose frictions are looked at closely.
+const FEW: usize = 8;

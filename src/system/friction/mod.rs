@@ -11,34 +11,42 @@
 //!     det Q = exp(−γ T),     ρ(Q) < 1  iff  |Tr Q| < 1 + det Q   (Jury),
 //! ```
 //!
-//! and a linear resonance is *masked* by every γ for which ρ(Q) < 1 although the frictionless period grows.
+//! and a linear resonance is *masked* by every γ for which ρ(Q) < 1 although the frictionless period grows. Larger frictions need not mask it, too: a strong one
+//! stops velocities in the middle of each drift, and positions then follow products of 1 − t K/2, which may grow.
 //!
 //! | file | what |
 //! |---|---|
-//! | `scalar` | one oscillator, enclosed for a rate γ |
-//! | `masking` | the smallest friction that masks a resonance of one oscillator, from the polynomial Tr Q(c) |
-//! | `matrices` | many degrees of freedom, in doubles with a proven bound (two levels of measured stiffnesses: [`Kernel::friction`](crate::system::levels::Kernel::friction)) |
+//! | `matrices` | periods in doubles with a proven bound (two levels of measured stiffnesses: [`Kernel::friction`](crate::system::levels::Kernel::friction)) |
+//! | `radius` | where the spectral radius of a matrix lies that is known within an error |
+//! | `range` | a period for all frictions of a range at once |
+//! | `masking` | the frictions that mask: looked for by values, proven range by range |
+//! | `tie` | one oscillator whose spectral radius is 1 at every friction, exactly |
 //!
 //! ```
-//! use kickdrift::number::{Rational, rational::ratio};
+//! use kickdrift::number::{Laurent, Rational, rational::{from_f64_exact, ratio}};
 //! use kickdrift::system::ManyClocks;
-//! use kickdrift::system::friction::{Damping, damped, masking};
+//! use kickdrift::system::friction::{Damping, Mask, damped_oscillator};
 //! // s = h1² L1 = 9/4, rho = 1/25, h2 = 7/2 h1: in the tongue m = 4.
 //! let (steps, phases) = ([ratio(1, 1), ratio(7, 2)], [ratio(0, 1), ratio(0, 1)]);
 //! let clocks = ManyClocks::new(&steps, &phases, vec![ratio(12, 5), ratio(12 * 7, 5 * 25 * 2)]).unwrap();
-//! let mask = masking(&clocks).unwrap().expect("it grows without friction");
-//! let at = |rate: Rational| damped(&clocks, &rate).unwrap().damping;
-//! assert_eq!(at(mask.rate.lower() / ratio(2, 1)), Damping::Growing);
-//! assert_eq!(at(mask.rate.upper() * ratio(2, 1)), Damping::Damped);
+//! let with = |rate: f64| {
+//!     damped_oscillator(&clocks, &Laurent::from_integer(1), &from_f64_exact(rate).unwrap()).unwrap()
+//! };
+//! let Mask::At(mask) = with(0.1).masking else { panic!("it grows without friction") };
+//! assert!(mask.stays());
+//! assert_eq!(with(mask.grows).damping, Some(Damping::Growing));
+//! assert_eq!(with(2.0 * mask.least()).damping, Some(Damping::Damped));
 //! ```
 
 mod damping;
 mod masking;
 mod matrices;
-mod scalar;
+mod radius;
+mod range;
+mod tie;
 
 pub use damping::Damping;
-pub use masking::{Masking, masking};
-pub use matrices::{Friction, Mask, Masked, damped_oscillator, damped_pair, damped_system};
-pub(in crate::system) use matrices::{Radius, damping};
-pub use scalar::{Damped, damped};
+pub(in crate::system) use masking::Search;
+pub use masking::{Mask, Masked};
+pub use matrices::{Friction, damped_oscillator, damped_pair, damped_system};
+pub(in crate::system) use radius::{Radius, damping};

@@ -7,7 +7,7 @@ use super::friction::MOST_MASKED;
 use super::model::{Clock, Jacobians};
 use super::orbit;
 use crate::error::Result;
-use crate::number::{Laurent, Rational, U};
+use crate::number::{Laurent, Rational, U, outward};
 use crate::system::exact::decide::{MuCount, judged_blocks};
 use crate::system::half::norm;
 use crate::system::spectrum::discs::Spectrum;
@@ -34,8 +34,7 @@ impl NoGradient {
     /// How much faster it grows with the steps of a verdict than without, enclosed; `None` where one of these is not bounded.
     pub fn added_by_steps(&self, analysis: &Analysis) -> Option<(f64, f64)> {
         let ((lo, hi), (least, most)) = (analysis.growth_rate()?, self.without_steps?);
-        Some(((lo - most).next_down(), (hi - least).next_up()))
-            .filter(|(lo, hi)| lo.is_finite() && hi.is_finite())
+        Some(outward((lo - most, hi - least))).filter(|(lo, hi)| lo.is_finite() && hi.is_finite())
     }
 }
 

@@ -17,11 +17,9 @@
 //! | `orbit` | the half period in doubles with a proven bound, and exactly |
 //! | `decide` | the verdict, the growth with and without steps |
 //! | `friction` | periods with friction, and the friction that masks growth |
-//! | `intervals` | the verdicts on all outer steps of a range, by discs that hold for cells of them |
 
 mod decide;
 mod friction;
-mod intervals;
 mod model;
 mod orbit;
 

@@ -236,6 +236,18 @@ impl Jacobians {
         })
     }
 
+    /// This system with all steps `factor` > 0 times as long.
+    ///
+    /// # Errors
+    /// A factor that is not positive.
+    pub fn slowed(&self, factor: &Rational) -> Result<Jacobians> {
+        let symmetric = self.symmetric.with(&Rational::one(), factor)?;
+        let clock = |own: &Clock| Clock { step: &own.step * factor, ..own.clone() };
+        let clocks = self.clocks.iter().map(clock).collect();
+        let (tick, spectrum) = (&self.tick * factor, Default::default());
+        Ok(Jacobians { clocks, tick, symmetric, spectrum, ..self.clone() })
+    }
+
     /// This system with another step for each clock, by increasing step.
     ///
     /// # Errors

@@ -23,12 +23,15 @@ use num_complex::Complex64;
 use super::kernel::{Kernel, Outer};
 use crate::number::rational::{from_f64_exact, to_f64};
 use crate::number::{Rational, U};
-use crate::system::friction::{Damping, Friction, Mask, Masked, Radius, damping};
+use crate::system::friction::{Damping, Friction, Mask, Radius, Search, damping};
 use crate::system::half::norm;
 use crate::system::half::period::decayed;
 
 /// The sums take a step for each pair of inner steps.
 const MOST_INNER_STEPS: u64 = 1 << 12;
+
+/// Degrees of freedom of which ranges of frictions are looked at: some hundred eigenvalue problems of twice as many rows.
+const FEW: usize = 40;
 
 /// √3, from above.
 const DRIFT: f64 = 1.7321;
@@ -67,10 +70,33 @@ impl Kernel {
             None if !self.is_stable(outer, 0.0) => return Mask::NotTold,
             _ => return Mask::NotNeeded,
         }
-        let Some(hi) = self.masking_friction(outer) else { return Mask::NotTold };
-        let grows = |friction: &f64| self.damping(outer, *friction) == Some(Damping::Growing);
-        let below = [0.9995, 0.998, 0.99].map(|part| part * hi).into_iter().find(grows);
-        below.map_or(Mask::NotTold, |lo| Mask::At(Masked { rate: (lo, hi), stays: None }))
+        let Some(least) = self.masking_friction(outer) else { return Mask::NotTold };
+        let side = |friction: f64| self.damping(outer, friction);
+        let grows = |friction: &f64| side(*friction) == Some(Damping::Growing);
+        let Some(below) = [0.9995, 0.998, 0.99].map(|part| part * least).into_iter().find(grows) else {
+            return Mask::NotTold;
+        };
+        let masks = |lo: f64, hi: f64| self.size() <= FEW && self.masks(outer, lo, hi);
+        let search = Search {
+            period: outer.step,
+            side: &side,
+            masks: &masks,
+            trace: None,
+            per_octave: 1,
+            width: 1e-4,
+        };
+        Mask::found(below, vec![(least, search.up(least))])
+    }
+
+    /// Whether all frictions from `lo` to `hi`, which may be infinite, are proven to mask.
+    fn masks(&self, outer: &Outer, lo: f64, hi: f64) -> bool {
+        let inner = outer.step / outer.inner_steps as f64;
+        let factor = |friction: f64| if friction.is_finite() { (-friction * inner).exp() } else { 0.0 };
+        let [most, least] = [lo, hi].map(factor);
+        // Exponentials of rounded numbers, x exp(−x) < 1/2.
+        let off = (most - least) / 2.0 + 8.0 * U;
+        let period = self.period_within(outer, least + (most - least) / 2.0, off);
+        period.is_some_and(|(q, error)| damping(&q, error, Radius::of(&q, error)) == Some(Damping::Damped))
     }
 
     /// The spectral radius of the computed period, no more than computed.
@@ -86,16 +112,12 @@ impl Kernel {
         least_masking(self.growth(outer), outer.step, |friction| self.rounded_radius(outer, friction), proven)
     }
 
-    fn damped_modes(&self, outer: &Outer, friction: f64) -> Option<Fast> {
+    /// Velocities are multiplied by c in an inner step, which is known to `decay_error`.
+    fn damped_modes(&self, outer: &Outer, c: f64, decay_error: f64) -> Option<Fast> {
         let p = outer.inner_steps;
-        let exponent =
-            from_f64_exact(friction * (outer.step / p as f64)).filter(|x| *x >= Default::default())?;
         if p > MOST_INNER_STEPS {
             return None;
         }
-        // The friction and the step are within 4u each, and x exp(−x) < 1/2.
-        let c = decayed(&exponent, 1);
-        let decay_error = 6.0 * U;
         let [fast_norm, _] = self.norms();
         let moved = self.moved(outer, self.fast_error);
         let kick = 1.01 * (1.0 + outer.scaled_up(fast_norm) / 2.0 + moved);
@@ -123,7 +145,14 @@ impl Kernel {
 
     /// The period, and a bound on its error (2-norm).
     fn damped_period(&self, outer: &Outer, friction: f64) -> Option<(Mat<f64>, f64)> {
-        let fast = self.damped_modes(outer, friction)?;
+        let exponent = from_f64_exact(friction * (outer.step / outer.inner_steps as f64));
+        // The friction and the step are within 4u each, and x exp(−x) < 1/2.
+        self.period_within(outer, decayed(&exponent.filter(|x| *x >= Default::default())?, 1), 6.0 * U)
+    }
+
+    /// The period where velocities are multiplied by c in an inner step, and a bound on the distance (2-norm) of all within `off` of it.
+    fn period_within(&self, outer: &Outer, c: f64, off: f64) -> Option<(Mat<f64>, f64)> {
+        let fast = self.damped_modes(outer, c, off)?;
         let m = self.size();
         let (k, [kick_size, kick_off]) = self.half_kick(outer, self.errors_within(0.0));
         let kick_size = 1.01 * (1.0 + kick_size);

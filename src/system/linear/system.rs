@@ -168,11 +168,6 @@ impl System {
         self.schedule.period() / self.schedule.clocks()[clock].step()
     }
 
-    /// The stiffnesses of the potentials, each for itself.
-    pub(in crate::system) fn single_stiffnesses(&self) -> Vec<&Symmetric> {
-        self.potentials.iter().map(|own| &own.stiffness).collect()
-    }
-
     /// Σ K_k.
     pub fn total_stiffness(&self) -> Symmetric {
         let mut total = Symmetric::zero(self.size());

@@ -8,11 +8,11 @@ use crate::number::Rational;
 use crate::number::rational::{from_f64_exact, to_f64};
 use crate::system::levels::Method;
 use crate::system::spectrum::rate::middle;
-use crate::system::vary::edges::{Family, Linear};
+use crate::system::vary::family::{Family, Linear};
 use crate::system::vary::nearest::Nearest;
 use crate::system::vary::stretches::{Stretch, check_width};
 use crate::system::verdict::analysis::Analysis;
-use crate::system::verdict::decide::decide_by;
+use crate::system::verdict::decide::{decide_around, decide_by};
 use crate::system::verdict::limits::{Limits, Route};
 use crate::system::verdict::measured::Holds;
 
@@ -49,13 +49,12 @@ impl Model {
             }
             (Number::Linear(at), _) => {
                 let at = |x: &Rational| Ok(at(x)?.moving()?.into_owned());
-                Family { linear: Linear::Number, at: &at }.stretches(range, width, limits)
+                Family { linear: Linear::Number, at: &at }.stretches(range, width)
             }
             (_, Model::LocalSteps(own)) => own.stretches(range, limits),
-            (_, Model::Along(_) | Model::Sparse(_)) => Err(self.no_intervals()),
-            (_, Model::NoGradient(own)) => own.stretches(range, width),
+            (_, Model::Along(_) | Model::NoGradient(_) | Model::Sparse(_)) => Err(self.no_intervals()),
             (_, Model::Measured(own)) => own.stretches(range, width, own.accuracy),
-            _ => self.over_outer_steps(|family| family.stretches(range, width, limits)),
+            _ => self.over_outer_steps(|family| family.stretches(range, width)),
         }
     }
 
@@ -92,24 +91,17 @@ impl Model {
     ///
     /// # Errors
     /// As [`Family::cost`]; a width outside \[10^-9, 1/10\].
-    pub fn cost_of_stretches(
-        &self,
-        number: &Number,
-        range: (f64, f64),
-        width: f64,
-        limits: &Limits,
-    ) -> Result<f64> {
+    pub fn cost_of_stretches(&self, number: &Number, range: (f64, f64), width: f64) -> Result<f64> {
         check_width(width)?;
         match (number, self) {
             (Number::Linear(at), _) => {
                 let at = |x: &Rational| Ok(at(x)?.moving()?.into_owned());
-                Family { linear: Linear::Number, at: &at }.cost(range, width, limits)
+                Family { linear: Linear::Number, at: &at }.cost(range, width)
             }
             (_, Model::Measured(own)) => own.cost_of_stretches(range, width),
             (_, Model::LocalSteps(own)) => Ok(own.cost()),
-            (_, Model::NoGradient(own)) => Ok(own.cost_of_stretches(range, width)),
-            (_, Model::Along(_) | Model::Sparse(_)) => Err(self.no_intervals()),
-            _ => self.over_outer_steps(|family| family.cost(range, width, limits)),
+            (_, Model::Along(_) | Model::NoGradient(_) | Model::Sparse(_)) => Err(self.no_intervals()),
+            _ => self.over_outer_steps(|family| family.cost(range, width)),
         }
     }
 
@@ -117,9 +109,9 @@ impl Model {
     ///
     /// # Errors
     /// As [`Family::cost`].
-    pub fn cost_of_nearest(&self, width: f64, limits: &Limits) -> Result<f64> {
+    pub fn cost_of_nearest(&self, width: f64) -> Result<f64> {
         let range = Nearest::reach(to_f64(&self.outer_step()));
-        self.cost_of_stretches(&Number::Outer, range, width, limits)
+        self.cost_of_stretches(&Number::Outer, range, width)
     }
 
     /// The result of `ask` on the systems of all outer steps.
@@ -146,13 +138,6 @@ impl Model {
         if let Model::LocalSteps(own) = self {
             return Ok(Nearest::of(step, &own.stretches(Nearest::reach(step), limits)?));
         }
-        let is_searched = matches!(self, Model::Measured(_) | Model::NoGradient(_) | Model::Sparse(_));
-        if !is_searched {
-            let exactly = |family: &Family| family.exactly(Nearest::reach(step), limits);
-            if let Some(all) = self.over_outer_steps(exactly)? {
-                return Ok(Nearest::of(step, &all));
-            }
-        }
         let own = self.holds(limits)?;
         Nearest::search((step, own), |range| self.stretches(&Number::Outer, range, width, limits))
     }
@@ -173,7 +158,7 @@ impl Model {
                 Some(own) => own?.decide(limits),
                 None => Err(self.refused("the verdict at another step")),
             },
-            Model::Pi(own) => own.slowed(&factor)?.decide(Route::Cheapest, limits),
+            Model::Pi(own) => decide_around(&own.with(&Rational::one(), &factor)?, limits),
             Model::LocalSteps(own) => decide_by(Route::Cheapest, own.at(outer)?.system(), limits),
             Model::Implicit(own) => decide_by(Route::Cheapest, &own.at(outer)?, limits),
             _ => decide_by(Route::Cheapest, &self.moving()?.with(&Rational::one(), &factor)?, limits),

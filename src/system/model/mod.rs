@@ -24,9 +24,8 @@ use crate::system::jacobian::Jacobians;
 use crate::system::levels::{Hessians, Method};
 use crate::system::linear::system::{Potential, System};
 use crate::system::lts::{ElementSteps, LocalSteps, Scheme, SchemeSummary};
-use crate::system::pi::PiSystem;
 use crate::system::verdict::analysis::Analysis;
-use crate::system::verdict::decide::{decide_by, exact_kind, verdict_cost};
+use crate::system::verdict::decide::{decide_around, decide_by, exact_kind, verdict_cost};
 use crate::system::verdict::limits::{DENSE, Limits, PACE, Route};
 use crate::system::verdict::measured::Holds;
 use crate::verdict::Kind;
@@ -40,8 +39,8 @@ pub use sparse::SparseSystem;
 pub enum Model {
     /// Rational masses, stiffnesses and steps, few entries or many.
     Rational(System),
-    /// Several degrees of freedom with stiffnesses over ℚ\[π, 1/π\].
-    Pi(PiSystem),
+    /// Several degrees of freedom with π in the stiffnesses, by the rational system beside it ([`beside_pi`](crate::system::beside_pi)).
+    Pi(System),
     /// One oscillator over ℚ\[π, 1/π\].
     Oscillator(Oscillator),
     /// Stiffnesses in doubles, known to some accuracy.
@@ -67,8 +66,7 @@ impl Model {
     /// gradient, Hessians along an orbit, and sparse stiffnesses, have none: what is returned has their size and their clocks, no more.
     pub fn system(&self) -> &System {
         match self {
-            Model::Rational(own) | Model::Elements(own, _) => own,
-            Model::Pi(own) => own.near(),
+            Model::Rational(own) | Model::Pi(own) | Model::Elements(own, _) => own,
             Model::Oscillator(own) => &own.rounded,
             Model::Measured(own) => own.system(),
             Model::LocalSteps(own) => own.system(),
@@ -120,7 +118,8 @@ impl Model {
     pub fn decide(&self, route: Route, limits: &Limits) -> Result<Analysis> {
         match self {
             Model::Rational(own) | Model::Elements(own, _) => decide_by(route, own, limits),
-            Model::Pi(own) => own.decide(route, limits),
+            Model::Pi(_) if route == Route::Exact => Err(self.refused("exact arithmetic")),
+            Model::Pi(own) => decide_around(own, limits),
             Model::Oscillator(own) => own.decide(limits),
             Model::Measured(own) => own.decide(route, limits),
             Model::LocalSteps(own) => decide_by(route, own.system(), limits),
@@ -177,16 +176,15 @@ impl Model {
         }
     }
 
-    /// The kind by exact arithmetic alone: by characteristic polynomials over ℚ or power sums over ℚ\[π\], part by part; of an
-    /// oscillator with π by the four signs.
+    /// The kind by exact arithmetic alone: by characteristic polynomials, part by part; of an oscillator with π by the four signs, of several
+    /// degrees of freedom with π that of [`Model::system`].
     ///
     /// # Errors
     /// A budget error, before the work on the part that exceeds it.
     pub fn exact_kind(&self, limits: &Limits) -> Result<Kind> {
         match self {
-            Model::Pi(own) => own.exact_kind(limits),
             Model::Oscillator(own) => own.exact_kind(limits),
-            Model::Rational(own) | Model::Elements(own, _) => exact_kind(own, limits),
+            Model::Rational(own) | Model::Pi(own) | Model::Elements(own, _) => exact_kind(own, limits),
             Model::LocalSteps(own) => exact_kind(own.system(), limits),
             Model::Implicit(own) => exact_kind(own.system(), limits),
             Model::NoGradient(own) => own.exact(limits).map(|(kind, _)| kind),
@@ -229,6 +227,11 @@ impl Model {
             Model::Sparse(_) => {
                 Error::input("stiffness", "sparse", format!("{what} needs dense stiffnesses"))
             }
+            Model::Pi(_) => Error::input(
+                "stiffness",
+                "with pi",
+                format!("{what} on several degrees of freedom needs rational numbers: write them without pi"),
+            ),
             Model::Along(_) => {
                 let remedy =
                     format!("{what} needs Hessians at one place: the orbit is that of these steps alone");

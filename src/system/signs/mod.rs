@@ -28,7 +28,7 @@
 //! | file | what |
 //! |---|---|
 //! | `forms` | the table above, from inertias, and the forms of a half period in doubles |
-//! | `elimination` | exact inertias and ranks without fractions |
+//! | `elimination` | exact inertias without fractions |
 //! | `inertia` | proven inertias of dense matrices in doubles |
 //! | `action`, `envelope` | the action of large sparse systems; sparse matrices and their proven signs |
 
@@ -38,5 +38,5 @@ pub(super) mod envelope;
 mod forms;
 pub(super) mod inertia;
 
-pub(super) use elimination::{inertia as exact_inertia, rank as exact_rank};
+pub(super) use elimination::inertia as exact_inertia;
 pub(super) use forms::{Inertias, judge, proven};

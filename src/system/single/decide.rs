@@ -41,21 +41,16 @@ const FAMILIES: usize = 6;
 impl System {
     /// The system as K clocks on one oscillator; `None` unless it has one degree of freedom.
     pub fn as_many_clocks(&self) -> Option<ManyClocks<Rational>> {
-        (self.size() == 1).then(|| many_clocks(self, |clock| clock.stiffness.get(0, 0)))
+        if self.size() != 1 {
+            return None;
+        }
+        let (clocks, first) = (self.clocks(), &self.clocks()[0].step);
+        let steps: Vec<_> = clocks.iter().map(|clock| &clock.step / first).collect();
+        let phases: Vec<_> = clocks.iter().map(|clock| clock.phase.clone()).collect();
+        let unit = |clock: &Potential| first * &clock.step / self.mass().get(0, 0);
+        let strengths = clocks.iter().map(|clock| unit(clock) * clock.stiffness.get(0, 0)).collect();
+        Some(ManyClocks::new(&steps, &phases, strengths).expect("the clocks of a checked system"))
     }
-}
-
-/// The clocks of a system of one degree of freedom, each with its true stiffness.
-pub(in crate::system) fn many_clocks<S: Ring>(
-    system: &System,
-    stiffness: impl Fn(&Potential) -> S,
-) -> ManyClocks<S> {
-    let (clocks, first) = (system.clocks(), &system.clocks()[0].step);
-    let steps: Vec<_> = clocks.iter().map(|clock| &clock.step / first).collect();
-    let phases: Vec<_> = clocks.iter().map(|clock| clock.phase.clone()).collect();
-    let unit = |clock: &Potential| S::from_rational(&(first * &clock.step / system.mass().get(0, 0)));
-    let strengths = clocks.iter().map(|clock| S::product(&unit(clock), &stiffness(clock))).collect();
-    ManyClocks::new(&steps, &phases, strengths).expect("the clocks of a checked system")
 }
 
 /// The verdict on a system of one degree of freedom; shapes are (1).
@@ -84,23 +79,13 @@ pub fn decide_oscillator(
 ) -> Result<Analysis> {
     assert_eq!(clocks.strikes().len(), rounded.clocks().len(), "one stiffness a clock");
     let period = Laurent::from_rational(clocks.period()) * unit.clone();
-    let part = decide_with_pi(clocks, rounded, period, limits)?;
+    let part = decide_clocks(clocks, rounded, period, with_pi, limits)?;
     let warnings = if rounded.is_total_semidefinite() {
         Vec::new()
     } else {
         vec!["the total stiffness is negative: the oscillator itself is unstable, whatever the steps".into()]
     };
     Ok(Analysis::of_part(part, clocks.strikes().len(), warnings))
-}
-
-/// The verdict on K clocks over ℚ\[π\]; `rounded` as for [`decide_oscillator`].
-pub(in crate::system) fn decide_with_pi(
-    clocks: &ManyClocks<Laurent>,
-    rounded: &System,
-    period: Laurent,
-    limits: &Limits,
-) -> Result<Part> {
-    decide_clocks(clocks, rounded, period, with_pi, limits)
 }
 
 /// The products of machine words that exact signs cost over ℚ\[π\], whose numbers grow with each kick in length and in degree.

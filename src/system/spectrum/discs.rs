@@ -34,7 +34,7 @@ pub(in crate::system) struct Spectrum {
     /// Bounds on the rows of F.
     rows: Vec<f64>,
     /// More than ‖V⁻¹‖₂.
-    pub(super) inverse: Option<f64>,
+    inverse: Option<f64>,
     /// One column for each, in the coordinates of [`FloatBlocks`].
     pub vectors: Mat<c64>,
     /// S, and how far the true one can be.
@@ -171,80 +171,58 @@ impl Spectrum {
         let radius = 1.01 * self.radius?;
         let components = components(&self.mu, radius);
         let off = |component: &Vec<usize>| component.iter().all(|&i| from_segment(self.mu[i]) > radius);
-        if components.iter().any(off) || (0..self.mu.len()).any(|i| self.is_encircled(i, &self.rows)) {
+        if components.iter().any(off) || (0..self.mu.len()).any(|i| self.is_encircled(i)) {
             return Some(Kind::Hyperbolic);
         }
-        // Up to the first: circles about all of them cost as much as the products where matrices are small.
-        self.untold_of(components, radius).next().is_none().then_some(Kind::Elliptic)
-    }
-
-    /// The eigenvalues that discs do not prove to be real, within (−1, 0) and simple; `None` where there are no discs.
-    pub(super) fn untold(&self) -> Option<Vec<usize>> {
-        let radius = 1.01 * self.radius?;
-        Some(self.untold_of(components(&self.mu, radius), radius).collect())
-    }
-
-    fn untold_of(&self, components: Vec<Vec<usize>>, radius: f64) -> impl Iterator<Item = usize> {
-        let inside = move |component: &Vec<usize>| match component.as_slice() {
+        // Real, within (−1, 0) and simple.
+        let inside = |component: &&Vec<usize>| match component.as_slice() {
             [i] => {
                 let z = self.mu[*i];
                 z.im == 0.0 && z.re + radius < 0.0 && z.re - radius > -1.0
             }
             _ => false,
         };
-        components
-            .into_iter()
-            .filter(move |own| !inside(own))
-            .flatten()
-            .filter(|&i| !self.is_alone(i, &self.rows))
+        // Up to the first: circles about all of them cost as much as the products where matrices are small.
+        let mut untold =
+            components.iter().filter(|own| !inside(own)).flatten().filter(|&&i| !self.is_alone(i));
+        untold.next().is_none().then_some(Kind::Elliptic)
     }
 
-    /// Bounds on the rows of T⁻¹ F T, T = 1/τ at `open` and 1 elsewhere, τ = `weight`, where these columns of F are together no longer than `column`.
-    pub(super) fn narrowed(&self, open: &[usize], column: f64, weight: f64) -> Vec<f64> {
-        let row = |(j, own): (usize, &f64)| {
-            1.001 * if open.contains(&j) { weight * own + column } else { own + column / weight }
-        };
-        self.rows.iter().enumerate().map(row).collect()
-    }
-}
-
-impl Spectrum {
     /// Whether some circle about a real μ_i, within (−1, 0) and at most half as wide as the nearest other μ is far, is free of eigenvalues as in
     /// [`Spectrum::is_encircled`]: one eigenvalue of S is in it, real, and in no other such circle.
-    pub(super) fn is_alone(&self, i: usize, rows: &[f64]) -> bool {
+    fn is_alone(&self, i: usize) -> bool {
         let z = self.mu[i];
         let others =
             self.mu.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, other)| (other - z).norm() / 2.0);
         let room = 0.99 * others.fold((-z.re).min(1.0 + z.re), f64::min);
-        z.im == 0.0 && room > 0.0 && self.is_free(i, room, rows)
+        z.im == 0.0 && room > 0.0 && self.is_free(i, room)
     }
 
-    /// Whether some circle about μ_i that does not meet \[−1, 0\] is free of eigenvalues of D + tF, 0 ≤ t ≤ 1, whose rows have these bounds, so that it holds as
-    /// many of S as of D.
+    /// Whether some circle about μ_i that does not meet \[−1, 0\] is free of eigenvalues of D + tF, 0 ≤ t ≤ 1, so that it holds as many of S as of D.
     ///
     /// (D − z) y = −F y with |y| = 1 gives |d_j − z| |y_j| ≤ ρ_j, so an eigenvalue z has Σ (ρ_j/|d_j − z|)² ≥ 1 (for both rows of
     /// a conjugate pair the nearer of the two). Rows differ where some eigenvectors are nearly dependent: those that are not keep
     /// their small discs. The radii tried go down by fifths, to a hundredth of the distance.
-    pub(super) fn is_encircled(&self, i: usize, rows: &[f64]) -> bool {
+    fn is_encircled(&self, i: usize) -> bool {
         let off = 0.99 * from_segment(self.mu[i]);
-        if rows.get(i).is_none_or(|own| *own >= off) {
+        if self.rows.get(i).is_none_or(|own| *own >= off) {
             return false;
         }
-        self.is_free(i, off, rows)
+        self.is_free(i, off)
     }
 
     /// Whether one of some circles about μ_i, of at most this radius, holds no eigenvalue of D + tF.
-    fn is_free(&self, i: usize, largest: f64, rows: &[f64]) -> bool {
+    fn is_free(&self, i: usize, largest: f64) -> bool {
         let distances = |z: &c64| {
             let own = (z - self.mu[i]).norm();
             [own, if z.im == 0.0 { own } else { (z.conj() - self.mu[i]).norm() }]
         };
-        let all: Vec<_> = self.mu.iter().map(distances).zip(rows).collect();
+        let all: Vec<_> = self.mu.iter().map(distances).zip(&self.rows).collect();
         let escape = |radius: f64| {
             let term = |([own, other], row): &([f64; 2], &f64)| {
                 (*row / (own - radius).abs().min((other - radius).abs())).powi(2)
             };
-            rows.len() == self.mu.len() && all.iter().map(term).sum::<f64>() < 0.99
+            self.rows.len() == self.mu.len() && all.iter().map(term).sum::<f64>() < 0.99
         };
         (0..20).map(|k| largest * 0.8f64.powi(k)).any(escape)
     }

@@ -86,7 +86,7 @@ impl Piece {
         let shape = |i| spectrum.shape(i, &blocks.scales);
         let period = Laurent::from_rational(self.system.period());
         let mut found = spectrum.multipliers();
-        if kind == Some(Kind::Hyperbolic) && is_rough(&found) && self.coefficients.is_none() {
+        if kind == Some(Kind::Hyperbolic) && is_rough(&found) && self.is_exact {
             found = self.refined(&found, limits).unwrap_or(found);
         }
         explained(found, shape, kind, &period, resonance)

@@ -4,7 +4,6 @@
 //! |---|---|
 //! | `discs` | all of them, each in a proven disc |
 //! | `bauer_fike`, `clusters` | the discs' radii; multiple eigenvalues |
-//! | `sharper` | single ones beside an edge |
 //! | `rate` | growth rates, enclosed |
 //! | `modes`, `explain` | normal modes; what grows and why |
 
@@ -14,4 +13,3 @@ pub(super) mod discs;
 pub(super) mod explain;
 pub(super) mod modes;
 pub(super) mod rate;
-mod sharper;

@@ -4,13 +4,12 @@
 //! |---|---|
 //! | `scan` | maps over two parameters |
 //! | `between` | all systems between two |
-//! | `critical`, `edges` | where the verdict can change, exactly; what lies between |
+//! | `family` | the systems of one number |
 //! | `stretches` | a range covered |
 //! | `nearest` | the unstable intervals next to a number |
 
 pub(super) mod between;
-pub(super) mod critical;
-pub mod edges;
+pub(super) mod family;
 pub mod nearest;
 pub mod scan;
 pub mod stretches;

@@ -12,11 +12,12 @@
 //! matrices for the eigenvalues and their bound; the budget error of exact arithmetic names its cost.
 
 use crate::error::Result;
-use crate::number::{Laurent, Rational};
+use crate::number::{Laurent, Rational, U};
 use crate::system::half::compose::{self, connected_parts};
+use crate::system::half::norm;
 use crate::system::linear::frame::Frame;
-use crate::system::linear::sparse::Symmetric;
 use crate::system::linear::system::System;
+use crate::system::signs::inertia;
 use crate::system::verdict::analysis::Analysis;
 use crate::system::verdict::large;
 use crate::system::verdict::limits::{Limits, Route};
@@ -37,18 +38,22 @@ pub fn decide_system(system: &System, limits: &Limits) -> Result<Analysis> {
 /// # Errors
 /// As [`decide_system`]; by [`Route::Exact`] also where exact arithmetic exceeds the budget.
 pub fn decide_by(route: Route, system: &System, limits: &Limits) -> Result<Analysis> {
-    let how = (route, limits);
-    decided((system, System::stiffnesses), system, Ok, how)
+    decided(system, true, (route, limits))
 }
 
-/// A system, and its stiffnesses that an invariant subspace is to be invariant under.
-pub(in crate::system) type Structure<'a> = (&'a System, fn(&System) -> Vec<&Symmetric>);
+/// The verdict on all systems within 2^-150 of each entry: the kind is that of this one where doubles prove it, else not decided.
+///
+/// # Errors
+/// As [`decide_system`].
+pub(in crate::system) fn decide_around(system: &System, limits: &Limits) -> Result<Analysis> {
+    decided(system, false, (Route::Cheapest, limits))
+}
 
 /// Pieces, each with the degrees of freedom of the connected part that it is of, and the rigid modes.
 type Apart = (Vec<(Vec<usize>, Piece)>, Vec<Vec<Rational>>);
 
-/// The pieces of all connected parts.
-fn apart((system, stiffnesses): Structure) -> Apart {
+/// The pieces of all connected parts, which are split where the system is exact.
+fn apart(system: &System, is_exact: bool) -> Apart {
     let (mut all, mut rigid_modes) = (Vec::new(), Vec::new());
     for dofs in connected_parts(system) {
         let Some(component) = system.component(&dofs) else {
@@ -62,31 +67,21 @@ fn apart((system, stiffnesses): Structure) -> Apart {
             x
         };
         rigid_modes.extend(frame.rigid.iter().map(|(_, v)| place(v)));
-        all.extend(pieces(component, frame, stiffnesses).into_iter().map(|piece| (dofs.clone(), piece)));
+        all.extend(pieces(component, frame, is_exact).into_iter().map(|piece| (dofs.clone(), piece)));
     }
     (all, rigid_modes)
 }
 
-/// The verdict on a system whose parts are those of `structure`; `prepared` makes such a part one of the system.
-///
-/// # Errors
-/// As [`decide_by`]; as `prepared`.
-pub(in crate::system) fn decided(
-    structure: Structure,
-    system: &System,
-    prepared: impl Fn(Piece) -> Result<Piece>,
-    how: (Route, &Limits),
-) -> Result<Analysis> {
+fn decided(system: &System, is_exact: bool, how: (Route, &Limits)) -> Result<Analysis> {
     let mut warnings = Vec::new();
-    if !system.is_total_semidefinite() {
+    let is_indefinite = if is_exact { !system.is_total_semidefinite() } else { is_proven_indefinite(system) };
+    if is_indefinite {
         warnings.push(
             "the total stiffness is indefinite: the system itself is unstable, whatever the steps".into(),
         );
     }
-    let (all, rigid_modes) = apart(structure);
-    let part = |(dofs, piece): (Vec<usize>, Piece)| {
-        prepared(piece)?.decide(system.size(), &dofs, how, &mut warnings)
-    };
+    let (all, rigid_modes) = apart(system, is_exact);
+    let part = |(dofs, piece): (Vec<usize>, Piece)| piece.decide(system.size(), &dofs, how, &mut warnings);
     let parts = all.into_iter().map(part).collect::<Result<Vec<_>>>()?;
     let kind = severest(parts.iter().map(|part| part.kind));
     let period = Laurent::from_rational(system.period());
@@ -94,22 +89,21 @@ pub(in crate::system) fn decided(
     Ok(Analysis { size, clocks, period, kind, rigid_modes, parts, warnings, measured: None })
 }
 
+/// Whether the total stiffness has a negative direction, for all stiffnesses within the rounding of these to doubles.
+fn is_proven_indefinite(system: &System) -> bool {
+    let sizes = system.stiffnesses().into_iter().map(|own| norm::frobenius(&own.rounded()));
+    // Entries are rounded once, and added up.
+    let slack = 2.0 * (1 + system.clocks().len()) as f64 * U * sizes.sum::<f64>();
+    inertia::proven(&system.rounded_total(), slack).negative > 0
+}
+
 /// The kind by exact arithmetic alone, over characteristic polynomials: the severest of the parts', each over its own period.
 ///
 /// # Errors
 /// A budget error, before the work on the part that exceeds it.
 pub fn exact_kind(system: &System, limits: &Limits) -> Result<Kind> {
-    exact_kind_of((system, System::stiffnesses), Ok, limits)
-}
-
-/// The exact kind where the parts are those of `structure`, as for [`decided`].
-pub(in crate::system) fn exact_kind_of(
-    structure: Structure,
-    prepared: impl Fn(Piece) -> Result<Piece>,
-    limits: &Limits,
-) -> Result<Kind> {
-    let pieces = apart(structure).0.into_iter();
-    let kinds = pieces.map(|(_, own)| Ok(prepared(own)?.exact(limits)?.0)).collect::<Result<Vec<_>>>()?;
+    let pieces = apart(system, true).0.into_iter();
+    let kinds = pieces.map(|(_, piece)| Ok(piece.exact(limits)?.0)).collect::<Result<Vec<_>>>()?;
     Ok(kinds.into_iter().max_by_key(severity).unwrap_or(Kind::Elliptic))
 }
 

@@ -7,10 +7,9 @@ use crate::system::exact::decide::{MuCount, decide_beside, decide_by_signs};
 use crate::system::half::compose::check_length;
 use crate::system::half::float;
 use crate::system::linear::frame::Frame;
-use crate::system::linear::sparse::{Symmetric, dot};
+use crate::system::linear::sparse::dot;
 use crate::system::linear::split::{Subspace, invariant_subspaces, may_split};
 use crate::system::linear::system::System;
-use crate::system::pi::PiSystem;
 use crate::system::signs;
 use crate::system::single::decide as single;
 use crate::system::spectrum::discs::Spectrum;
@@ -33,19 +32,17 @@ pub(in crate::system) struct Piece {
     pub(in crate::system) frame: Frame,
     /// x = Z y in the component's coordinates; `None` for the component itself.
     pub(in crate::system) columns: Option<Subspace>,
-    /// The true stiffnesses, where they involve π: `system` then is very near to them.
-    pub(in crate::system) coefficients: Option<PiSystem>,
+    /// Whether it is this system that is asked about, and not all within 2^-150 of each entry.
+    pub(in crate::system) is_exact: bool,
 }
 
-/// The component itself, or what it splits into: subspaces that are invariant under M⁻¹ times each of its `stiffnesses`.
-pub(in crate::system) fn pieces(
-    component: System,
-    frame: Frame,
-    stiffnesses: fn(&System) -> Vec<&Symmetric>,
-) -> Vec<Piece> {
-    let is_large = component.size() > SMALL;
-    if is_large || frame.rigid.is_empty() && !may_split(&component, &stiffnesses(&component)) {
-        return vec![Piece { system: component, frame, columns: None, coefficients: None }];
+/// The component itself, or what it splits into where it is exact: subspaces that are invariant under M⁻¹ times each of its stiffnesses.
+pub(in crate::system) fn pieces(component: System, frame: Frame, is_exact: bool) -> Vec<Piece> {
+    let is_whole = !is_exact || component.size() > SMALL;
+    if is_whole || frame.rigid.is_empty() && !may_split(&component, &component.stiffnesses()) {
+        let is_at_rest = frame.kept.is_empty();
+        let piece = Piece { system: component, frame, columns: None, is_exact };
+        return if is_at_rest { Vec::new() } else { vec![piece] };
     }
     let complement = frame.complement(&component);
     if complement.is_empty() {
@@ -53,7 +50,7 @@ pub(in crate::system) fn pieces(
     }
     let vibrating = component.restricted(&complement);
     let whole = || vec![(0..vibrating.size()).map(|i| unit(vibrating.size(), i)).collect()];
-    let subspaces = invariant_subspaces(&vibrating, &stiffnesses(&vibrating)).unwrap_or_else(whole);
+    let subspaces = invariant_subspaces(&vibrating, &vibrating.stiffnesses()).unwrap_or_else(whole);
     let piece = |space: Subspace| {
         let system = vibrating.restricted(&space);
         let frame = Frame::whole(system.size());
@@ -63,7 +60,7 @@ pub(in crate::system) fn pieces(
             rows.map(|row| dot(&row, y)).collect()
         };
         let columns = Some(space.iter().map(lifted).collect());
-        Piece { system, frame, columns, coefficients: None }
+        Piece { system, frame, columns, is_exact }
     };
     subspaces.into_iter().map(piece).collect()
 }
@@ -77,15 +74,8 @@ impl Piece {
         how: (Route, &Limits),
         warnings: &mut Vec<String>,
     ) -> Result<Part> {
-        let mut part = if self.system.size() == 1 && self.frame.rigid.is_empty() {
-            match &self.coefficients {
-                None => single::decide(&self.system, how.1)?,
-                Some(own) => {
-                    let period = Laurent::from_rational(self.system.period());
-                    let clocks = own.as_many_clocks();
-                    single::decide_with_pi(&clocks, &self.system, period, how.1)?
-                }
-            }
+        let mut part = if self.is_exact && self.system.size() == 1 && self.frame.rigid.is_empty() {
+            single::decide(&self.system, how.1)?
         } else {
             self.decide_many(how, warnings)?
         };
@@ -111,14 +101,7 @@ impl Piece {
         let blocks = float::half_period(&self.system, &self.frame);
         let signed = || asked.is_none().then(|| signs::proven(&blocks)).flatten();
         let (signed, spectrum) = both(blocks.m >= SIDE_BY_SIDE, signed, || Spectrum::new(&blocks));
-        let sharper = || {
-            let is_plain = self.frame.rigid.is_empty() && self.coefficients.is_none();
-            spectrum.as_ref().filter(|_| is_plain)?.sharper(&self.system, &blocks.scales)
-        };
-        let certified = || {
-            let kind = spectrum.as_ref()?.certified(&blocks).or_else(sharper);
-            Some((kind?, Evidence::Discs))
-        };
+        let certified = || Some((spectrum.as_ref()?.certified(&blocks)?, Evidence::Discs));
         let (kind, evidence, roots) = match asked {
             Some((kind, roots)) => (Some(kind), Evidence::Exact, Some(roots)),
             None => match signed.map(|kind| (kind, Evidence::Signs)).or_else(certified) {
@@ -137,18 +120,7 @@ impl Piece {
 
     /// The kind in exact arithmetic, and where the μ lie.
     pub(in crate::system) fn exact(&self, limits: &Limits) -> Result<(Kind, MuCount)> {
-        match &self.coefficients {
-            None => decide_beside(&self.system, &self.frame, limits).map(|exact| (exact.kind, exact.roots)),
-            Some(own) => own.decide_exact(&self.frame, limits),
-        }
-    }
-
-    /// The kind, where one of the half period's forms is definite, in exact arithmetic.
-    fn exact_by_signs(&self, limits: &Limits) -> Result<Option<Kind>> {
-        match &self.coefficients {
-            None => decide_by_signs(&self.system, &self.frame, limits),
-            Some(own) => own.decide_by_signs(&self.frame, limits),
-        }
+        decide_beside(&self.system, &self.frame, limits).map(|exact| (exact.kind, exact.roots))
     }
 
     fn exact_or_not(
@@ -157,7 +129,14 @@ impl Piece {
         spectrum: Option<&Spectrum>,
         warnings: &mut Vec<String>,
     ) -> Result<(Option<Kind>, Evidence, Option<MuCount>)> {
-        if let Ok(Some(kind)) = self.exact_by_signs(limits) {
+        if !self.is_exact {
+            warnings.push(format!(
+                "doubles do not decide {}, and with pi in the stiffnesses nothing else does",
+                degrees_of_freedom(self.frame.kept.len())
+            ));
+            return Ok((None, Evidence::Estimate, None));
+        }
+        if let Ok(Some(kind)) = decide_by_signs(&self.system, &self.frame, limits) {
             return Ok((Some(kind), Evidence::Exact, None));
         }
         let error = match (self.exact(limits), spectrum) {
