@@ -86,6 +86,7 @@ fn steps_are_those_of_the_integrators_that_openmm_makes() {
 #[test]
 fn a_name_is_rewritten_where_it_is_set() {
     let reading = of(SCRIPTS[12].0).unwrap();
+    assert_eq!(reading.used, ["MTSIntegrator(dt, [(0,4),(1,1)])", "dt = 2*femtoseconds"]);
     let expected = SCRIPTS[12].0.replace("2*femto", "3*femto").replace("(0,4)", "(0,6)");
     assert_eq!(reading.rewritten(&ratio(3, 1)).unwrap(), expected);
     // n stands for two things here.

@@ -121,10 +121,13 @@ fn integrator(text: &str, script: &Script, call: &Call) -> Result<Reading> {
     let dt = keyword(&["dt", "stepSize", "timestep"])
         .or_else(|| positional.get(first).copied())
         .ok_or_else(form)?;
+    let followed = script.followed(dt.clone());
+    let names = (followed != *dt && !text[dt.clone()].starts_with('('))
+        .then(|| format!("{} = {}", &text[dt.clone()], &text[followed]));
     let dt = time(script, text, dt.clone())?;
     let place = dt.place.clone().map(|(place, unit)| (place, Place::Outer(unit)));
     let mut reading = Reading::new(Engine::OpenMm, text, scheme(vec![dt.size])?);
-    reading.used = vec![used];
+    reading.used = [used].into_iter().chain(names).collect();
     if grouped.is_some() {
         let list = keyword(&["groups"]).or_else(|| positional.get(first + 1).copied()).ok_or_else(form)?;
         levels(script, list.clone(), &mut reading, place)?;
