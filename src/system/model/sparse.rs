@@ -304,6 +304,8 @@ impl SparseSystem {
     fn exactly(&self, own: &SparseSteps, limits: &Limits) -> Result<Option<Analysis>> {
         let Some(Ok(exact)) = own.exactly(&self.step) else { return Ok(None) };
         match decide_by(Route::Cheapest, exact.system(), limits) {
+            // What the effective stiffness leaves free at this step and K holds is not rigid.
+            Ok(found) if found.rigid_modes.len() != exact.plain().rigid_modes().len() => Ok(None),
             Ok(mut found) => {
                 found.warnings.push(EXACTLY.into());
                 Ok(Some(found))
