@@ -58,7 +58,8 @@ impl Pairs {
     /// Λ1 or a step that is not positive, positions of unequal number, or one beyond its list.
     pub fn new(quantities: [Vec<Laurent>; 4], picked: [Vec<usize>; 4]) -> Result<Pairs> {
         for ((values, picked), (field, positive)) in quantities.iter().zip(&picked).zip(FIELDS) {
-            let refused = |remedy| values.iter().position(|x| x.sign() != Sign::Positive).map(|n| (n, remedy));
+            let refused =
+                |remedy| values.iter().position(|x| x.sign() != Sign::Positive).map(|n| (n, remedy));
             if let Some((n, remedy)) = positive.and_then(refused) {
                 let place = if values.len() > 1 { format!("{field}[{n}]") } else { field.into() };
                 return Err(Error::input(&place, &values[n], remedy));
