@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kickdrift import _native
-from kickdrift._errors import KickdriftError, required
-from kickdrift._numbers import Exact, Range, range_text, text
+from kickdrift._errors import KickdriftError, required, shown
+from kickdrift._numbers import Exact, Range, range_text, text, written
 from kickdrift._system import System, a_system
 
 if TYPE_CHECKING:
@@ -57,6 +57,10 @@ def explore(
     ('hyperbolic', 1, 'kickdrift verdict --lambda1 pi^2 --lambda2 pi^2/25 --h1 1/100 --h2 49/50')
     """
     required("anywidget")
+    if not isinstance(height, int) or height <= 0:
+        raise KickdriftError("height", shown(height), "give a positive number of pixels")
+    if unit is not None and not isinstance(unit, str):
+        raise KickdriftError("unit", shown(unit), "give a text, as 'fs'")
     if system is not None:
         _alone(lambda1=lambda1, lambda2=lambda2, h1=h1, h2=h2, unit=unit)
         page = _page(system)
@@ -67,7 +71,7 @@ def explore(
         if (h1 is None) != (h2 is None):
             raise KickdriftError("h1" if h1 is None else "h2", None, "a window has two ranges: give both, or none")
         window = None if h1 is None or h2 is None else (range_text("h1", h1), range_text("h2", h2))
-        page = _native.Page.of_springs(text("lambda1", lambda1), text("lambda2", lambda2), window, unit)
+        page = _native.Page.of_springs(text("lambda1", lambda1), text("lambda2", lambda2), window, unit and written("unit", unit))
     made: Explorer = import_module("kickdrift._widget").Explorer(page, height)
     return made
 

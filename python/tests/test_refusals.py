@@ -177,6 +177,8 @@ JUNK: list[Any] = [
 
 @pytest.mark.parametrize("name", ASKED)
 def test_every_argument_of_every_function_refuses_what_does_not_belong_there_as_ours(name: str) -> None:
+    if name == "explore":
+        pytest.importorskip("anywidget")
     function = getattr(kd, name)
     other = []
     for parameter in inspect.signature(function).parameters.values():
