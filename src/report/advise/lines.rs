@@ -41,7 +41,8 @@ pub(super) fn of(advice: &Advice, reading: Option<&Reading>) -> Vec<String> {
     if let Some(reading) = reading {
         let fastest = &advice.modes[advice.fastest];
         lines.extend(read_from(of_answer(&advice.schemes[0]), reading));
-        lines.extend(grompp(reading, &named(fastest, advice.unit), |n| nearest(fastest.part(n), 3)));
+        let of_bonds = || grompp(reading, &named(fastest, advice.unit), |n| nearest(fastest.part(n), 3));
+        lines.extend((!advice.lacks_fast).then(of_bonds).flatten());
     }
     lines.extend(reasons(advice));
     lines.extend(advice.levers.iter().flat_map(|own| super::levers::lines(own, advice.unit)));
