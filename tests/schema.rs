@@ -60,7 +60,7 @@ fn output(line: &str) -> Value {
 }
 
 /// One line for every shape that a command's answer can take.
-const LINES: [&str; 72] = [
+const LINES: &[&str] = &[
     "verdict --lambda1 pi^2 --lambda2 pi^2/25 --h1 1/100 --h2 0.98",
     "verdict --lambda1 pi^2 --lambda2 pi^2/25 --h1 1/100 --h2 1/2",
     "verdict --lambda1 11/4 --lambda2 57/10 --h1 1 --h2 5/3",
@@ -97,7 +97,6 @@ const LINES: [&str; 72] = [
     "system data/scenes/water4.json --method implicit-explicit --intervals outer=1/100..1/70 --resolution 1e-3",
     "system data/scenes/two-bars.json --nearest --resolution 1e-3",
     "system data/scenes/no-gradient.json",
-    "system data/scenes/no-gradient.json --intervals outer=1/10..3/5 --resolution 1e-3",
     "system data/scenes/local-steps.json",
     "system data/scenes/local-steps.json --intervals outer=1..5/2",
     "system data/scenes/bar-avi.json",

@@ -13,6 +13,7 @@ use kickdrift::advise::{
 };
 use kickdrift::number::rational::{from_f64_exact, ratio, to_f64};
 use kickdrift::number::{Rational, parse::parse_rational};
+use kickdrift::report::advise::View;
 use kickdrift::system::Limits;
 use kickdrift::verdict::Kind;
 
@@ -220,7 +221,8 @@ fn a_friction_beyond_those_that_mask_is_not_said_to() {
     let rows =
         answer.schemes[0].rows.iter().filter(|row| row.masking.as_ref().is_some_and(|mask| !mask.stays()));
     assert!(rows.into_iter().all(|row| row.is_damped == Some(false)));
-    let text = kickdrift::report::advise::text(&answer);
+    let document = kickdrift::report::advise::document(View::Periods(&answer), None, &[]);
+    let text = document.summary_text();
     assert!(text.contains("frictions of") && !text.contains("only a friction"), "{text}");
 }
 
