@@ -366,6 +366,16 @@ const SAID: [(&str, &str); 16] = [
 ];
 
 #[test]
+fn a_line_for_namd_is_added_before_its_first_run() {
+    let text = "structure a.psf\nPME yes\ntimestep 1\nfullElectFrequency 4\nminimize 1000\nrun 20000\n";
+    let reading = of(text).unwrap();
+    let new = reading.rewritten(&ratio(3, 1)).unwrap();
+    assert!(new.contains("fullElectFrequency 3\nstepspercycle = 21\nminimize 1008\nrun 20013\n"), "{new}");
+    let lines = ["fullElectFrequency 3", "stepspercycle = 21", "minimize 1008", "run 20013"];
+    assert_eq!(reading.changed_lines(&ratio(3, 1)).unwrap(), lines);
+}
+
+#[test]
 fn a_step_that_no_line_has_is_not_rewritten_and_the_line_to_add_is_said() {
     for text in
         ["units real\nread_data d\nbond_style harmonic\nrun_style respa 2 4\n", GROMACS[1].0, NAMD[1].0]

@@ -53,7 +53,11 @@ impl<'a> Keys<'a> {
                 _ => {}
             }
         }
-        Keys { lines: all, names, end: text.len() }
+        // A parameter behind the first run comes too late.
+        let run = all.iter().find(|line| line.depth == 0 && ["run", "minimize"].contains(&line.key()));
+        let begins = |line: &Line| text[..line.words[0].1.start].rfind('\n').map_or(0, |end| end + 1);
+        let end = run.map_or(text.len(), begins);
+        Keys { lines: all, names, end }
     }
 
     fn word(&self, key: &str) -> Result<Option<Word<'a>>> {

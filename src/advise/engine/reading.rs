@@ -293,9 +293,20 @@ impl Reading {
     /// As [`Reading::rewritten`].
     pub fn changed_lines(&self, outer: &Rational) -> Result<Vec<String>> {
         let new = self.rewritten(outer)?;
-        let old: Vec<&str> = self.text.lines().collect();
-        let differs = |(i, line): &(usize, &str)| old.get(*i) != Some(line);
-        Ok(new.lines().enumerate().filter(differs).map(|(_, line)| line.trim().to_string()).collect())
+        let mut old = self.text.lines().peekable();
+        let mut new = new.lines().peekable();
+        let mut changed = Vec::new();
+        while let Some(line) = new.next() {
+            if old.next_if_eq(&line).is_some() {
+                continue;
+            }
+            changed.push(line.trim().to_string());
+            // An added line has the old one behind it, a changed one stands in its place.
+            if new.peek().is_none() || new.peek() != old.peek() {
+                old.next();
+            }
+        }
+        Ok(changed)
     }
 }
 
