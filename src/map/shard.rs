@@ -65,9 +65,7 @@ pub(super) fn bands(grid: &Grid) -> impl ExactSizeIterator<Item = (u64, usize)> 
 
 /// The columns of band n, if there is one.
 pub(super) fn columns_of(grid: &Grid, n: u64) -> Option<(u64, usize)> {
-    let all = bands(grid);
-    let n = usize::try_from(n).ok().filter(|&n| n < all.len())?;
-    all.skip(n).next()
+    bands(grid).nth(usize::try_from(n).ok()?)
 }
 
 /// A band's number and its columns: the first one and how many.

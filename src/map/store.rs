@@ -120,7 +120,7 @@ fn grows_where_it_says(band: &Band, grid: &Grid, products: Products) -> bool {
         let (i, j) = band.multipliers(grid, n);
         let ratio = grid.ratio(i, j);
         // Half turns: at most one a kick, and an even number where the growing motion comes back with its sign.
-        products.label && m <= ratio.p() + ratio.q() + 1 && (m % 2 == 0) == (verdict(n).side() > 0)
+        products.label && m <= ratio.p() + ratio.q() + 1 && m.is_multiple_of(2) == (verdict(n).side() > 0)
     };
     let is_growth = |ln: &Enclosure| products.growth && 0.0 <= ln.lo && ln.lo <= ln.hi && ln.hi.is_finite();
     let is_found = |(found, n): (&Growing, usize)| {

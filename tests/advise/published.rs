@@ -99,7 +99,7 @@ fn loses(step: f64, energy: f64) -> bool {
             v += h / 2.0 * force(x) / mu;
             x += h * v;
             v += h / 2.0 * force(x) / mu;
-            !(x.abs() <= 1.0)
+            x.is_nan() || x.abs() > 1.0
         })
     })
 }

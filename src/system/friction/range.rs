@@ -106,7 +106,8 @@ impl Ranged {
             let decay = *decays.entry(*ticks).or_insert_with(|| self.decay(*ticks, lo, hi));
             let (matrix, off) = self.factor(*ticks as f64, kick, *size, decay);
             sizes.push(norm::frobenius(&matrix));
-            (matrices.push(matrix), offs.push(off));
+            matrices.push(matrix);
+            offs.push(off);
         }
         let rounding = 1.01 * (2 * n + 2) as f64 * U;
         let all: Vec<f64> =
@@ -130,7 +131,7 @@ impl Ranged {
         }
         let sum: f64 = all.iter().sum();
         let condition = 1.01 * largest * sum;
-        if !(condition < 0.5) {
+        if condition.is_nan() || condition >= 0.5 {
             return None;
         }
         let most = largest / (1.0 - condition);

@@ -46,7 +46,7 @@ pub struct SparseSteps {
     sums: f64,
     roots: Vec<f64>,
     /// Of a small one masses and K, for exact arithmetic.
-    given: Option<(Vec<f64>, Vec<(usize, usize, f64)>)>,
+    given: Option<(Vec<f64>, Box<Triplets>)>,
 }
 
 /// C_j, how far it is from the one that is meant, and no less than its norm (2-norms).
@@ -122,7 +122,7 @@ impl SparseSteps {
             Term { size: pattern.size_of(&values).0, values, error: 2.0 * own.error }
         };
         let terms = values.into_iter().zip(&coefficients).map(term).collect();
-        let given = (n <= SMALL).then(|| (masses.to_vec(), given));
+        let given = (n <= SMALL).then(|| (masses.to_vec(), given.into_boxed_slice()));
         Ok(SparseSteps { pattern, terms, levels, plain, fine, rigid, sums, roots, given })
     }
 
