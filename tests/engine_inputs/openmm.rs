@@ -1,7 +1,7 @@
 //! OpenMM's scripts. Each of those with steps ran in OpenMM 8.6; `dt/n` of a group is half its number of kicks in the integrator that was made.
 
 use super::{all_are_refused, all_have_their_steps, of, steps};
-use kickdrift::advise::constraint::Constraints;
+use kickdrift::advise::Constraints;
 use kickdrift::advise::engine::{Engine, read};
 use kickdrift::number::rational::ratio;
 

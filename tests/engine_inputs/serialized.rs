@@ -1,7 +1,7 @@
 //! OpenMM's serialized integrators and systems, as `XmlSerializer` of OpenMM 8.6 writes them; the steps are those of the objects.
 
 use super::{all_are_refused, all_have_their_steps, of, steps};
-use kickdrift::advise::constraint::Constraints;
+use kickdrift::advise::Constraints;
 use kickdrift::advise::engine::{Engine, read};
 
 macro_rules! one {
