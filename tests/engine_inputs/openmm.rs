@@ -239,6 +239,6 @@ fn long_scripts_are_read_in_proportion_to_their_length() {
     ] {
         assert_eq!(read(&[&format!("{head}{many}{last}")], None).is_ok(), is_read, "{}", &many[..20]);
     }
-    // Squares of 80,000 take minutes.
-    assert!(begun.elapsed().as_secs() < 10, "{:?}", begun.elapsed());
+    // A square of 80,000 lines takes hours where nothing is optimized, these half a minute on a busy machine.
+    assert!(begun.elapsed().as_secs() < 120, "{:?}", begun.elapsed());
 }
