@@ -203,7 +203,7 @@ fn a_full_turn_of_a_fine_motion_is_no_rigid_motion() {
     let model = Model::Sparse(Box::new(SparseSystem::with_local_steps(steps, &ratio(2, 1)).unwrap()));
     let found = model.decide(Route::Cheapest, &Limits::default()).unwrap();
     assert!(!found.is_stable() && found.rigid_modes.is_empty(), "{found:?}");
-    assert!(found.kind.is_none_or(|kind| kind == Kind::Parabolic), "{found:?}");
+    assert_eq!(found.kind, Some(Kind::Parabolic), "{found:?}");
 }
 
 /// Walls, none, and none but for a last digit; steps at which fine motions make whole and half turns: what is proven is so in exact arithmetic.

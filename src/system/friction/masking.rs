@@ -98,7 +98,8 @@ impl Search<'_> {
                 // Nothing between the range before and this one is known to grow.
                 Some(Damping::Damped) if last < end => Some((last, at)),
                 Some(Damping::Damped) => Some(self.bisected(last, at)),
-                Some(Damping::Growing) => self.crossed(last, at),
+                // Where the sign changed in a range that is known already, nothing is new.
+                Some(Damping::Growing) if last >= end => self.crossed(last, at),
                 _ => None,
             };
             if let Some((below, first)) = found {
@@ -175,8 +176,8 @@ impl Search<'_> {
                 part = (2.0 * part).min(16.0);
             } else {
                 part /= 4.0;
-                // An end is known well enough to a thousandth of what is proven.
-                if part < 1e-3 * (at / from - 1.0).max(1e-10) {
+                // Bounds shrink with the distance from the edge: far narrower ranges than what is proven may still be proven.
+                if part < 1e-6 * (at / from - 1.0).max(1e-7) {
                     break;
                 }
             }
