@@ -74,8 +74,6 @@ pub(in crate::system) struct Search<'a> {
     pub side: &'a dyn Fn(f64) -> Option<Damping>,
     /// Whether all frictions of a range are proven to mask.
     pub masks: &'a dyn Fn(f64, f64) -> bool,
-    /// The trace, of one oscillator.
-    pub trace: Option<&'a dyn Fn(f64) -> Option<f64>>,
     /// Frictions that are looked at between one and its double.
     pub per_octave: i32,
     /// The relative width to which the least is bisected.
@@ -98,8 +96,6 @@ impl Search<'_> {
                 // Nothing between the range before and this one is known to grow.
                 Some(Damping::Damped) if last < end => Some((last, at)),
                 Some(Damping::Damped) => Some(self.bisected(last, at)),
-                // Where the sign changed in a range that is known already, nothing is new.
-                Some(Damping::Growing) if last >= end => self.crossed(last, at),
                 _ => None,
             };
             if let Some((below, first)) = found {
@@ -124,39 +120,6 @@ impl Search<'_> {
                 Some(Damping::Growing) => lo = middle,
                 Some(Damping::Damped) => hi = middle,
                 // So near to 1 that doubles cannot decide: the bracket is as narrow as it gets.
-                _ => break,
-            }
-        }
-        (lo, hi)
-    }
-
-    /// Where the trace of an oscillator that grows at both changes its sign: at some friction between it is 0, and nothing grows.
-    fn crossed(&self, mut lo: f64, mut hi: f64) -> Option<(f64, f64)> {
-        let trace = self.trace?;
-        let below = trace(lo)?;
-        if below * trace(hi)? >= 0.0 {
-            return None;
-        }
-        loop {
-            let middle = lo + (hi - lo) / 2.0;
-            match (self.side)(middle) {
-                Some(Damping::Damped) => return Some(self.edge(lo, middle)),
-                Some(Damping::Growing) if lo < middle && middle < hi => {
-                    *(if below * trace(middle)? > 0.0 { &mut lo } else { &mut hi }) = middle;
-                }
-                _ => return None,
-            }
-        }
-    }
-
-    /// As [`Search::bisected`], to a thousandth of what is between.
-    fn edge(&self, mut lo: f64, mut hi: f64) -> (f64, f64) {
-        let floor = 1e-3 * (hi - lo);
-        while hi - lo > floor {
-            let middle = lo + (hi - lo) / 2.0;
-            match (self.side)(middle) {
-                Some(Damping::Growing) => lo = middle,
-                Some(Damping::Damped) => hi = middle,
                 _ => break,
             }
         }

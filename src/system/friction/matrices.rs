@@ -2,6 +2,7 @@
 
 use super::damping::Damping;
 use super::masking::{Mask, Search};
+use super::polynomial::Polynomials;
 use super::radius::{Radius, damping};
 use super::range::Ranged;
 use super::tie::is_tie;
@@ -236,25 +237,27 @@ impl<'a> Damped<'a> {
             },
             _ => return Ok(Mask::NotNeeded),
         };
+        if let Some(found) = Polynomials::new(self.part).and_then(|own| own.above(grows)) {
+            return Ok(found);
+        }
         let end = |rate: f64| rate.is_finite().then(|| exact(rate));
         let masks = |lo: f64, hi: f64| {
             let own = self.ranged.as_ref();
             own.is_some_and(|own| own.damping(&exact(lo), end(hi).as_ref()) == Some(Damping::Damped))
         };
-        let trace = |rate: f64| self.ranged.as_ref()?.rounded_trace(&exact(rate));
-        // Of one oscillator what doubles are good for, of others what linear theory is.
-        let is_one = self.part.size() == 1 && self.ranged.is_some();
         let search = Search {
             period: self.period,
             side: &side,
             masks: &masks,
-            trace: if is_one { Some(&trace) } else { None },
             per_octave: if self.part.size() <= FEW && self.ranged.is_some() { 4 } else { 1 },
-            width: if is_one { 1e-10 } else { 1e-4 },
+            width: NEAR_EDGE,
         };
         Ok(search.above(grows))
     }
 }
+
+/// The relative width to which the least friction that masks is bisected: ranges are proven in steps that shrink with the distance from it.
+const NEAR_EDGE: f64 = 1e-2;
 
 /// Degrees of freedom whose frictions are looked at closely.
 const FEW: usize = 8;

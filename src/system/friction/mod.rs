@@ -20,6 +20,7 @@
 //! | `radius` | where the spectral radius of a matrix lies that is known within an error |
 //! | `range` | a period for all frictions of a range at once |
 //! | `masking` | the frictions that mask: looked for by values, proven range by range |
+//! | `polynomial` | all of one oscillator's at once: polynomials in c between two signs |
 //! | `tie` | one oscillator whose spectral radius is 1 at every friction, exactly |
 //!
 //! ```
@@ -41,6 +42,7 @@
 mod damping;
 mod masking;
 mod matrices;
+mod polynomial;
 mod radius;
 mod range;
 mod tie;

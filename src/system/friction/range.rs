@@ -91,12 +91,6 @@ impl Ranged {
         sides.iter().any(|(_, hi)| *hi < 0.0).then_some(Damping::Growing)
     }
 
-    /// The trace in the middle of a range, rounded.
-    pub fn rounded_trace(&self, rate: &Rational) -> Option<f64> {
-        let q = self.around(rate, Some(rate))?.q;
-        Some((0..q.nrows()).map(|i| q[(i, i)]).sum())
-    }
-
     /// `None` where the bound's condition fails.
     pub fn around(&self, lo: &Rational, hi: Option<&Rational>) -> Option<Around> {
         let (n, count) = (self.size(), self.factors.len());

@@ -77,15 +77,14 @@ impl Kernel {
             return Mask::NotTold;
         };
         let masks = |lo: f64, hi: f64| self.size() <= FEW && self.masks(outer, lo, hi);
-        let search = Search {
-            period: outer.step,
-            side: &side,
-            masks: &masks,
-            trace: None,
-            per_octave: 1,
-            width: 1e-4,
-        };
-        Mask::found(below, vec![(least, search.up(least))])
+        let search = Search { period: outer.step, side: &side, masks: &masks, per_octave: 1, width: 1e-4 };
+        // Steps of the proof shrink with the distance from the edge: a little above it all larger ones may be proven.
+        let stays = [1.0, 1.003, 1.01]
+            .map(|part| part * least)
+            .into_iter()
+            .find(|at| search.up(*at) == f64::INFINITY);
+        let range = stays.map_or_else(|| (least, search.up(least)), |at| (at, f64::INFINITY));
+        Mask::found(below, vec![range])
     }
 
     /// Whether all frictions from `lo` to `hi`, which may be infinite, are proven to mask.
