@@ -45,6 +45,9 @@ pub(crate) fn lines(own: &Friction) -> Vec<String> {
     lines
 }
 
+/// A range that ends so soon is told as one friction.
+const NARROW: f64 = 1.01;
+
 /// "a friction above 1.5 masks", or "frictions of 1.5 to 2 mask", in another unit: so many of the old ones, and its name.
 pub(crate) fn masking(own: &Masked, unit: f64, name: &str) -> String {
     if own.stays() {
@@ -52,7 +55,7 @@ pub(crate) fn masking(own: &Masked, unit: f64, name: &str) -> String {
         return format!("a friction above {above}{name} masks");
     }
     if let [(lo, hi)] = own.ranges[..]
-        && lo == hi
+        && hi <= NARROW * lo
     {
         return format!("a friction of about {}{name} masks", decimal::few(unit * lo, 6));
     }

@@ -1,10 +1,11 @@
 //! One oscillator at all frictions at once.
 //!
-//! With c = exp(−γ t), t the tick, a drift of n ticks multiplies velocities by cⁿ. So the entries of the period Q are polynomials in c, det Q = c^N over N ticks,
+//! With c = exp(−γ t), t the longest time that divides every drift, a drift of n of these multiplies velocities by cⁿ. So the entries of the period Q are polynomials in c, det Q = c^N over N of them,
 //! and a friction masks iff f₋ = 1 + c^N − Tr Q and f₊ = 1 + c^N + Tr Q are positive (Jury), something grows iff one is negative. Every c in (0, 1) belongs to one friction,
 //! c = 0 to velocities that each drift stops. In the basis of Bernstein on a cell of c a polynomial lies between its least and its largest coefficient: cells are
 //! halved until these have one sign (proofs/FRICTION.md).
 
+use num_integer::Integer;
 use num_traits::One;
 
 use super::masking::Mask;
@@ -14,10 +15,10 @@ use crate::schedule::Weight;
 use crate::system::half::compose::Program;
 use crate::system::linear::system::System;
 
-/// Ticks of a period: to halve a cell costs the square of them, some milliseconds at this.
-const MAX_TICKS: u64 = 128;
+/// The degree in c: to halve a cell costs its square, some milliseconds at this.
+const MAX_STEPS: u64 = 128;
 
-/// Sums of balls that halving may cost in all: about a second, and some six edges to the width of [`MIN_CELL`] at the most ticks.
+/// Sums of balls that halving may cost in all: about a second, and some six edges to the width of [`MIN_CELL`] at the largest degree.
 const MAX_SUMS: usize = 5_000_000;
 
 /// Cells that are halved in all.
@@ -26,14 +27,15 @@ const MAX_HALVINGS: usize = 1500;
 /// The width of a cell that is not halved, relative to all of them.
 const MIN_CELL: f64 = 1.0 / (1_u64 << 48) as f64;
 
-/// Stiffnesses may be rounded so far, relative to them (`near` in `matrices`).
-const ROUNDED_LOG2: i64 = -98;
+/// Stiffnesses may be rounded so far, relative to them (2^-98 or more: `near` in `matrices`).
+const REL_ROUNDING: f64 = 4e-30;
 
 type Coefficients = Vec<Ball>;
 
 /// f₋ and f₊ by powers of c.
 pub(super) struct Polynomials {
     sides: [Coefficients; 2],
+    /// The time t of c = exp(−γ t).
     tick: Rational,
     bits: u32,
 }
@@ -50,16 +52,17 @@ impl Polynomials {
     /// `None` for more than one degree of freedom, and for periods that are too long.
     pub fn new(system: &System) -> Option<Polynomials> {
         let schedule = system.schedule();
-        let ticks = schedule.period();
-        if system.size() != 1 || ticks > MAX_TICKS {
+        // Velocities stop by one factor for the ticks that divide every drift.
+        let unit = schedule.symmetric_period().fold(0, |unit, event| event.drift.gcd(&unit)).max(1);
+        let steps = schedule.period() / unit;
+        if system.size() != 1 || steps > MAX_STEPS {
             return None;
         }
-        let (n, bits) = (ticks as usize, 160 + 4 * ticks as u32);
+        let (n, bits) = (steps as usize, 160 + 4 * steps as u32);
         let ball = |x: &Rational| Ball::from_rational(x, bits);
         let program = Program::new(system);
         let inverse_mass = ball(&program.inverse_mass[0][0].1);
-        let off = Ball::one().scale2(ROUNDED_LOG2);
-        let rounded = Ball::one().add(&off.union(&off.neg(), bits), bits);
+        let rounded = Ball::one().add(&Ball::about_zero(REL_ROUNDING), bits);
         let kicks: Vec<Ball> = program
             .kicks
             .iter()
@@ -86,7 +89,7 @@ impl Polynomials {
             let full = event.clocks().fold(Ball::zero(), |sum, k| sum.add(&kicks[k], bits));
             let kick = if event.weight == Weight::Half { full.scale2(-1) } else { full }.neg();
             for [x, v] in &mut columns {
-                let stopped = shifted(v, event.drift as usize);
+                let stopped = shifted(v, (event.drift / unit) as usize);
                 *x = combine(&combine(x, v, &half), &stopped, &half);
                 *v = combine(&stopped, x, &kick);
             }
@@ -95,7 +98,8 @@ impl Polynomials {
         let mut sums = constant(true);
         sums[n] = sums[n].add(&Ball::one(), bits);
         let sides = [Ball::one().neg(), Ball::one()].map(|sign| combine(&sums, &trace, &sign));
-        Some(Polynomials { sides, tick: system.tick().clone(), bits })
+        let tick = system.tick() * Rational::from_integer(unit.into());
+        Some(Polynomials { sides, tick, bits })
     }
 
     /// The frictions that mask, above one at which something grows; 0: without any.
