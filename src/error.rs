@@ -182,6 +182,9 @@ impl Error {
         let Parts { kind, field, value, remedy, needed, .. } = &*self.0;
         let (field, remedy) = (one_line(field, LONGEST_TEXT), one_line(remedy, LONGEST_TEXT));
         match (needed, value) {
+            // More than a budget can be.
+            (Some(u64::MAX), _) if remedy.is_empty() => format!("{field}: no budget allows it"),
+            (Some(u64::MAX), _) => format!("{field}: {remedy}"),
             (Some(needed), _) if remedy.is_empty() => format!("{field}: {}", raise(*needed)),
             (Some(needed), _) => format!("{field}: {}, or {remedy}", raise(*needed)),
             (None, Some(value)) => format!("{field} = {}: {remedy}", one_line(value, LONGEST_VALUE)),

@@ -91,6 +91,10 @@ impl Bond {
 /// Periods are enclosed in so many bits before they become doubles.
 const BITS: u32 = 96;
 
+/// Some names of [`Typical`]; advice without a fast period lists all.
+const EXAMPLES: &str =
+    "slow=water, slow=protein, fast=water, fast=water,rigid, fast=protein,h-bonds, fast=protein,h-bonds,hmr3";
+
 impl Mode {
     fn new(name: &str, origin: Origin, stiffness: Laurent) -> Mode {
         Mode { name: name.trim().into(), origin, stiffness, clock: None, bond: None }
@@ -113,9 +117,9 @@ impl Mode {
         } else if value.trim().starts_with(|c: char| c.is_ascii_alphabetic())
             && !value.trim().starts_with("pi")
         {
-            let known = Typical::all().map(Typical::asked).collect::<Vec<_>>().join(", ");
-            let remedy =
-                format!("write a period and its unit, as 10fs, a wavenumber, as 3700/cm, or {known}");
+            let remedy = format!(
+                "write a period and its unit, as 10fs, a wavenumber, as 3700/cm, or a name that is known, as {EXAMPLES}"
+            );
             return Err(Error::input("period", value.trim(), remedy));
         } else {
             (Origin::Period, unit::measured("period", value, Dimension::Time)?)

@@ -173,12 +173,9 @@ fn all_columns_of_a_lever_belong_to_one_ratio() {
                 continue;
             };
             let at = ask(&modes, &[&format!("{inner},{step}")]);
-            assert_eq!(
-                at.schemes[0].rows[0].first.as_ref().unwrap().lower.0,
-                own.first.unwrap().0,
-                "{} of {steps}",
-                own.name
-            );
+            let (here, there) = (at.schemes[0].rows[0].first.as_ref().unwrap().lower.0, own.first.unwrap().0);
+            // Both are ends of enclosures, scaled from steps of different lengths: a few roundings apart.
+            assert!((here / there - 1.0).abs() < 1e-14, "{} of {steps}: {here} {there}", own.name);
             seen += 1;
         }
     }

@@ -412,12 +412,18 @@ fn a_system_in_atomic_units_is_advised_as_in_femtoseconds() {
     // Frequencies of 10 and 40 fs; 1 au of time is 0.0241888... fs.
     let au = 0.024_188_843_265_864;
     let square = |period: f64, unit: f64| (2.0 * std::f64::consts::PI * unit / period).powi(2);
-    for (name, unit) in [("au", au), ("fs", 1.0)] {
-        let (fast, slow) = (square(10.0, unit), square(40.0, unit));
-        let (inner, outer) = (0.5 / unit, 3.0 / unit);
+    for (name, unit, inner, outer) in [("au", au, "20", "120"), ("fs", 1.0, "1/2", "3")] {
+        let potential = |force: &str, period: f64, step: &str| {
+            let file = format!("{name}-{force}.mtx");
+            desk.write(
+                &file,
+                &format!("%%MatrixMarket matrix array real general\n1 1\n{:e}\n", square(period, unit)),
+            );
+            format!("{{\"name\": \"{force}\", \"step\": \"{step}\", \"stiffness\": {{\"mm\": \"{file}\"}}}}")
+        };
+        let (fast, slow) = (potential("f", 10.0, inner), potential("s", 40.0, outer));
         let text = format!(
-            "{{\"schema\": \"kickdrift/system/1\", \"title\": \"t\", \"mass_weighted\": true, \"accuracy\": 1e-9, \"time_unit\": \"{name}\", \"potentials\": \
-             [{{\"name\": \"f\", \"step\": {inner}, \"stiffness\": [[{fast:e}]]}}, {{\"name\": \"s\", \"step\": {outer}, \"stiffness\": [[{slow:e}]]}}]}}"
+            "{{\"schema\": \"kickdrift/system/1\", \"title\": \"t\", \"masses\": [1], \"time_unit\": \"{name}\", \"potentials\": [{fast}, {slow}]}}"
         );
         desk.write(&format!("{name}.json"), &text);
     }

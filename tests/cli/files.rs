@@ -152,7 +152,7 @@ fn a_map_that_memory_has_no_room_for_is_refused() {
     for line in [
         // A column of 4e7 rows, and 6e7 columns side by side.
         "map --lambda1 pi^2 --lambda2 1 --step1 1/20000 --step2 1/10000000 --h1-range 0..0.6 --h2-range 0..4",
-        "compare --lambda1 pi^2 --lambda2 1 --step1 1/60000000 --step2 1/60000000 --h1-range 0..1 --h2-range 0..1",
+        "compare --lambda1 pi^2 --lambda2 1 --step1 1/60000000 --step2 1/60000000 --h1-range 0..1 --h2-range 1/60000000..1/60000000",
     ] {
         let line = format!("{line} --budget 1000000000000000000");
         let output = under_shell(&desk, "ulimit -v 2000000", &line).output().unwrap();

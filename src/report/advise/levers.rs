@@ -29,7 +29,9 @@ fn joined(engines: &[Engine], each: impl Fn(&Engine) -> String) -> Cell {
 }
 
 fn record(unit: TimeUnit) -> Record<'static, Lever> {
-    let [time, _] = unit.names();
+    let [time, rate] = unit.names();
+    // "/ps".
+    let per = &rate[1..];
     let column = |key: &str, title: &str| Column::new(key).in_words(title);
     let rounded = |x: Option<Rational>| Cell::from(x.as_ref().map(to_f64));
     let step = |of: &Lever| of.step.as_ref().map(|(step, _)| step.clone());
@@ -45,9 +47,9 @@ fn record(unit: TimeUnit) -> Record<'static, Lever> {
             of.step.as_ref().map(|(_, bound)| bound.name()).into()
         })
         .field(Column::new("inner").in_unit(time), |of| of.inner.as_ref().map(Cell::exact).into())
-        .field(column("slow_per_ps", "slow/ps"), move |of| rounded(of.slow_per_ps(unit)))
-        .field(column("fast_per_ps", "fast/ps"), move |of| rounded(of.fast_per_ps(unit)))
-        .field(column("solves_per_ps", "solves/ps"), move |of| rounded(of.solves_per_ps(unit)))
+        .field(column("slow_per_ps", &format!("slow{per}")), move |of| rounded(of.slow_per_ps(unit)))
+        .field(column("fast_per_ps", &format!("fast{per}")), move |of| rounded(of.fast_per_ps(unit)))
+        .field(column("solves_per_ps", &format!("solves{per}")), move |of| rounded(of.solves_per_ps(unit)))
         .field(Column::new("gain"), move |of| rounded(of.gain.clone()))
         .field(column("engines", "who has it").left(), |of| {
             joined(of.way.engines(), |own| format!("{} {}", own.name, own.keyword))
