@@ -1,4 +1,4 @@
-//! Intervals of numbers of exact systems hold what exact verdicts say, and the point itself parts its neighbourhood.
+//! Intervals of numbers of exact systems leave nothing open, and the point itself parts its neighbourhood.
 
 use kickdrift::number::Rational;
 use kickdrift::number::rational::{from_f64_exact, ratio};
@@ -70,21 +70,20 @@ fn number(value: &Value) -> Rational {
     value.as_str().unwrap().parse().unwrap()
 }
 
-/// How much of a range is left open by stretches that cover it, in order, from lo to hi.
-fn open(all: &[Stretch], (lo, hi): (f64, f64), what: &str) -> f64 {
+/// Stretches that are closed, in order, from lo to hi, with nothing but neighbouring doubles between them and nothing open.
+fn assert_whole(all: &[Stretch], (lo, hi): (f64, f64), what: &str) {
     assert!(all[0].lo == lo && all[all.len() - 1].hi == hi, "{what}: {all:?}");
+    assert!(all.iter().all(|own| own.verdict != Holds::NotTold && own.lo <= own.hi), "{what}: {all:?}");
     for pair in all.windows(2) {
         let [a, b] = pair else { unreachable!("two") };
-        assert!(a.hi == b.lo && a.verdict != b.verdict, "{what}: {pair:?}");
+        assert!(a.hi.next_up() == b.lo && a.verdict != b.verdict, "{what}: {pair:?}");
     }
-    let open = all.iter().filter(|own| own.verdict == Holds::NotTold);
-    open.map(|own| own.hi - own.lo).sum()
 }
 
-/// Each stretch with a verdict holds at this many numbers in it, its ends among them, by characteristic polynomials.
+/// Each stretch holds at this many numbers in it, its ends among them, by characteristic polynomials.
 fn assert_true(source: &Value, path: &str, all: &[Stretch], count: i64, numbers: &mut Numbers) -> usize {
     let mut seen = 0;
-    for own in all.iter().filter(|own| own.verdict != Holds::NotTold) {
+    for own in all {
         let (lo, hi) = (from_f64_exact(own.lo).unwrap(), from_f64_exact(own.hi).unwrap());
         let inside = (0..count).map(|_| &lo + (&hi - &lo) * ratio(1 + numbers.below(998), 999));
         for value in [lo.clone(), hi.clone()].into_iter().chain(inside) {
@@ -97,10 +96,9 @@ fn assert_true(source: &Value, path: &str, all: &[Stretch], count: i64, numbers:
     seen
 }
 
-/// Random systems: intervals of a mass, of a scale and of the outer step, true, and nine tenths of all decided.
+/// Random systems: intervals of a mass, of a scale and of the outer step, whole and true.
 fn compared(count: usize, points: i64) -> usize {
     let (mut numbers, mut seen) = (Numbers(11), 0);
-    let (mut left_open, mut whole) = (0.0, 0.0);
     for _ in 0..count {
         let source = numbers.system();
         for (path, range, ends) in [
@@ -110,17 +108,15 @@ fn compared(count: usize, points: i64) -> usize {
         ] {
             let span = format!("{path}={range}").parse().unwrap();
             let found = scene(&source).intervals(&span, 1e-2, &Limits::default()).unwrap();
-            left_open += open(&found.stretches, ends, &format!("{path} of {source}")) / ends.1;
-            whole += (ends.1 - ends.0) / ends.1;
+            assert_whole(&found.stretches, ends, &format!("{path} of {source}"));
             seen += assert_true(&source, path, &found.stretches, points, &mut numbers);
         }
     }
-    assert!(left_open < 0.1 * whole, "{left_open} of {whole}");
     seen
 }
 
 #[test]
-fn intervals_of_random_exact_systems_agree_with_exact_verdicts() {
+fn intervals_of_random_exact_systems_leave_nothing_open_and_agree_with_exact_verdicts() {
     assert!(compared(25, 2) > 300);
 }
 
@@ -131,23 +127,215 @@ fn intervals_of_a_thousand_random_exact_systems_agree_with_exact_verdicts() {
 }
 
 #[test]
-fn masses_and_steps_of_the_tethered_molecule_are_decided_to_the_resolution() {
+fn all_masses_of_the_tethered_molecule_are_decided() {
     let text = std::fs::read_to_string("data/scenes/diatomic-tether.json").unwrap();
     let source: Value = serde_json::from_str(&text).unwrap();
     for (path, range, ends) in [("masses.0", "1/2..1", (0.5, 1.0)), ("outer", "3/10..9/20", (0.3, 0.45))] {
         let found = scene(&source)
             .intervals(&format!("{path}={range}").parse().unwrap(), 1e-2, &Limits::default())
             .unwrap();
-        // Edges are open by far less than the resolution.
-        assert!(open(&found.stretches, ends, path) < 1e-2 * ends.1, "{found:?}");
-        assert!(assert_true(&source, path, &found.stretches, 20, &mut Numbers(3)) > 20);
+        assert_whole(&found.stretches, ends, path);
+        assert_true(&source, path, &found.stretches, 20, &mut Numbers(3));
     }
+}
+
+#[test]
+fn an_edge_that_is_a_double_belongs_to_the_stretch_whose_verdict_it_has() {
+    // Velocity Verlet: h² k = 4 at h = 2 is linear growth.
+    let source = json!({
+        "schema": "kickdrift/system/1", "masses": ["1"], "potentials": [{"step": "1", "stiffness": [["1"]]}],
+    });
+    let found = scene(&source).intervals(&"outer=1..3".parse().unwrap(), 1e-2, &Limits::default()).unwrap();
+    let [stable, unstable] = found.stretches[..] else { panic!("{found:?}") };
+    assert_eq!((stable.lo, stable.hi, stable.verdict), (1.0, 2f64.next_down(), Holds::Stable));
+    assert_eq!((unstable.lo, unstable.hi, unstable.verdict), (2.0, 3.0, Holds::Unstable));
+    // A tongue that closes: with both kicks alike nothing is unstable at the resonance.
+    let source = json!({
+        "schema": "kickdrift/system/1", "masses": ["1"], "potentials": [
+            {"step": "1", "stiffness": [["1"]]}, {"step": "2", "scale": "1", "stiffness": [["1"]]},
+        ],
+    });
+    let found =
+        scene(&source).intervals(&"potentials.1.scale=-1/4..1/4".parse().unwrap(), 1e-2, &Limits::default());
+    let found = found.unwrap().stretches;
+    assert_true(&source, "potentials.1.scale", &found, 10, &mut Numbers(5));
+}
+
+/// diag(own, rest), the first coordinate turned by (3, 4, 5) into the third last, so that no zero parts them.
+fn turned(own: &[&[i64]], rest: [[i64; 2]; 2], denominator: i64) -> Value {
+    let (m, n) = (own.len(), own.len() + 2);
+    let entry = |i: usize, j: usize| match (i < m, j < m) {
+        (true, true) => own[i][j],
+        (false, false) => rest[i - m][j - m],
+        _ => 0,
+    };
+    let turn = |i: usize, k: usize| match (i == 0 || i == m, k == 0 || k == m) {
+        (true, true) if i == k => 3,
+        (true, true) => {
+            if i == 0 {
+                4
+            } else {
+                -4
+            }
+        }
+        _ => {
+            if i == k {
+                5
+            } else {
+                0
+            }
+        }
+    };
+    let product = |i: usize, j: usize| -> i64 {
+        (0..n)
+            .flat_map(|k| (0..n).map(move |l| (k, l)))
+            .map(|(k, l)| turn(i, k) * entry(k, l) * turn(j, l))
+            .sum()
+    };
+    (0..n)
+        .map(|i| (0..n).map(|j| format!("{}/{}", product(i, j), 25 * denominator)).collect::<Vec<_>>())
+        .collect()
+}
+
+/// Modes that do not change with the number, some of their multipliers at 1 or −1 or twice on the circle, with Jordan blocks or without:
+/// beside two modes that do change and that no rational direction parts from them.
+#[test]
+fn what_stays_at_an_edge_for_all_numbers_leaves_nothing_open() {
+    let mut numbers = Numbers(17);
+    // Stiffnesses in tenths under both clocks, and the longer step.
+    type Rows<'a> = &'a [&'a [i64]];
+    let edges: [(&str, Rows, Rows, &str); 9] = [
+        ("kicks that cancel over the period: a block at 1", &[&[10]], &[&[-15]], "2"),
+        ("Verlet's limit: a block at 1", &[&[40]], &[&[0]], "2"),
+        ("an edge: a block at −1", &[&[10]], &[&[5]], "2"),
+        ("−1 twice", &[&[20]], &[&[0]], "2"),
+        ("1 twice", &[&[30]], &[&[0]], "3"),
+        ("1 twice and −1 twice", &[&[30, 0], &[0, 10]], &[&[0, 0], &[0, 0]], "3"),
+        ("a block at 1, −1 twice", &[&[10, 0], &[0, 20]], &[&[-15, 0], &[0, 0]], "2"),
+        ("two pairs alike on the circle", &[&[20, 5], &[5, 20]], &[&[-5, -5], &[-5, -5]], "2"),
+        ("two pairs that meet: blocks on the circle", &[&[2, 0], &[0, 38]], &[&[0, 1], &[1, 2]], "2"),
+    ];
+    for (what, first, second, step) in edges {
+        let n = first.len() + 2;
+        let zero = vec![vec![0; first.len()]; first.len()];
+        let zero: Vec<&[i64]> = zero.iter().map(Vec::as_slice).collect();
+        let source = json!({
+            "schema": "kickdrift/system/1", "masses": vec!["1"; n], "potentials": [
+                {"step": "1", "stiffness": turned(first, [[3, 1], [1, 7]], 10)},
+                {"step": step, "stiffness": turned(second, [[2, -1], [-1, 1]], 10)},
+                {"step": step, "scale": "1", "stiffness": turned(&zero, [[4, 2], [2, 1]], 10)},
+            ],
+        });
+        let mass = format!("masses.{}", n - 1);
+        for (path, range, ends) in
+            [("potentials.2.scale", "-1..4", (-1.0, 4.0)), (mass.as_str(), "1/4..3", (0.25, 3.0))]
+        {
+            let span = format!("{path}={range}").parse().unwrap();
+            let found = scene(&source).intervals(&span, 1e-2, &Limits::default()).unwrap();
+            assert_whole(&found.stretches, ends, &format!("{what}, {path}"));
+            assert_true(&source, path, &found.stretches, 4, &mut numbers);
+        }
+    }
+}
+
+/// A bond of 6 turns by a third of a half turn in each step of 1/3, and D = Aᵀ under 3:2 whatever the slow force: motions without any symmetry
+/// cross at irrational numbers without growth.
+#[test]
+fn crossings_where_the_half_period_is_the_whole_of_a_shorter_one_leave_nothing_open() {
+    let mut numbers = Numbers(31);
+    for n in [2, 3, 3, 4] {
+        let mut pick = || (1 + numbers.below(9)).to_string();
+        let walls = (0..n).map(|i| json!([i, null, pick()])).collect::<Vec<_>>();
+        let slow: Vec<Value> = walls.into_iter().chain((2..n).map(|i| json!([i - 1, i, "7"]))).collect();
+        let masses: Vec<&str> = ["1", "2", "2", "1"].into_iter().take(n).collect();
+        let source = json!({
+            "schema": "kickdrift/system/1", "masses": masses, "potentials": [
+                {"name": "fast", "step": "1/3", "springs": [[0, 1, "6"]]},
+                {"name": "slow", "step": "1/2", "scale": "1", "springs": slow},
+            ],
+        });
+        let (path, ends) = ("potentials.1.scale", (0.125, 4.0));
+        let span = format!("{path}=1/8..4").parse().unwrap();
+        let found = scene(&source).intervals(&span, 1e-2, &Limits::default()).unwrap();
+        assert_whole(&found.stretches, ends, &source.to_string());
+        assert_true(&source, path, &found.stretches, 3, &mut numbers);
+    }
+}
+
+/// Motions of different symmetry cross at irrational numbers without growth: a mirror's two families in chains, the families of equal arms
+/// about one atom, of which two are alike and leave everything unstable at the same place, and rings of five and eight
+/// molecules of two atoms, whose eigenspaces lie over Q(sqrt 5) and Q(sqrt 2). A bond of 6 turns by a third of a half turn in a step of
+/// 1/3: there motions of one symmetry cross.
+#[test]
+fn crossings_of_different_symmetries_leave_nothing_open() {
+    let mut numbers = Numbers(29);
+    for k in 0..36 {
+        let mut pick = |n: u64| (1 + numbers.below(n)).to_string();
+        let is_ring = k >= 24;
+        let n = if is_ring { [10, 16][k % 2] } else { 3 + k % 3 };
+        let (mut fast, mut slow, mut masses) = (Vec::new(), Vec::new(), vec![String::from("1"); n]);
+        if is_ring {
+            let (bond, wall, around) = (if k % 4 < 2 { pick(12) } else { "6".into() }, pick(12), pick(12));
+            for i in (0..n).step_by(2) {
+                masses[i + 1] = "2".into();
+                fast.push(json!([i, i + 1, bond]));
+                slow.extend([json!([i + 1, null, wall]), json!([i, (i + 2) % n, around])]);
+            }
+        } else if k % 2 == 0 {
+            for i in 0..n.div_ceil(2) {
+                let (mass, wall, bond) = (pick(3), pick(12), pick(12));
+                for i in [i, n - 1 - i] {
+                    masses[i].clone_from(&mass);
+                    slow.push(json!([i, null, wall]));
+                    fast.push(json!([i, if i < n / 2 { i + 1 } else { i - 1 }, bond]));
+                }
+            }
+        } else {
+            let (bond, wall) = (pick(12), pick(12));
+            masses[0] = pick(4);
+            slow.push(json!([0, null, pick(12)]));
+            fast.extend((1..n).map(|i| json!([0, i, bond])));
+            slow.extend((1..n).map(|i| json!([i, null, wall])));
+        }
+        let steps = [if is_ring { ["1/5", "3/10"] } else { ["1/4", "3/4"] }, ["1/3", "1/2"]];
+        let [step, outer] = steps[k / 2 % 2];
+        let source = json!({
+            "schema": "kickdrift/system/1", "masses": masses, "potentials": [
+                {"name": "fast", "step": step, "scale": "1", "springs": fast},
+                {"name": "slow", "step": outer, "scale": "1", "springs": slow},
+            ],
+        });
+        for (path, range, ends) in
+            [("potentials.0.scale", "1/4..3", (0.25, 3.0)), ("potentials.1.scale", "1/4..5", (0.25, 5.0))]
+        {
+            let span = format!("{path}={range}").parse().unwrap();
+            let found = scene(&source).intervals(&span, 1e-2, &Limits::default()).unwrap();
+            assert_whole(&found.stretches, ends, &format!("{path} of {source}"));
+            assert_true(&source, path, &found.stretches, 2, &mut numbers);
+        }
+    }
+}
+
+/// Two modes under two clocks, one of them at −1 with a Jordan block for all strengths of the slow force: all entries of the matrices that show the
+/// block stand in pairs of opposite sign.
+#[test]
+fn a_block_whose_entries_cancel_leaves_nothing_open() {
+    let source = json!({
+        "schema": "kickdrift/system/1", "masses": ["2", "2"], "potentials": [
+            {"step": "1/4", "springs": [[0, 1, "16"]]},
+            {"step": "3/4", "scale": "1", "springs": [[0, null, "4"], [1, null, "1"]]},
+        ],
+    });
+    let span = "potentials.1.scale=1/4..5".parse().unwrap();
+    let found = scene(&source).intervals(&span, 1e-2, &Limits::default()).unwrap().stretches;
+    assert_eq!(found, [Stretch { lo: 0.25, hi: 5.0, verdict: Holds::Unstable }]);
+    assert_true(&source, "potentials.1.scale", &found, 20, &mut Numbers(7));
 }
 
 /// One entry of a mass matrix that is not diagonal, on the diagonal and off it.
 #[test]
-fn intervals_of_masses_off_the_diagonal_agree_with_exact_verdicts() {
-    let (mut numbers, mut seen) = (Numbers(23), 0);
+fn intervals_of_masses_off_the_diagonal_leave_nothing_open_and_agree_with_exact_verdicts() {
+    let (mut numbers, mut changes) = (Numbers(23), 0);
     for _ in 0..12 {
         let mut source = numbers.system();
         let n = source["masses"].as_array().unwrap().len();
@@ -165,11 +353,12 @@ fn intervals_of_masses_off_the_diagonal_agree_with_exact_verdicts() {
         {
             let span = format!("{path}={range}").parse().unwrap();
             let found = scene(&source).intervals(&span, 1e-2, &Limits::default()).unwrap();
-            open(&found.stretches, ends, &format!("{path} of {source}"));
-            seen += assert_true(&source, path, &found.stretches, 2, &mut numbers);
+            assert_whole(&found.stretches, ends, &format!("{path} of {source}"));
+            changes += found.stretches.len() - 1;
+            assert_true(&source, path, &found.stretches, 2, &mut numbers);
         }
     }
-    assert!(seen > 20, "{seen}");
+    assert!(changes > 5, "{changes}");
 }
 
 /// Fast frequencies of 1 and of √−0.001, both in the slow field: stable at seven and a half, unstable a little below.
@@ -190,9 +379,9 @@ fn the_unstable_intervals_next_to_a_stable_number_do_not_hold_it() {
     assert!(open < 1e-2, "{found:?}");
 }
 
-/// Where many modes are in one resonance, counts at both ends of a cell decide.
+/// Where many modes are in one resonance, counts at both ends of a cell decide; the exact polynomials are beyond the budget here.
 #[test]
-fn chains_are_unstable_where_counts_prove_it_and_every_number_agrees() {
+fn chains_beyond_the_exact_budget_are_unstable_where_counts_prove_it_and_every_number_agrees() {
     let steps = ["1/4", "3/10", "7/20"];
     let own = scene(&json!({
         "schema": "kickdrift/system/1",

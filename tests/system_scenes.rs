@@ -5,7 +5,7 @@ use kickdrift::number::rational::{from_f64_exact, ratio, to_f64};
 use kickdrift::number::{Ball, Laurent, Real};
 use kickdrift::scene::{Array, Arrays, Axis, Scan, Span, SystemScene};
 use kickdrift::system::friction::Damping;
-use kickdrift::system::{Analysis, Evidence, Holds, Limits, ManyClocks, Route, decide_system, middle};
+use kickdrift::system::{Analysis, Evidence, Holds, Limits, ManyClocks, Part, Route, decide_system, middle};
 use kickdrift::verdict::{Kind, Tier};
 use nalgebra::DMatrix;
 
@@ -165,9 +165,17 @@ fn stiffnesses_of_several_masses_may_hold_pi() {
     assert!(falls.is_unstable() && falls.warnings.iter().any(|own| own.contains("indefinite")));
     let rational = chain.replace("pi^2", "9.8696044").replace("1/pi", "0.31830989");
     let near = decide(3, &rational);
+    // Stiffnesses with pi are not split into parts, which have shorter periods: all are compared over the longest.
     let all = |of: &Analysis| {
-        let mut mu: Vec<f64> =
-            of.parts.iter().flat_map(|part| &part.multipliers).map(|own| own.mu.re).collect();
+        let longest = of.parts.iter().map(|part| part.period.to_f64()).fold(0.0, f64::max);
+        let over_longest = |part: &Part, mu: f64| {
+            let turn = (1.0 + 2.0 * mu).acos() * (longest / part.period.to_f64()).round();
+            (turn.cos() - 1.0) / 2.0
+        };
+        let each = |part: &Part| {
+            part.multipliers.iter().map(|own| over_longest(part, own.mu.re)).collect::<Vec<_>>()
+        };
+        let mut mu: Vec<f64> = of.parts.iter().flat_map(each).collect();
         mu.sort_by(f64::total_cmp);
         mu
     };

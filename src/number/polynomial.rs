@@ -20,6 +20,8 @@ mod sturm;
 
 pub use display::Text;
 #[cfg(feature = "system")]
+pub(crate) use integer::common;
+#[cfg(feature = "system")]
 pub(crate) use integer::in_unit_interval;
 pub(crate) use integer::quotient;
 pub(crate) use integer::{residues, roots_within, squarefree};

@@ -79,7 +79,7 @@ pub use single::clocks::{ManyClocks, families, shortest_families, shortest_famil
 pub use single::decide::decide_oscillator;
 pub use spectrum::modes::{Origin, Resonance};
 pub use spectrum::rate::{Multiplier, middle};
-pub use vary::{nearest, scan, stretches};
+pub use vary::{edges, nearest, scan, stretches};
 pub use verdict::analysis::{Analysis, Clocked, Evidence, Instability, Part};
 pub use verdict::decide::{decide_by, decide_system, exact_kind, verdict_cost};
 pub use verdict::limits::{Limits, Route};

@@ -52,7 +52,7 @@ fn bad_input_gets_one_clear_line_and_no_wait() {
         ("(1+pi)^-1", "sum involving pi"),
         ("NaN", "not a number"),
         ("-inf", "not a number"),
-        ("tau", "no name but pi"),
+        ("tau", "numbers have none but pi"),
         ("2pi", "unexpected 'p'"),
         ("2 pi", "write * for a product"),
         ("1 000", "write * for a product"),

@@ -25,7 +25,7 @@ pub(crate) fn squarefree(f: &[BigInt]) -> Vec<BigInt> {
 ///
 /// A divisor modulo p has at least the degree of the true one, and the latter times l/(its leading coefficient), l that of
 /// f, has integer coefficients (Gauss): that is what the residues of least degree, scaled, lift to.
-fn common(f: &[BigInt], g: &[BigInt]) -> Vec<BigInt> {
+pub(crate) fn common(f: &[BigInt], g: &[BigInt]) -> Vec<BigInt> {
     let f = primitive(f.to_vec());
     let leading = f.last().expect("not 0");
     let mut lift: Option<Lift> = None;

@@ -211,7 +211,8 @@ impl FirstOrder {
         let [least, most] = middles.map(|middle| middle - &centre);
         meets("centre_error", self.centre_error, [least - &off, most + &off], 16.0 * f64::EPSILON * s)?;
         let (lo, hi) = width.exact()?;
-        let widest = (width.hi - width.lo) + 4.0 * f64::EPSILON * (width.hi + width_of_law);
+        // Radii of balls are rounded up in the last of 30 bits.
+        let widest = (1.0 + 1e-6) * (width.hi - width.lo) + 4.0 * f64::EPSILON * (width.hi + width_of_law);
         meets("width_error", self.width_error, [&lo - &law - &off, &hi - &law + &off], widest)?;
         let ends = [lo / (&law + &off), hi / (&law - &off)];
         meets("width_ratio", self.width_ratio, ends, 2.0 * widest / width_of_law)

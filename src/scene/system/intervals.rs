@@ -143,9 +143,9 @@ impl SystemScene {
                 self.allow_intervals("intervals", limits)?;
                 self.multiples_of(span)?.len() as f64 * self.model.cost() as f64
             }
-            _ => {
-                self.over(span, limits, |number| self.model.cost_of_stretches(number, span.ends(), width))?
-            }
+            _ => self.over(span, limits, |number| {
+                self.model.cost_of_stretches(number, span.ends(), width, limits)
+            })?,
         };
         self.allowed(cost, limits, || format!("intervals of {span}"))
     }
@@ -235,7 +235,7 @@ impl SystemScene {
     /// As [`SystemScene::nearest_unstable`].
     pub fn cost_of_nearest(&self, width: f64, limits: &Limits) -> Result<f64> {
         self.allow_intervals("nearest", limits)?;
-        self.allowed(self.model.cost_of_nearest(width)?, limits, || NEAREST.into())
+        self.allowed(self.model.cost_of_nearest(width, limits)?, limits, || NEAREST.into())
     }
 
     /// What has no intervals is refused, and what costs too much.

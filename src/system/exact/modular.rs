@@ -37,6 +37,31 @@ pub(in crate::system) fn rank(field: &PrimeField, mut m: DMatrix<u64>) -> usize 
     rank
 }
 
+/// A basis of the vectors that m takes to 0.
+pub(in crate::system) fn kernel(field: &PrimeField, mut m: DMatrix<u64>) -> Vec<Vec<u64>> {
+    let n = m.ncols();
+    let mut pivots = Vec::new();
+    for column in 0..n {
+        let row = pivots.len();
+        let Some(pivot) = (row..m.nrows()).find(|&i| m[(i, column)] != 0) else { continue };
+        m.swap_rows(row, pivot);
+        let inverse = field.invert(m[(row, column)]);
+        (0..n).for_each(|j| m[(row, j)] = field.mul(m[(row, j)], inverse));
+        for i in (0..m.nrows()).filter(|&i| i != row) {
+            let factor = m[(i, column)];
+            (0..n).for_each(|j| m[(i, j)] = field.sub(m[(i, j)], field.mul(factor, m[(row, j)])));
+        }
+        pivots.push(column);
+    }
+    let vector = |free: usize| {
+        let mut vector = vec![0; n];
+        vector[free] = field.of(1);
+        pivots.iter().enumerate().for_each(|(row, &pivot)| vector[pivot] = field.sub(0, m[(row, free)]));
+        vector
+    };
+    (0..n).filter(|column| !pivots.contains(column)).map(vector).collect()
+}
+
 /// The rank modulo a prime of rows of rationals, of n columns, which is no larger than the true one; `None` where the prime divides a denominator.
 pub(in crate::system) fn rank_of(rows: &[BTreeMap<usize, Rational>], n: usize) -> Option<usize> {
     let field = PrimeField::LARGEST;
@@ -47,6 +72,33 @@ pub(in crate::system) fn rank_of(rows: &[BTreeMap<usize, Rational>], n: usize) -
         }
     }
     Some(rank(&field, m))
+}
+
+/// 1/m and det m; `None` where that is 0. Gauss and Jordan.
+pub(in crate::system) fn inverse(field: &PrimeField, mut m: DMatrix<u64>) -> Option<(DMatrix<u64>, u64)> {
+    let n = m.nrows();
+    let mut inverse = DMatrix::from_fn(n, n, |i, j| field.of(u64::from(i == j)));
+    let mut determinant = field.of(1);
+    for k in 0..n {
+        let pivot = (k..n).find(|&i| m[(i, k)] != 0)?;
+        if pivot != k {
+            m.swap_rows(k, pivot);
+            inverse.swap_rows(k, pivot);
+            determinant = field.sub(0, determinant);
+        }
+        determinant = field.mul(determinant, m[(k, k)]);
+        let scale = field.invert(m[(k, k)]);
+        for own in [&mut m, &mut inverse] {
+            own.row_mut(k).iter_mut().for_each(|x| *x = field.mul(*x, scale));
+        }
+        for i in (0..n).filter(|&i| i != k) {
+            let factor = m[(i, k)];
+            for own in [&mut m, &mut inverse] {
+                (0..n).for_each(|j| own[(i, j)] = field.sub(own[(i, j)], field.mul(factor, own[(k, j)])));
+            }
+        }
+    }
+    Some((inverse, determinant))
 }
 
 /// The coefficients of det(z − m), lowest first, monic; by reduction to Hessenberg's form.
@@ -93,6 +145,28 @@ fn reduce_to_hessenberg(field: &PrimeField, m: &mut DMatrix<u64>) {
             }
         }
     }
+}
+
+/// The squarefree part of a monic polynomial.
+pub(in crate::system) fn squarefree(field: &PrimeField, f: Vec<u64>) -> Vec<u64> {
+    let common = field.gcd(f.clone(), derivative(field, &f));
+    if common.len() == 1 { f } else { quotient(field, f, &common) }
+}
+
+/// a / b, both monic, b a divisor.
+pub(in crate::system) fn quotient(field: &PrimeField, mut a: Vec<u64>, b: &[u64]) -> Vec<u64> {
+    let mut quotient = vec![0; a.len() + 1 - b.len()];
+    for k in (0..quotient.len()).rev() {
+        let factor = a[k + b.len() - 1];
+        a[k..].iter_mut().zip(b).for_each(|(x, &c)| *x = field.sub(*x, field.mul(factor, c)));
+        quotient[k] = factor;
+    }
+    quotient
+}
+
+/// The coefficients of f'.
+pub(in crate::system) fn derivative(field: &PrimeField, f: &[u64]) -> Vec<u64> {
+    f.iter().enumerate().skip(1).map(|(k, &c)| field.mul(field.of(k as u64), c)).collect()
 }
 
 #[cfg(test)]

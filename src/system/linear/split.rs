@@ -3,6 +3,15 @@
 //! Where the M⁻¹ K_k commute, they share their eigenspaces, and each common eigenvector v is an oscillator with the
 //! stiffnesses vᵀ K_k v/vᵀ M v. One combination of the M⁻¹ K_k separates them; its rational eigenvalues are found
 //! exactly, and what has irrational ones stays together, M-orthogonal to the rest.
+//!
+//! Where they do not commute, an X that commutes with each of them, self-adjoint in the metric of M, has eigenspaces that all
+//! leave invariant: a mirror of a molecule splits it into symmetric and antisymmetric motions. With X = M⁻¹ Y that is
+//!
+//! ```text
+//!     Y = Yᵀ,      Y M⁻¹ K_k = K_k M⁻¹ Y for all k,
+//! ```
+//!
+//! linear in Y; Y = M is always a solution.
 
 use std::collections::BTreeMap;
 
@@ -14,7 +23,7 @@ use num_traits::{One, Zero};
 
 use crate::number::polynomial::squarefree;
 use crate::number::{Polynomial, Rational, U};
-use crate::system::exact::roots;
+use crate::system::exact::{modular, roots};
 use crate::system::half::compose::{inverse_mass, rounded_inverse_mass};
 use crate::system::linear::sparse::{Symmetric, null_space};
 use crate::system::linear::system::System;
@@ -83,6 +92,60 @@ pub(in crate::system) fn may_split(system: &System, stiffnesses: &[&Symmetric]) 
             .any(|(x, size)| x.abs() > 2.0 * rounding * size + f64::MIN_POSITIVE)
     };
     !products.iter().enumerate().any(|(i, a)| products[..i].iter().any(|b| differ(a, b)))
+}
+
+/// How motions of different symmetry come apart.
+pub(in crate::system) enum Symmetry {
+    /// Invariant subspaces, M-orthogonal to each other: the eigenspaces of a symmetry with rational eigenvalues and what is left of it.
+    Subspaces(Vec<Subspace>),
+    /// An operator M⁻¹ Y that commutes with all M⁻¹ K_k and with all symmetries of these; its eigenspaces need not be rational: the ring of five
+    /// has two pairs of them over ℚ(√5).
+    Central(DMatrix<Rational>),
+}
+
+/// The symmetry of potentials that need not commute; `None` where all that commutes with them is a multiple of the identity.
+pub(in crate::system) fn symmetry(system: &System, stiffnesses: &[&Symmetric]) -> Option<Symmetry> {
+    let inverse = dense_inverse(system);
+    let mut operators: Vec<_> = stiffnesses.iter().map(|k| &inverse * k.to_dense()).collect();
+    let all: Vec<_> = symmetries(&operators).iter().map(|y| &inverse * y).collect();
+    if all.len() < 2 {
+        return None;
+    }
+    let spaces = all.iter().map(|operator| eigenspaces(system, operator, whole(system.size())));
+    if let Some(found) = spaces.into_iter().find(|found| found.len() > 1) {
+        return Some(Symmetry::Subspaces(found));
+    }
+    operators.extend(all);
+    let central = symmetries(&operators);
+    // Any weights: eigenvalues that happen to be equal leave their motions together.
+    let weight = |k: usize| Rational::from_integer(((k + 1) * (k + 1)).into());
+    let sum = central.iter().enumerate().map(|(k, y)| y * weight(k)).reduce(|sum, y| sum + y)?;
+    (central.len() > 1).then(|| Symmetry::Central(inverse * sum))
+}
+
+/// A basis of the symmetric Y with Y A = Aᵀ Y for all these A; empty where it has but one element, by its rank modulo a prime, which is
+/// no larger than the true one.
+fn symmetries(operators: &[DMatrix<Rational>]) -> Vec<DMatrix<Rational>> {
+    let n = operators.first().map_or(0, DMatrix::nrows);
+    let unknown = |i: usize, j: usize| i.max(j) * (i.max(j) + 1) / 2 + i.min(j);
+    let count = n * (n + 1) / 2;
+    let mut equations: Vec<BTreeMap<usize, Rational>> = Vec::new();
+    for a in operators {
+        for (i, j) in (0..n).flat_map(|i| (0..i).map(move |j| (i, j))) {
+            let mut equation = BTreeMap::new();
+            for k in 0..n {
+                *equation.entry(unknown(i, k)).or_insert_with(Rational::zero) += &a[(k, j)];
+                *equation.entry(unknown(k, j)).or_insert_with(Rational::zero) -= &a[(k, i)];
+            }
+            equation.retain(|_, x| !x.is_zero());
+            equations.push(equation);
+        }
+    }
+    if modular::rank_of(&equations, count).is_some_and(|rank| rank + 1 >= count) {
+        return Vec::new();
+    }
+    let matrix = |y: &[Rational]| DMatrix::from_fn(n, n, |i, j| y[unknown(i, j)].clone());
+    null_space(equations, count).iter().map(|(_, y)| matrix(y)).collect()
 }
 
 fn whole(n: usize) -> Subspace {

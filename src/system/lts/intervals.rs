@@ -11,7 +11,6 @@
 use num_bigint::BigInt;
 use num_traits::{One, Zero};
 
-use super::edges::{Gap, between, gaps};
 use super::scheme::LocalSteps;
 use crate::error::{Error, Result};
 use crate::number::polynomial::integers;
@@ -21,6 +20,8 @@ use crate::parallel::try_map;
 use crate::system::half::compose::connected_parts;
 use crate::system::linear::frame::Frame;
 use crate::system::linear::sparse::Symmetric;
+use crate::system::vary::critical::{Gap, gaps_of};
+use crate::system::vary::edges::between;
 use crate::system::vary::stretches::Stretch;
 use crate::system::verdict::decide::decide_system;
 use crate::system::verdict::limits::Limits;
@@ -38,8 +39,10 @@ impl LocalSteps {
     pub fn stretches(&self, range: (f64, f64), limits: &Limits) -> Result<Vec<Stretch>> {
         let verdict = |x: &Rational| Ok(decide_system(self.at(x)?.system(), limits)?.holds());
         // At a simple root one eigenvalue passes an end. On the side where it is within both, others are unstable, and stay so.
-        let is_crossed = |gap: &Gap, around: Holds| gap.is_simple && around == Holds::Unstable;
-        between(range, &self.gaps(range, limits)?, &verdict, &is_crossed)
+        let within = |gap: &Gap, around: Holds| {
+            Ok(if gap.is_simple() && around == Holds::Unstable { around } else { Holds::NotTold })
+        };
+        between(range, &self.gaps(range, limits)?, &verdict, &within)
     }
 
     /// The cost of these, in products of machine words.
@@ -83,7 +86,7 @@ impl LocalSteps {
             .filter(|own| own.degree().is_some_and(|n| n > 0))
             .map(|own| whole(own, &square))
             .collect();
-        let gaps = gaps(&polynomials, top, &|x| x * x / &square)?;
+        let gaps = gaps_of(&polynomials, (0.0, top), &|x| x * x / &square)?;
         Ok(gaps.into_iter().filter(|gap| gap.lo < hi && lo < gap.hi).collect())
     }
 

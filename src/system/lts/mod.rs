@@ -14,11 +14,10 @@
 //! | file | what |
 //! |---|---|
 //! | `scheme` | the levels, the effective stiffness |
-//! | `intervals`, `edges` | all unstable intervals of dt, exactly: roots of two determinants, and what lies between |
+//! | `intervals` | all unstable intervals of dt, exactly |
 //! | `elements` | AVI of elements in levels |
 //! | `sparse` | many thousands of degrees of freedom: f in sparse doubles, its verdicts, what grows fastest |
 
-mod edges;
 mod elements;
 mod intervals;
 mod scheme;

@@ -8,7 +8,7 @@ use crate::number::Rational;
 use crate::number::rational::{from_f64_exact, to_f64};
 use crate::system::levels::Method;
 use crate::system::spectrum::rate::middle;
-use crate::system::vary::family::{Family, Linear};
+use crate::system::vary::edges::{Family, Linear};
 use crate::system::vary::nearest::Nearest;
 use crate::system::vary::stretches::{Stretch, check_width};
 use crate::system::verdict::analysis::Analysis;
@@ -49,12 +49,12 @@ impl Model {
             }
             (Number::Linear(at), _) => {
                 let at = |x: &Rational| Ok(at(x)?.moving()?.into_owned());
-                Family { linear: Linear::Number, at: &at }.stretches(range, width)
+                Family { linear: Linear::Number, at: &at }.stretches(range, width, limits)
             }
             (_, Model::LocalSteps(own)) => own.stretches(range, limits),
             (_, Model::Along(_) | Model::NoGradient(_) | Model::Sparse(_)) => Err(self.no_intervals()),
             (_, Model::Measured(own)) => own.stretches(range, width, own.accuracy),
-            _ => self.over_outer_steps(|family| family.stretches(range, width)),
+            _ => self.over_outer_steps(|family| family.stretches(range, width, limits)),
         }
     }
 
@@ -91,17 +91,23 @@ impl Model {
     ///
     /// # Errors
     /// As [`Family::cost`]; a width outside \[10^-9, 1/10\].
-    pub fn cost_of_stretches(&self, number: &Number, range: (f64, f64), width: f64) -> Result<f64> {
+    pub fn cost_of_stretches(
+        &self,
+        number: &Number,
+        range: (f64, f64),
+        width: f64,
+        limits: &Limits,
+    ) -> Result<f64> {
         check_width(width)?;
         match (number, self) {
             (Number::Linear(at), _) => {
                 let at = |x: &Rational| Ok(at(x)?.moving()?.into_owned());
-                Family { linear: Linear::Number, at: &at }.cost(range, width)
+                Family { linear: Linear::Number, at: &at }.cost(range, width, limits)
             }
             (_, Model::Measured(own)) => own.cost_of_stretches(range, width),
             (_, Model::LocalSteps(own)) => Ok(own.cost()),
             (_, Model::Along(_) | Model::NoGradient(_) | Model::Sparse(_)) => Err(self.no_intervals()),
-            _ => self.over_outer_steps(|family| family.cost(range, width)),
+            _ => self.over_outer_steps(|family| family.cost(range, width, limits)),
         }
     }
 
@@ -109,9 +115,9 @@ impl Model {
     ///
     /// # Errors
     /// As [`Family::cost`].
-    pub fn cost_of_nearest(&self, width: f64) -> Result<f64> {
+    pub fn cost_of_nearest(&self, width: f64, limits: &Limits) -> Result<f64> {
         let range = Nearest::reach(to_f64(&self.outer_step()));
-        self.cost_of_stretches(&Number::Outer, range, width)
+        self.cost_of_stretches(&Number::Outer, range, width, limits)
     }
 
     /// The result of `ask` on the systems of all outer steps.
@@ -137,6 +143,13 @@ impl Model {
         let step = to_f64(&self.outer_step());
         if let Model::LocalSteps(own) = self {
             return Ok(Nearest::of(step, &own.stretches(Nearest::reach(step), limits)?));
+        }
+        let is_searched = matches!(self, Model::Measured(_) | Model::NoGradient(_) | Model::Sparse(_));
+        if !is_searched {
+            let exactly = |family: &Family| family.exactly(Nearest::reach(step), limits);
+            if let Some(all) = self.over_outer_steps(exactly)? {
+                return Ok(Nearest::of(step, &all));
+            }
         }
         let own = self.holds(limits)?;
         Nearest::search((step, own), |range| self.stretches(&Number::Outer, range, width, limits))

@@ -216,7 +216,7 @@ impl MeasuredSystem {
     }
 
     /// The two levels, with their period; `None` where the steps are of another kind.
-    fn outer(&self) -> Option<(Outer, Rational)> {
+    pub(super) fn outer(&self) -> Option<(Outer, Rational)> {
         match self.potentials.as_slice() {
             [(step, _)] => Some((Outer::of_steps(step, step)?, step.clone())),
             [_, (outer, _)] if !self.method.has_inner_steps() => {
@@ -326,7 +326,7 @@ impl MeasuredSystem {
     }
 
     /// What `ask` finds of levels that are not two of an inner and an outer step, and of their steps.
-    fn over_steps<T>(&self, ask: impl FnOnce(&Nested, &[Rational]) -> Result<T>) -> Result<T> {
+    pub(super) fn over_steps<T>(&self, ask: impl FnOnce(&Nested, &[Rational]) -> Result<T>) -> Result<T> {
         let many = self.nested()?.expect("not of two levels");
         ask(&many.levels, &self.steps())
     }

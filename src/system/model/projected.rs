@@ -16,6 +16,10 @@ use crate::system::linear::system::System;
 use crate::system::verdict::analysis::Analysis;
 use crate::system::verdict::decide::decide_by;
 use crate::system::verdict::limits::{Limits, Route};
+use crate::system::verdict::measured::Holds;
+
+/// The note where a verdict does not outlast the rounding of what was projected.
+const ON_AN_EDGE: &str = "motions are projected out in doubles, and the verdict does not stand their rounding: it is not decided, as on an edge; choose another step";
 
 /// By which motions without positions are found.
 const COMMON: &str = "common null space";
@@ -98,10 +102,26 @@ impl MeasuredSystem {
         };
         let mut analysis = decide_by(route, &self.projected(basis), limits)?;
         lift(&mut analysis, basis);
+        if analysis.is_proof() && self.stands()? != analysis.holds() {
+            analysis.kind = None;
+            analysis.parts.iter_mut().for_each(|part| part.kind = None);
+            analysis.warnings.push(ON_AN_EDGE.into());
+        }
         let what = format!("with {} motions projected out ({}) and rounded", removed.count, removed.found_by);
         analysis.warnings.extend(removed.warning(self.accuracy));
         analysis.warnings.push(warning(&what));
         Ok(analysis)
+    }
+
+    /// What is proven of all stiffnesses that projected motions may round to what is left.
+    fn stands(&self) -> Result<Holds> {
+        match self.outer() {
+            Some((outer, _)) => Ok(self.kernel()?.verdict_within(&outer, 0.0)),
+            None => self.over_steps(|levels, steps| {
+                let outer = to_f64(steps.last().expect("at least one"));
+                Ok(levels.at(steps)?.verdict_within(outer, 0.0))
+            }),
+        }
     }
 
     /// The effect of friction on these doubles as a rational system.

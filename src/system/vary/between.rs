@@ -38,7 +38,7 @@ pub struct Intervals {
     pub is_discrete: bool,
     /// The inner steps in an outer one, where these are two levels and the number is the outer step at that ratio.
     pub inner_steps: Option<u64>,
-    /// They cover the range, in order; of local time steps neighbouring doubles end one and begin the next.
+    /// They cover the range, in order; where edges were isolated exactly, neighbouring doubles end one and begin the next.
     pub stretches: Vec<Stretch>,
     /// How many of those that are not decided the accuracy of the data leaves open: data a thousand times as accurate decide most of each. `None`
     /// where stretches hold for the numbers given alone.

@@ -4,12 +4,13 @@
 //! |---|---|
 //! | `scan` | maps over two parameters |
 //! | `between` | all systems between two |
-//! | `family` | the systems of one number |
+//! | `critical`, `edges` | where the verdict can change, exactly; what lies between |
 //! | `stretches` | a range covered |
 //! | `nearest` | the unstable intervals next to a number |
 
 pub(super) mod between;
-pub(super) mod family;
+pub(super) mod critical;
+pub mod edges;
 pub mod nearest;
 pub mod scan;
 pub mod stretches;
