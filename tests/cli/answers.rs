@@ -415,3 +415,17 @@ fn what_is_refused_for_its_cost_names_a_budget_that_is_taken() {
         assert!(ended.stderr.contains("choose") && !ended.stderr.contains("--budget"), "{}", ended.stderr);
     }
 }
+
+#[test]
+fn a_sum_that_lacks_little_says_how_much() {
+    let text = stdout(&["word", "K(1/2) D(0.9999999999999999999) K(1/2)"]);
+    assert!(text.contains("consistent   no: the coefficients sum to D 1 - 1.0e-19, K 1"), "{text}");
+}
+
+/// 71, 97 and 310 steps of 0.01 fs meet after 2.1 million kicks, and edges take a thousand orbits: the cost is told before any of it.
+#[test]
+fn advice_on_steps_that_rarely_meet_is_refused_with_its_cost() {
+    let line = "advise --period 10fs --period 20fs --period 60fs --steps 0.71fs,0.97fs,3.1fs --band 0";
+    let ended = run(&words(line, &[]));
+    assert!(ended.code == Some(2) && ended.stderr.contains("allow it with --budget"), "{}", ended.stderr);
+}
