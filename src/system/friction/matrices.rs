@@ -256,8 +256,8 @@ impl<'a> Damped<'a> {
     }
 }
 
-/// The relative width to which the least friction that masks is bisected: ranges are proven in steps that shrink with the distance from it.
-const NEAR_EDGE: f64 = 1e-2;
+/// The relative width to which the least friction that masks is bisected.
+const NEAR_EDGE: f64 = 1e-4;
 
 /// Degrees of freedom whose frictions are looked at closely.
 const FEW: usize = 8;

@@ -19,7 +19,7 @@ use crate::system::verdict::limits::{Limits, Route};
 use crate::system::verdict::measured::Holds;
 
 /// The note where a verdict does not outlast the rounding of what was projected.
-const ON_AN_EDGE: &str = "motions are projected out in doubles, and the verdict does not stand their rounding: it is not decided, as on an edge; choose another step";
+const ON_AN_EDGE: &str = "the doubles decided are rounded, and the verdict does not stand that: it is not decided, as on an edge or of rigid motions that are kept; choose another step";
 
 /// By which motions without positions are found.
 const COMMON: &str = "common null space";
@@ -97,23 +97,33 @@ impl MeasuredSystem {
         let (Some(basis), Some(removed)) = (hessians.basis(), hessians.removed()) else {
             self.refuse_constraints()?;
             let mut analysis = decide_by(route, self.system(), limits)?;
+            // Rigid motions that are kept are on an edge, and weighted by roots of masses, which are rounded.
+            if self.keeps_rigid {
+                self.outlast_rounding(&mut analysis)?;
+            }
             analysis.warnings.push(warning("as they are"));
             return Ok(analysis);
         };
         let mut analysis = decide_by(route, &self.projected(basis), limits)?;
         lift(&mut analysis, basis);
-        if analysis.is_proof() && self.stands()? != analysis.holds() {
-            analysis.kind = None;
-            analysis.parts.iter_mut().for_each(|part| part.kind = None);
-            analysis.warnings.push(ON_AN_EDGE.into());
-        }
+        self.outlast_rounding(&mut analysis)?;
         let what = format!("with {} motions projected out ({}) and rounded", removed.count, removed.found_by);
         analysis.warnings.extend(removed.warning(self.accuracy));
         analysis.warnings.push(warning(&what));
         Ok(analysis)
     }
 
-    /// What is proven of all stiffnesses that projected motions may round to what is left.
+    /// Takes a verdict back that not all stiffnesses share which round to those decided.
+    fn outlast_rounding(&self, analysis: &mut Analysis) -> Result<()> {
+        if analysis.is_proof() && self.stands()? != analysis.holds() {
+            analysis.kind = None;
+            analysis.parts.iter_mut().for_each(|part| part.kind = None);
+            analysis.warnings.push(ON_AN_EDGE.into());
+        }
+        Ok(())
+    }
+
+    /// What is proven of all stiffnesses that round to those decided.
     fn stands(&self) -> Result<Holds> {
         match self.outer() {
             Some((outer, _)) => Ok(self.kernel()?.verdict_within(&outer, 0.0)),
