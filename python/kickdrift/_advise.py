@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from functools import cached_property
 from html import escape
 from os import PathLike, fspath
-from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, overload, runtime_checkable
 
@@ -63,7 +62,8 @@ class Advised(Document):
     def status(self) -> str:
         """The first scheme: ``safe``, ``caution`` (proven stable, beyond a published limit), ``near`` (an unstable
         interval is within the band), ``island`` (stable above an unstable interval), ``unstable``, or of Hessians ``not
-        told`` within their accuracy; of periods ``not told`` without the fastest one. Of forces that are no gradient what the steps add to their growth: ``little``,
+        told`` within their accuracy; of periods ``not told`` without the fastest one. Of forces that are no gradient
+        what the steps add to their growth: ``little``,
         ``much``, ``not told``."""
         return str(self.schemes[0]["status"])
 
@@ -317,8 +317,10 @@ def advise(
     periods : what vibrates
         A mapping of str to Time, or a sequence of Time: the periods of the forces, fs, wavenumbers as ``"3700/cm"``, or
         ``"water"``, ``"protein"`` (in water), ``"peptide"`` (in vacuum) for what nonbonded forces have there; the last
-        ones are on the slower clocks. Of ``"fast"`` a typical one by name, as ``"protein,h-bonds"`` or ``"water,rigid"``.
-        Without the fastest period nothing is called safe. Texts without a unit are plain numbers, where all times are. Or a molecule: a :class:`System`, the path of a system file, OpenMM's
+        ones are on the slower clocks. Of ``"fast"`` a typical one by name, as ``"protein,h-bonds"`` or
+        ``"water,rigid"``.
+        Without the fastest period nothing is called safe. Texts without a unit are plain numbers, where all
+        times are. Or a molecule: a :class:`System`, the path of a system file, OpenMM's
         ``Simulation`` or ``System``, ASE's ``Atoms``, an instance of LAMMPS, which is asked for :meth:`System.advise`.
     steps : sequence of Time, or a sequence of such
         A scheme, from the innermost to the outermost step, fs; or several schemes. Of OpenMM's ``System`` also a

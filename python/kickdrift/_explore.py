@@ -71,7 +71,8 @@ def explore(
         if (h1 is None) != (h2 is None):
             raise KickdriftError("h1" if h1 is None else "h2", None, "a window has two ranges: give both, or none")
         window = None if h1 is None or h2 is None else (range_text("h1", h1), range_text("h2", h2))
-        page = _native.Page.of_springs(text("lambda1", lambda1), text("lambda2", lambda2), window, unit and written("unit", unit))
+        springs = text("lambda1", lambda1), text("lambda2", lambda2)
+        page = _native.Page.of_springs(*springs, window, unit and written("unit", unit))
     made: Explorer = import_module("kickdrift._widget").Explorer(page, height)
     return made
 

@@ -204,7 +204,10 @@ def _bars(own: Axes, place: int, parts: Sequence[tuple[float, float, str]]) -> N
 
 
 def advice(document: Mapping[str, Any], ax: Axes | None) -> Axes:
-    """Bars over the outer step of the first scheme: proven for the band, the same beyond what is published, not advised, unstable."""
+    """Bars over the outer step of the first scheme.
+
+    Proven for the band, the same beyond what is published, not advised, unstable.
+    """
     own = axes(ax)
     schemes = document["schemes"]
     rows = [row for row in document["rows"] if row["scheme"] == 1]

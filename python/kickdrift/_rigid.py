@@ -34,13 +34,14 @@ def is_held(matrices: Sequence[Doubles], translations: Doubles, error: float) ->
     return any(norm(own @ translations) > max(10 * error, 1e-9 * norm(own)) for own in matrices)
 
 
-#: A mesh holds less of a stiffness along translations: 2.5e-4 to 4.1e-4 of the reciprocal part of OpenMM's PME, in boxes of
+#: A mesh holds less of a stiffness along translations:
+#: 2.5e-4 to 4.1e-4 of the reciprocal part of OpenMM's PME, in boxes of
 #: 27 and 8 waters. A field that is not told as one holds more.
 _MESH = 1e-2
 
 
 def off_the_mesh(matrix: Doubles, translations: Doubles, name: str, known: float, notes: list[str]) -> Doubles:
-    """A mass-weighted Hessian without what the mesh of an Ewald sum holds along translations: the sum that it stands for
+    """A mass-weighted Hessian without what the mesh of an Ewald sum holds along translations: the sum it stands for
     knows no place. A note says how much, where it is more than the Hessian is known to."""
     part = norm(matrix @ translations) / (norm(matrix) or 1.0)
     if not known < part <= _MESH:

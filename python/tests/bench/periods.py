@@ -1,6 +1,7 @@
-"""Typical fastest periods, as `fast=protein,h-bonds` names them: molecules that OpenMM ships, at a minimum of their energy.
+"""Typical fastest periods, as `fast=protein,h-bonds` names them: molecules of OpenMM, at a minimum of their energy.
 
-Of each molecule the shortest period of all its forces and that of the bonded ones alone, whichever is shorter: free, with bonds to hydrogen held,
+Of each molecule the shortest period of all its forces and that of the bonded ones alone, whichever is shorter:
+free, with bonds to hydrogen held,
 with hydrogens of 3.024 amu, and with both. Hessians by central differences of forces on OpenMM's Reference platform.
 
 Run:  python tests/bench/periods.py [water | amino | villin | dna | lipid] ...
@@ -18,7 +19,10 @@ from openmm import app, unit
 DATA = Path(app.__file__).parent / "data"
 STEP = 1e-4  # nm: the error of a central difference is near 1e-7 of the Hessian here.
 HEAVY = 3.024  # amu
-AMINO = "ALA ARG ASN ASP CYS GLN GLU GLY HID HIE HIP ILE LEU LYS MET PHE PRO SER THR TRP TYR VAL".split()
+AMINO = [
+    *("ALA", "ARG", "ASN", "ASP", "CYS", "GLN", "GLU", "GLY", "HID", "HIE", "HIP"),
+    *("ILE", "LEU", "LYS", "MET", "PHE", "PRO", "SER", "THR", "TRP", "TYR", "VAL"),
+]
 
 
 def hessian(context: mm.Context, x: np.ndarray) -> np.ndarray:
@@ -93,7 +97,9 @@ def from_nowhere(field: app.ForceField, topology: app.Topology) -> np.ndarray:
 
 
 def measured(name: str, field: app.ForceField, topology: app.Topology, x: np.ndarray) -> None:
-    system = field.createSystem(topology, nonbondedMethod=app.NoCutoff, constraints=None, rigidWater=False, removeCMMotion=False)
+    cutoff = app.NoCutoff
+    free = {"constraints": None, "rigidWater": False, "removeCMMotion": False}
+    system = field.createSystem(topology, nonbondedMethod=cutoff, **free)
     x = minimum(system, x)
     bonded = mm.XmlSerializer.clone(system)
     slow = [n for n, own in enumerate(bonded.getForces()) if "onbonded" in type(own).__name__]
@@ -146,12 +152,14 @@ def water() -> None:
     modeller = app.Modeller(pdb.topology, pdb.positions)
     gone = [r for r in pdb.topology.residues() if r.index not in set(near.tolist())]
     modeller.delete(gone)
-    x = np.asarray([[c._value if hasattr(c, "_value") else c for c in p.value_in_unit(unit.nanometer)] for p in modeller.positions])
+    places = [p.value_in_unit(unit.nanometer) for p in modeller.positions]
+    x = np.asarray([[c._value if hasattr(c, "_value") else c for c in place] for place in places])
     fields = ["amber14/tip3pfb.xml", "amber14/tip3p.xml", "amber14/spce.xml", "charmm36/water.xml"]
     for name in fields:
         field = app.ForceField(name)
         measured(f"64 waters, {name}", field, modeller.topology, x)
-        system = field.createSystem(modeller.topology, nonbondedMethod=app.NoCutoff, rigidWater=True, removeCMMotion=False)
+        cutoff = app.NoCutoff
+        system = field.createSystem(modeller.topology, nonbondedMethod=cutoff, rigidWater=True, removeCMMotion=False)
         still = minimum(system, x)
         pairs = [system.getConstraintParameters(n)[:2] for n in range(system.getNumConstraints())]
         masses = np.array([system.getParticleMass(i)._value for i in range(system.getNumParticles())])
