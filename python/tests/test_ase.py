@@ -165,7 +165,7 @@ def test_the_orbit_that_a_run_is_about_stands_first() -> None:
     atoms = ase.Atoms("H2", [[0, 0, 0], [1.0, 0, 0]])
     kinds = []
     for outer in ("1fs", "4fs"):
-        made = {"fast": (Pair(30, 1.0), "0.25fs"), "slow": (Pair(3, 1.3), outer)}
+        made = {"fast": (Pair(30, 1.0), "0.25fs"), "slow": (Pair(3, 1.1), outer)}
         system = ka.system(atoms, made)
         verdict, found = system.decide(), ka.oscillations(atoms, made)
         first, second = str(verdict).splitlines()[:2]

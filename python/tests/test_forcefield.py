@@ -346,7 +346,9 @@ def test_sparse_systems_take_the_names_of_a_topology() -> None:
         topology.addBond(near, far)
     steps = {0: "0.5fs", SLOW: "2fs"}
     found = ko.system(system, positions, steps=steps, topology=topology, sparse=True, minimize=False)
-    assert found.decide().data["degrees_of_freedom"] == 24
+    # At no minimum a third of the slow stiffness turns with the forces: rotations are not clearly free.
+    with pytest.raises(kd.KickdriftError, match="rigid motions"):
+        found.decide()
     assert found.document["labels"][7] == "C7 PEP 1" and found.document["bonded"][0] == [0, 1]
 
 

@@ -1521,7 +1521,7 @@ def test_rigid_waters_and_plain_steps_get_advice() -> None:
     """One level on what constraints leave free: the first unstable step is T/pi of its stiffest motion."""
     system, positions = waters(rigid=True)
     dense = ko.system(system, positions, steps={0: "2fs", 1: "2fs"}).decide()
-    first = re.search(r"first unstable outer step [a-z ]*: ([\d.]+)", str(dense))
+    first = re.search(r"first unstable (?:outer )?step[a-z ]*: ([\d.]+)", str(dense))
     assert first is not None
     for steps in ({0: "0.5fs", 1: "2fs"}, {0: "2fs", 1: "2fs"}):
         advice = kd.advise(system, positions=positions, steps=steps)

@@ -111,10 +111,10 @@ def test_what_does_not_fit_is_refused_by_name() -> None:
         kd.verdicts(lambda1=[1, 2], lambda2=1, h1=[1, 2, 3], h2=1)
     with pytest.raises(kd.KickdriftError) as caught:
         kd.verdicts(lambda1=1, lambda2=1, h1=["1", "x"], h2=1)
-    assert (caught.value.field, caught.value.value) == ("h1", "x")
+    assert (caught.value.field, caught.value.value) == ("h1[1]", "x")
     with pytest.raises(kd.KickdriftError) as caught:
         kd.verdicts(lambda1=1, lambda2=1, h1=["1", "-1"], h2=1)
-    assert caught.value.field == "h1"
+    assert caught.value.field == "h1[1]"
     with pytest.raises(kd.KickdriftError):
         kd.verdicts(lambda1=1, lambda2=1, h1=[[1], [1, 2]], h2=1)
 
