@@ -134,7 +134,7 @@ fn a_radius_of_one_at_every_friction_is_told_exactly() {
     let strength = |text: &str| parse("strength", text).unwrap();
     let steps = [ratio(1, 1), ratio(2, 1)];
     let with_pi = |slow: &str| {
-        let strengths = vec![strength("4 - pi"), strength(slow)];
+        let strengths = [strength("4 - pi"), strength(slow)];
         let clocks =
             ManyClocks::new(&steps[..1], &[ratio(0, 1)], vec![&strengths[0] + &strengths[1]]).unwrap();
         damped(&clocks, &ratio(1, 10)).damping

@@ -269,7 +269,7 @@ fn where_the_total_falls_nothing_is_counted_and_no_smaller_step_is_called_stable
     }
     // In a scan, too, and in words.
     let scene = small([&fast, &slow], ["0.376", "3.008"]).unwrap();
-    assert_eq!(scene.model().at_point(Route::Cheapest, &Limits::default()).unwrap().is_stable(), false);
+    assert!(!scene.model().at_point(Route::Cheapest, &Limits::default()).unwrap().is_stable());
     let folder = tempfile::tempdir().unwrap();
     for (name, own) in [("f", &fast), ("s", &slow)] {
         npz_of(&folder.path().join(format!("{name}.npz")), own);
