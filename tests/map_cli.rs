@@ -329,7 +329,8 @@ fn a_forged_band_is_not_there() {
     let put = |at: usize, value: u64| {
         move |bytes: &mut Vec<u8>| bytes[at..][..8].copy_from_slice(&value.to_le_bytes())
     };
-    let changes: [(&str, Box<dyn Fn(&mut Vec<u8>)>); 17] = [
+    type Forgery<'a> = Box<dyn Fn(&mut Vec<u8>) + 'a>;
+    let changes: [(&str, Forgery); 17] = [
         ("first", Box::new(set(0, 1))),
         (
             "columns and rows swapped",
