@@ -18,6 +18,7 @@
 
 #[cfg(feature = "advise")]
 mod advise;
+#[cfg(feature = "advise")]
 mod advised;
 mod asking;
 mod field;

@@ -64,6 +64,7 @@ pub fn enclosure(lo: f64, hi: f64) -> Shown {
 }
 
 /// Whether the difference of two numbers is 0 but for their rounding, the larger of them being enclosed in `beside`.
+#[cfg(feature = "system")]
 pub(crate) fn is_nothing((lo, hi): (f64, f64), beside: Option<(f64, f64)>) -> bool {
     lo <= 0.0 && 0.0 <= hi && hi - lo <= 1e-12 * beside.map_or(0.0, |own| own.1)
 }
