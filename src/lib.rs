@@ -60,98 +60,44 @@
 //! * *look*: the moment at which a run in doubles measures its orbit's length, on which the proven bound rests.
 //! * *refine*: to follow the orbit again kick by kick, in more bits.
 //!
-//! # The floors of the house
+//! # The crates of the house
 //!
-//! Imports go down only, and siblings on one floor do not import each other (a test keeps it so).
+//! Each crate has a page of its own and builds without those below it in this table; this one hands on their modules and is the program.
 //!
-//! | floor | module | what is there |
+//! | crate | here | what is there |
 //! |---|---|---|
-//! | – | [`error`], [`format`](mod@format) | one error with a kind; the forms of results |
-//! | 0 | [`plot`] | figures as pictures, without physics: a crate of its own, crates/plot |
-//! | 0 | `vector` | doubles side by side in the processor's registers |
-//! | 0 | [`parallel`] | work on all threads, or without them; work that can be stopped |
-//! | 0 | [`number`] | signs, rings, rationals, ℚ\[π\], cyclotomic fields, polynomials, balls, parsing |
-//! | 1 | [`schedule`] | which clocks kick when, over the period or its first half |
-//! | 2 | [`propagator`] | kick, drift, full and half period and its signs, the methods |
-//! | 3 | [`word`] | integrators as their authors write them: order, stable intervals, the catalogue |
-//! | 3 | `orbit` | orbits followed with proven bounds: Floquet coordinates, filter, refine, leaps over long runs, return maps of long periods |
-//! | 4 | [`verdict`] | four signs → verdict, and the ladder filter → refine → exact |
-//! | 5 | [`resonance`] | θ, tan criterion, Proposition, (a, b) families and curves, strength, comparison |
-//! | 6 | [`map`] | the verdicts of whole grids of steps, pairs side by side |
-//! | 6 | [`tongue`] | every unstable interval of a ratio, its edges, and where tongues close |
-//! | 6 | [`system`] | many clocks, many degrees of freedom |
-//! | 6 | [`band`] | steps at which every ratio is unstable |
-//! | 6 | [`avi`] | Algorithm 1 run as a simulation |
-//! | 7 | [`advise`] | units, periods and bonds, engines' notations → which steps are safe |
-//! | 8 | [`scene`] | systems' files → library types |
-//! | 8 | [`report`] | results → JSON, CSV, LaTeX, text, NPZ, SVG, PDF, PNG |
-//! | 9 | [`question`] | what is asked, typed; each question with its answer, its rows and its document |
-//! | 10 | [`recheck`] | every document's claims found again by another route |
-//! | 10 | [`explore`] | what a page asks to move in the plane, answered; the page, served |
-//! | 11 | [`cli`] | arguments → a question → the library → a report |
+//! | `kickdrift-number` | [`number`], [`error`], [`parallel`], [`file`] | rationals, ℚ\[π\], cyclotomic fields, polynomials, balls; one error with a kind; threads |
+//! | `kickdrift-clocks` | [`schedule`], [`propagator`], [`verdict`], [`resonance`], [`tongue`], [`map`], [`band`] | two clocks on one oscillator: the mission |
+//! | `kickdrift-words` | [`word`] | integrators as their authors write them: order, stable intervals, the catalogue |
+//! | `kickdrift-systems` | [`system`], [`avi`] | many clocks, many degrees of freedom; Algorithm 1 run as a simulation |
+//! | `kickdrift-molecules` | [`advise`] | units, periods and bonds, engines' notations → which steps are safe |
+//! | `kickdrift-plot` | [`plot`] | figures as pictures, without physics |
+//! | `kickdrift-documents` | [`question`], [`format`](mod@format), [`scene`], [`report`], [`recheck`] | what is asked, typed, with its answer as a document; documents verified |
+//! | `kickdrift` | [`cli`], [`explore`] | the program, and the page that it serves |
 //!
-//! A new number type goes to `number` and implements [`number::Real`]; a new integrator to
-//! [`propagator::methods`]; a new table format to [`report`]; a new command to [`cli`].
-//!
-//! # Features
-//!
-//! Without any feature the library is the mathematics of one oscillator and of Algorithm 1, and builds in seconds.
-//!
-//! | feature | adds |
-//! |---|---|
-//! | `system` | `system`: many clocks, many degrees of freedom (faer) |
-//! | `advise` | `advise`: which steps are safe for these periods (roxmltree) |
-//! | `parallel` | maps, surveys and scans on all cores (rayon); without it the same results on one |
-//! | `serde` | `scene`, `report` and `recheck`: input documents, output tables, documents rechecked |
-//! | `figure` | the drawings of results, by the crate `plot` |
-//! | `cli` | the program (default), and `explore`: its page, what that asks, and the page served on this machine (axum, tokio) |
+//! A library that needs verdicts alone depends on `kickdrift-clocks` and builds some twenty crates.
 
-#[cfg(feature = "advise")]
-pub mod advise;
-pub mod avi;
-pub mod band;
-#[cfg(feature = "cli")]
 pub mod cli;
-pub mod error;
-#[cfg(feature = "cli")]
 pub mod explore;
-pub mod file;
-pub mod format;
-pub mod map;
-mod named;
-pub mod number;
-mod orbit;
-pub mod parallel;
+
+pub use clocks::{band, map, propagator, resonance, schedule, tongue, verdict};
+pub use documents::{format, input as scene, question, report, verify as recheck};
+pub use molecules as advise;
+pub use number::{self, error, file, parallel};
 /// Figures as pictures: what `report` draws with.
-#[cfg(feature = "figure")]
 pub use plot;
-pub mod propagator;
-#[cfg(feature = "serde")]
-pub mod question;
-#[cfg(feature = "serde")]
-pub mod recheck;
-#[cfg(feature = "serde")]
-pub mod report;
-pub mod resonance;
-#[cfg(feature = "serde")]
-pub mod scene;
-pub mod schedule;
-#[cfg(feature = "system")]
-pub mod system;
-pub mod tongue;
-mod vector;
-pub mod verdict;
-pub mod word;
+pub use systems::{self as system, avi};
+pub use words as word;
 
 // What everyone needs, without the way to it.
-pub use error::{Error, Result};
-pub use map::{Grid, Map};
+pub use clocks::map::{Grid, Map};
+pub use clocks::propagator::{HalfPeriod, Oscillator, TwoClocks, half_period};
+pub use clocks::resonance::{Families, dominant_family};
+pub use clocks::tongue::{Tongues, closings};
+pub use clocks::verdict::{Kind, Limits, Side, Verdict, decide, decide_steps};
+pub use number::error::{Error, Result};
 pub use number::parse::parse;
 pub use number::{Laurent, Ratio, Rational, Sign};
-pub use propagator::{HalfPeriod, Oscillator, TwoClocks, half_period};
-pub use resonance::{Families, dominant_family};
-pub use tongue::{Tongues, closings};
-pub use verdict::{Kind, Limits, Side, Verdict, decide, decide_steps};
 
 #[doc(hidden)]
-pub use vector::instructions::force_instructions;
+pub use number::vector::instructions::force_instructions;

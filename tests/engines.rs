@@ -1,7 +1,5 @@
 //! What simulation engines write about their steps: read as they read it, rewritten, and read again; damaged texts are refused in one line.
 
-#![cfg(feature = "advise")]
-
 use kickdrift::advise::engine::{Engine, Reading, not_nested, read};
 use kickdrift::advise::unit::TimeUnit;
 use kickdrift::advise::unit::decimal;

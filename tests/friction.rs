@@ -308,7 +308,6 @@ fn rigid_motions_are_set_apart_under_friction() {
 }
 
 /// Stiffnesses by reference, in an unstable interval of the outer step: by the eigenbasis, rigid motions projected out.
-#[cfg(feature = "cli")]
 #[test]
 fn measured_stiffnesses_are_masked_from_where_it_is_told() {
     use kickdrift::scene::SystemScene;

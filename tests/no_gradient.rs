@@ -278,7 +278,6 @@ fn damped_radius((masses, given): &Given, friction: f64) -> f64 {
     whole.complex_eigenvalues().iter().map(|z| z.norm()).fold(0.0, f64::max)
 }
 
-#[cfg(feature = "advise")]
 #[test]
 fn advice_tells_of_each_multiple_what_the_steps_add_and_which_friction_masks_it() {
     use kickdrift::advise::{Adds, Scheme, TIMES};
@@ -319,7 +318,6 @@ fn advice_tells_of_each_multiple_what_the_steps_add_and_which_friction_masks_it(
     assert_eq!(at.largest, fails.and_then(|k| k.checked_sub(1)).map(|k| at.ladder[k].outer.clone()));
 }
 
-#[cfg(feature = "advise")]
 #[test]
 fn forces_that_do_not_grow_by_themselves_are_to_be_stable_with_their_steps() {
     use kickdrift::advise::{Adds, Scheme};

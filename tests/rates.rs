@@ -1,6 +1,5 @@
 //! Growth rates of systems against Gelfand's formula: ln ρ(Q) = lim ln ‖Q^m‖/m over powers of the exact full period, squared a hundred times
 //! in integers of many bits. No eigenvalue, no half period, no polynomial is asked.
-#![cfg(feature = "system")]
 
 use kickdrift::number::Rational;
 use kickdrift::number::rational::{ratio, to_f64};

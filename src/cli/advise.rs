@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use super::args::Common;
 use super::paper::Paper;
 use super::system::{arrays, source};
-use crate::error::{Error, Result};
-use crate::file;
-use crate::format::Format;
-use crate::question::{Advise, Question, Work};
+use documents::format::Format;
+use documents::question::{Advise, Question, Work};
+use number::error::{Error, Result};
+use number::file;
 
 /// Flags of `advise`.
 ///

@@ -5,19 +5,16 @@ use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-use clap::ValueEnum;
-use clap::builder::PossibleValue;
-
-use crate::error::{Error, Result, visible};
-use crate::format::Format;
-use crate::map::Products;
-use crate::number::Laurent;
-use crate::question::{Map, StepRange, flag};
-use crate::report::document::{Document, Layout};
-use crate::report::file::{is_captured, write_output};
-use crate::report::latex::Float;
-use crate::report::map::needed;
-use crate::verdict::Limits;
+use clocks::map::Products;
+use clocks::verdict::Limits;
+use documents::format::Format;
+use documents::question::{Map, StepRange, flag};
+use documents::report::document::{Document, Layout};
+use documents::report::file::{is_captured, write_output};
+use documents::report::latex::Float;
+use documents::report::map::needed;
+use number::Laurent;
+use number::error::{Error, Result, visible};
 
 /// Flags of every command.
 #[derive(Debug, clap::Args)]
@@ -49,17 +46,6 @@ pub struct Common {
 /// A parser of values whose errors name the field already.
 pub fn from_str<T: FromStr<Err = Error>>(text: &str) -> std::result::Result<T, String> {
     text.parse().map_err(|error: Error| error.remedy().to_string())
-}
-
-/// The formats that can be asked for by name; figures and arrays are asked for by the file's extension.
-impl ValueEnum for Format {
-    fn value_variants<'a>() -> &'a [Self] {
-        &[Format::Text, Format::Json, Format::Csv, Format::Latex]
-    }
-
-    fn to_possible_value(&self) -> Option<PossibleValue> {
-        Some(PossibleValue::new(self.name()))
-    }
 }
 
 /// That none of these flags is given, which are of no use here.

@@ -4,11 +4,11 @@ use clap::{ArgMatches, Args, Command, FromArgMatches};
 
 use super::args::{Columns, Common};
 use super::help::below;
-use super::progress::{announce, progress};
-use crate::error::Error;
-use crate::format::Format;
-use crate::question::{Question, Watch, Work};
-use crate::tongue::Progress;
+use super::progress::{Shown, announce, progress};
+use clocks::tongue::Progress;
+use documents::format::Format;
+use documents::question::{Question, Watch, Work};
+use number::error::Error;
 
 /// The flags of a question, and of its table.
 #[derive(Debug)]
@@ -75,6 +75,6 @@ impl Watch for Common {
     }
 
     fn count(&self, length: u64, things: &str) -> Box<dyn Progress + '_> {
-        Box::new(progress(self.quiet, length, things))
+        Box::new(Shown(progress(self.quiet, length, things)))
     }
 }

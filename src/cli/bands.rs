@@ -2,10 +2,10 @@
 
 use super::args::{Columns, Common};
 use super::paper::Paper;
-use crate::error::Result;
-use crate::format::Format;
-use crate::question::{Bands, Question};
-use crate::report::bands;
+use documents::format::Format;
+use documents::question::{Bands, Question};
+use documents::report::bands;
+use number::error::Result;
 
 /// Flags of `bands`: the question, its table, its figure.
 #[derive(Debug, clap::Args)]

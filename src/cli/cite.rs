@@ -3,9 +3,9 @@
 use clap::ValueEnum;
 
 use super::args::Common;
-use crate::error::{Error, Result};
-use crate::format::Format;
-use crate::report::file::write_output;
+use documents::format::Format;
+use documents::report::file::write_output;
+use number::error::{Error, Result};
 
 /// The files of the source from which this program was built; a test holds one to the other.
 const CITATION: &str = include_str!("../../CITATION.cff");

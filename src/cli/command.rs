@@ -3,7 +3,7 @@
 use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, Command, ValueHint};
 
-use crate::report::text::quoted;
+use documents::report::text::quoted;
 
 /// Flags that change no byte of a figure: where it goes, how it is computed.
 const ELSEWHERE: [&str; 7] = ["output", "threads", "quiet", "budget", "resume", "certificate", "format"];

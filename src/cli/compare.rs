@@ -2,11 +2,11 @@
 
 use super::args::{self, Columns, Common};
 use super::paper::Paper;
-use crate::error::{Error, Result};
-use crate::format::Format;
-use crate::number::Laurent;
-use crate::number::Rational;
-use crate::question::{Compare, CompareMethods, Question, flag};
+use documents::format::Format;
+use documents::question::{Compare, CompareMethods, Question, flag};
+use number::Laurent;
+use number::Rational;
+use number::error::{Error, Result};
 
 /// Flags of `compare`: either a grid with both stiffnesses, or --max-sum with --rho.
 #[derive(Debug, clap::Args)]

@@ -4,14 +4,14 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use super::args::Common;
-use crate::error::{Error, Result};
 use crate::explore::Session;
 use crate::explore::serve::Server;
-use crate::file;
-use crate::number::{ExactSign, Laurent, Rational, Sign};
-use crate::question::{Scene, flag};
-use crate::report::file::{private, write_output};
-use crate::scene::{SystemScene, json};
+use documents::input::{SystemScene, json};
+use documents::question::{Scene, flag};
+use documents::report::file::{private, write_output};
+use number::error::{Error, Result};
+use number::file;
+use number::{ExactSign, Laurent, Rational, Sign};
 
 /// Flags of `explore`.
 #[derive(Debug, clap::Args)]

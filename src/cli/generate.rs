@@ -6,8 +6,8 @@ use clap::{Command, ValueEnum};
 use clap_complete::Shell;
 
 use super::args::Common;
-use crate::error::{Error, Result};
-use crate::report::file::{Folder, write_output};
+use documents::report::file::{Folder, write_output};
+use number::error::{Error, Result};
 
 /// Flags of `generate`.
 ///

@@ -2,7 +2,7 @@
 
 use clap::Command;
 
-use crate::question::{Bands, Question, Word};
+use documents::question::{Bands, Question, Word};
 
 const EXIT_CODES: &str = "Exit codes:
   0  done

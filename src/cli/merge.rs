@@ -4,9 +4,9 @@ use std::path::PathBuf;
 
 use super::args::{Columns, Common};
 use super::map::{Drawing, Output, Part, Source};
-use crate::error::{Error, Result};
-use crate::format::Format;
-use crate::question::Map;
+use documents::format::Format;
+use documents::question::Map;
+use number::error::{Error, Result};
 
 /// Flags of `merge`.
 #[derive(Debug, clap::Args)]

@@ -32,14 +32,14 @@ use std::process::ExitCode;
 use clap::error::ErrorKind;
 use clap::{Command as Program, CommandFactory, FromArgMatches, Parser, Subcommand};
 
-use crate::error::Result;
-use crate::format::Format;
-use crate::question::{Closings, Curves, Half, Polynomial, Proposition, Question};
-#[cfg(unix)]
-use crate::report::file::abandon;
-use crate::report::file::{captured, is_captured, stdout_is_closed, writable, write_output};
 use args::Common;
 use asked::{Asked, Default};
+use documents::format::Format;
+use documents::question::{Closings, Curves, Half, Polynomial, Proposition, Question};
+#[cfg(unix)]
+use documents::report::file::abandon;
+use documents::report::file::{captured, is_captured, stdout_is_closed, writable, write_output};
+use number::error::Result;
 use progress::Patience;
 
 /// Exact, certified linear stability of multiple-time-step integrators.

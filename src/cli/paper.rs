@@ -5,10 +5,10 @@ use std::path::Path;
 use plot::Figure;
 
 use super::args::{Common, unused};
-use crate::error::{Error, Result};
-use crate::format::Format;
-use crate::report::figure::file;
-use crate::report::file::write_output;
+use documents::format::Format;
+use documents::report::figure::file;
+use documents::report::file::write_output;
+use number::error::{Error, Result};
 
 /// Flags of every command that draws.
 #[derive(Clone, Debug, Default, clap::Args)]

@@ -6,9 +6,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::time::Duration;
 
+use clocks::tongue::Progress;
 use indicatif::{HumanCount, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
-use crate::error::visible;
+use number::error::visible;
 
 /// A bar that shows itself on a terminal only, and nowhere where `quiet`; `things` names what is counted.
 pub fn progress(quiet: bool, length: u64, things: &str) -> ProgressBar {
@@ -59,4 +60,17 @@ impl Patience {
 fn rate(state: &ProgressState, to: &mut dyn Write) {
     // A bar that cannot write its rate is no reason to stop.
     let _ = write!(to, "{}", HumanCount(state.per_sec() as u64));
+}
+
+/// Progress, shown by a bar.
+pub struct Shown(pub ProgressBar);
+
+impl Progress for Shown {
+    fn expect(&self, total: u64) {
+        self.0.set_length(total);
+    }
+
+    fn advance(&self, more: u64) {
+        self.0.inc(more);
+    }
 }

@@ -5,10 +5,10 @@ use std::path::PathBuf;
 use super::args::{Columns, Common};
 use super::paper::Paper;
 use super::system::{arrays, source};
-use crate::avi::Ends;
-use crate::error::Result;
-use crate::format::Format;
-use crate::question::{Displacement, Question, Simulate, Work, flag};
+use documents::format::Format;
+use documents::question::{Displacement, Question, Simulate, Work, flag};
+use number::error::Result;
+use systems::avi::Ends;
 
 /// Flags of `simulate`.
 #[derive(Debug, clap::Args)]

@@ -4,15 +4,15 @@ use std::path::{Path, PathBuf};
 
 use super::args::{Columns, Common, from_str};
 use super::paper::Paper;
-use crate::error::{Error, Result};
-use crate::file;
-use crate::format::Format;
-use crate::number::Rational;
-use crate::question::{Found, Question, System, Work, flag};
-use crate::report::system::Colouring;
-use crate::scene::{Arrays, Axis, Span, SystemFile};
-use crate::system::Holds;
-use crate::system::levels::Method;
+use documents::format::Format;
+use documents::input::{Arrays, Axis, Span, SystemFile};
+use documents::question::{Found, Question, System, Work, flag};
+use documents::report::system::Colouring;
+use number::Rational;
+use number::error::{Error, Result};
+use number::file;
+use systems::Holds;
+use systems::levels::Method;
 
 /// Flags of `system`.
 ///

@@ -2,7 +2,7 @@
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 
-use crate::error::{Error, is_like};
+use number::error::{Error, is_like};
 
 /// An error that the argument parser found, as one of ours.
 pub fn explained(error: &clap::Error, program: &clap::Command) -> Error {

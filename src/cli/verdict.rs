@@ -3,15 +3,15 @@
 use std::path::{Path, PathBuf};
 
 use super::args::{Columns, Common, Stiffness};
-use crate::error::{Error, Result};
-use crate::format::Format;
-use crate::number::{Laurent, Rational, rational};
-use crate::propagator::Oscillator;
-use crate::question::{self, Question, flag};
-use crate::report::certificate;
-use crate::report::file::write_output;
-use crate::schedule::Schedule;
-use crate::verdict::Verdict;
+use clocks::propagator::Oscillator;
+use clocks::schedule::Schedule;
+use clocks::verdict::Verdict;
+use documents::format::Format;
+use documents::question::{self, Question, flag};
+use documents::report::certificate;
+use documents::report::file::write_output;
+use number::error::{Error, Result};
+use number::{Laurent, Rational, rational};
 
 /// Flags of `verdict`.
 #[derive(Debug, clap::Args)]

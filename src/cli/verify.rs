@@ -7,11 +7,11 @@ use serde_json::{Value, json};
 
 use super::args::Common;
 use super::progress::{announce, progress};
-use crate::error::{Error, Kind, Result};
-use crate::file;
-use crate::format::Format;
-use crate::recheck::{Claim, Failure, Options, Outcome};
-use crate::report::document::Document;
+use documents::format::Format;
+use documents::report::document::Document;
+use documents::verify::{Claim, Failure, Options, Outcome};
+use number::error::{Error, Kind, Result};
+use number::file;
 
 /// Flags of `verify`.
 #[derive(Debug, clap::Args)]

@@ -6,12 +6,12 @@ use num_traits::Zero;
 
 use super::args::{Columns, Common};
 use super::verdict::within;
-use crate::error::{Error, Result};
-use crate::format::Format;
-use crate::number::Laurent;
-use crate::question::{Linted, Methods, Question, Word};
-use crate::report::certificate;
-use crate::report::file::write_output;
+use documents::format::Format;
+use documents::question::{Linted, Methods, Question, Word};
+use documents::report::certificate;
+use documents::report::file::write_output;
+use number::Laurent;
+use number::error::{Error, Result};
 
 /// Flags of `word`: the question, its table, or the catalogue in its place.
 #[derive(Debug, clap::Args)]

@@ -6,11 +6,11 @@ use super::frame::Frame;
 use super::query::Query;
 use super::reply::Reply;
 use super::session::Session;
-use crate::error::Result;
-use crate::number::parse::parse_integer_range;
-use crate::number::{Ball, Laurent, Rational, Real, rational};
-use crate::question::FAMILIES;
-use crate::resonance::{Curve, Families, Window};
+use clocks::resonance::{Curve, Families, Window};
+use documents::question::FAMILIES;
+use number::error::Result;
+use number::parse::parse_integer_range;
+use number::{Ball, Laurent, Rational, Real, rational};
 
 /// Points of a curve across a window.
 const SAMPLES: usize = 160;

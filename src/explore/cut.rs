@@ -8,13 +8,13 @@ use super::ray;
 use super::reply::Reply;
 use super::session::Session;
 use super::tile::code;
-use crate::error::{Error, Result};
-use crate::number::parse::{parse, parse_ratio, parse_rational};
-use crate::number::{Laurent, Rational};
-use crate::parallel::try_map;
-use crate::propagator::Oscillator;
-use crate::tongue::{Listing, Request, Selection, StepWindow, Stiffness};
-use crate::verdict::{Decision, Tier, decide_with_growth};
+use clocks::propagator::Oscillator;
+use clocks::tongue::{Listing, Request, Selection, StepWindow, Stiffness};
+use clocks::verdict::{Decision, Tier, decide_with_growth};
+use number::error::{Error, Result};
+use number::parallel::try_map;
+use number::parse::{parse, parse_ratio, parse_rational};
+use number::{Laurent, Rational};
 
 /// The quantity that is fixed along the line.
 enum Line {
@@ -67,7 +67,7 @@ pub(super) fn answer(session: &Session, query: &Query) -> Result<Reply> {
         _ => Value::Null,
     };
     Ok(Reply::json(&json!({
-        "x": xs.iter().map(crate::number::rational::to_f64).collect::<Vec<_>>(),
+        "x": xs.iter().map(number::rational::to_f64).collect::<Vec<_>>(),
         "axis": if matches!(line, Line::H1(_)) { "h2" } else { "h1" },
         "kind": found.iter().map(|(kind, _)| kind).collect::<Vec<_>>(),
         "rate": found.iter().map(|(_, rate)| rate).collect::<Vec<_>>(),

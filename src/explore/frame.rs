@@ -2,8 +2,8 @@
 
 use num_traits::ToPrimitive;
 
-use crate::number::{Laurent, Rational, rational};
-use crate::question::StepRange;
+use documents::question::StepRange;
+use number::{Laurent, Rational, rational};
 
 /// A window with rational ends; irrational ones are taken as the doubles nearest to them.
 pub(super) struct Frame {

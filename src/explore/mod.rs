@@ -48,9 +48,9 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-use crate::error::Result;
-use crate::parallel::stoppable;
 pub use assets::asset;
+use number::error::Result;
+use number::parallel::stoppable;
 use query::Query;
 pub use reply::Reply;
 pub use session::Session;

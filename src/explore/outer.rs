@@ -5,13 +5,13 @@ use serde_json::{Value, json};
 use super::query::{Query, count, positive, spaced};
 use super::reply::Reply;
 use super::session::Session;
-use crate::error::{Error, Kind, Result};
-use crate::number::parse::parse_rational_range;
-use crate::number::{Rational, rational};
-use crate::report::system::{Beside, document};
-use crate::scene::{Span, SystemScene};
-use crate::system::stretches::Stretch;
-use crate::system::{Analysis, Limits, Route};
+use documents::input::{Span, SystemScene};
+use documents::report::system::{Beside, document};
+use number::error::{Error, Kind, Result};
+use number::parse::parse_rational_range;
+use number::{Rational, rational};
+use systems::stretches::Stretch;
+use systems::{Analysis, Limits, Route};
 
 /// Products that all samples together may cost, some 10 s of a core.
 pub(super) const MOST_PRODUCTS: u64 = 20_000_000_000;

@@ -6,15 +6,15 @@ use super::query::{Query, positive};
 use super::ray::{self, Ray};
 use super::reply::Reply;
 use super::session::Session;
-use crate::error::{Error, Result};
-use crate::format::Format;
-use crate::number::parse::parse;
-use crate::number::rational::{ratio, simplest};
-use crate::number::{Laurent, Rational};
-use crate::propagator::Oscillator;
-use crate::question::{Decided, Question, Verdict, Work};
-use crate::report::certificate::coq;
-use crate::verdict::Limits;
+use clocks::propagator::Oscillator;
+use clocks::verdict::Limits;
+use documents::format::Format;
+use documents::question::{Decided, Question, Verdict, Work};
+use documents::report::certificate::coq;
+use number::error::{Error, Result};
+use number::parse::parse;
+use number::rational::{ratio, simplest};
+use number::{Laurent, Rational};
 
 /// Kicks that one tier may compose.
 pub(super) const MOST_KICKS: u64 = 3_000_000;
@@ -99,7 +99,7 @@ fn about(answer: &Decided) -> Result<(Value, Value, Value)> {
     let ray = rho.and_then(|rho| Ray::new(clocks.ratio(), &rho, oscillator.lambda1()));
     let Some(ray) = ray else { return Ok(Default::default()) };
     // On an edge, and where a tongue is closed, the tongue is that one.
-    let stable = verdict.kind() == crate::verdict::Kind::Elliptic;
+    let stable = verdict.kind() == clocks::verdict::Kind::Elliptic;
     let around = ray.around(clocks.fast(), stable)?;
     let value = |tongue: &Option<_>| tongue.as_ref().map_or(Value::Null, ray::value);
     Ok((value(&around.inside), value(&around.below), value(&around.above)))

@@ -5,11 +5,11 @@ use std::collections::BTreeMap;
 use num_bigint::BigUint;
 
 use super::session::Session;
-use crate::error::{Error, Result};
-use crate::number::parse::{parse, parse_range, parse_rational};
-use crate::number::{Laurent, Rational};
-use crate::question::StepRange;
-use crate::tongue::Stiffness;
+use clocks::tongue::Stiffness;
+use documents::question::StepRange;
+use number::error::{Error, Result};
+use number::parse::{parse, parse_range, parse_rational};
+use number::{Laurent, Rational};
 
 /// Parameters of one address, each given once.
 #[derive(Debug, Default)]

@@ -4,11 +4,11 @@ use std::cmp::Ordering;
 
 use serde_json::{Value, json};
 
-use crate::error::Result;
-use crate::number::{Laurent, Ratio, Rational, Real};
-use crate::parallel::go_on;
-use crate::report::document::enclosure;
-use crate::tongue::{Bounds, Edge, Request, Tongue, TongueEdge, Tongues};
+use clocks::tongue::{Bounds, Edge, Request, Tongue, TongueEdge, Tongues};
+use documents::report::document::enclosure;
+use number::error::Result;
+use number::parallel::go_on;
+use number::{Laurent, Ratio, Rational, Real};
 
 /// Masses and springs that are laid out, at most.
 const MOST: u64 = 20_000;
@@ -33,7 +33,8 @@ impl Ray {
     /// `None` where there are none by theory (ρ < 0) or too many to lay out.
     pub fn new(ratio: Ratio, rho: &Rational, lambda1: &Laurent) -> Option<Ray> {
         let request = Request { lambda1: Some(lambda1.clone()), ..Request::default() };
-        let request = Request { wanted: crate::tongue::Wanted { family: true, ..request.wanted }, ..request };
+        let request =
+            Request { wanted: clocks::tongue::Wanted { family: true, ..request.wanted }, ..request };
         (ratio.kicks() <= MOST)
             .then(|| Tongues::new(ratio, rho).ok())
             .flatten()

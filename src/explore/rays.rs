@@ -2,7 +2,7 @@
 
 use num_bigint::BigInt;
 
-use crate::number::{Ratio, Rational};
+use number::{Ratio, Rational};
 
 /// All p/q in lowest terms with p + q ≤ `most` in a closed range of ratios (no upper end: `None`), by p + q, then p; `None` where
 /// there are more than `count`.
@@ -42,7 +42,7 @@ pub(super) fn ratios(range: &(Rational, Option<Rational>), most: u64, count: usi
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::number::rational::ratio;
+    use number::rational::ratio;
 
     #[test]
     fn the_tree_gives_what_trial_does() {

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use serde_json::{Value, json};
 
-use crate::error::{Error, Kind};
+use number::error::{Error, Kind};
 
 /// An answer: an HTTP status, a media type, bytes, and the name of a file where it is one to keep.
 #[derive(Clone, Debug)]

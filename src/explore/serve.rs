@@ -28,7 +28,7 @@ use super::listen::{Bounded, Caller, OPEN};
 use super::reply::Reply;
 use super::session::Session;
 use super::{LONGEST, Question, ask, asset, assets, named, overdue};
-use crate::error::{Error, Result};
+use number::error::{Error, Result};
 
 /// The longest path and query, in bytes.
 const LONGEST_ADDRESS: usize = 8192;

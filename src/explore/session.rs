@@ -2,12 +2,12 @@
 
 use num_traits::Pow;
 
-use crate::error::{Error, Result};
-use crate::number::parse::parse;
-use crate::number::{ExactSign, Laurent, Rational, Sign, rational};
-use crate::propagator::Oscillator;
-use crate::question::{Scene, StepRange};
-use crate::scene::SystemScene;
+use clocks::propagator::Oscillator;
+use documents::input::SystemScene;
+use documents::question::{Scene, StepRange};
+use number::error::{Error, Result};
+use number::parse::parse;
+use number::{ExactSign, Laurent, Rational, Sign, rational};
 
 /// The stiffnesses, window and system that a page starts on; every question may name others.
 #[derive(Debug)]

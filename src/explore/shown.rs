@@ -5,14 +5,14 @@ use serde_json::json;
 use super::query::{Query, positive};
 use super::reply::Reply;
 use super::session::Session;
-use crate::error::{Error, Result};
-use crate::format::Format;
-use crate::map::Products;
-use crate::number::Laurent;
-use crate::question::{FAMILIES, Map, Question, Scene, Work, shown_range};
-use crate::report::figure::file;
-use crate::report::map::Counts;
-use crate::report::plane::{Chart, Colouring, window};
+use clocks::map::Products;
+use documents::format::Format;
+use documents::question::{FAMILIES, Map, Question, Scene, Work, shown_range};
+use documents::report::figure::file;
+use documents::report::map::Counts;
+use documents::report::plane::{Chart, Colouring, window};
+use number::Laurent;
+use number::error::{Error, Result};
 
 /// Pairs and kicks of a picture.
 const MOST_PAIRS: u64 = 4_000_000;

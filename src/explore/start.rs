@@ -6,9 +6,9 @@ use super::query::Query;
 use super::reply::Reply;
 use super::session::Session;
 use super::{point, tile};
-use crate::error::Result;
-use crate::number::Laurent;
-use crate::question::shown_range;
+use documents::question::shown_range;
+use number::Laurent;
+use number::error::Result;
 
 /// The session, or the plane of other stiffnesses: exact texts, and doubles to draw by.
 pub(super) fn answer(session: &Session, query: &Query) -> Result<Reply> {

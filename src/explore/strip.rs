@@ -5,12 +5,12 @@ use serde_json::{Value, json};
 use super::query::{Query, count, spaced};
 use super::reply::Reply;
 use super::session::Session;
-use crate::error::{Error, Result};
-use crate::number::parse::{parse_ratio, parse_rational_range};
-use crate::number::{Ratio, Rational, rational};
-use crate::parallel::try_map;
-use crate::resonance::dominant_family;
-use crate::tongue::{Edge, Gap, Search, Tongues, closings};
+use clocks::resonance::dominant_family;
+use clocks::tongue::{Edge, Gap, Search, Tongues, closings};
+use number::error::{Error, Result};
+use number::parallel::try_map;
+use number::parse::{parse_ratio, parse_rational_range};
+use number::{Ratio, Rational, rational};
 
 /// The longest period, p + q, and that up to which closings are searched too.
 pub(super) const MOST_KICKS: u64 = 200;
@@ -60,8 +60,8 @@ fn tongue(ratio: Ratio, n: usize, gaps: &[Vec<Gap>]) -> Value {
 
 fn closed(ratio: Ratio, rho: (Rational, Rational), samples: usize) -> Result<Value> {
     let found = closings(ratio, &Search { m: None, rho, samples })?;
-    let point = |x: &crate::tongue::Enclosure| rational::to_f64(&x.middle());
-    let one = |own: &crate::tongue::Closing| {
+    let point = |x: &clocks::tongue::Enclosure| rational::to_f64(&x.middle());
+    let one = |own: &clocks::tongue::Closing| {
         let exact = own.exact.as_ref().map(|(s, rho)| [s.to_string(), rho.to_string()]);
         json!({"m": own.m, "s": point(&own.s), "rho": point(&own.rho), "exact": exact})
     };

@@ -11,13 +11,13 @@ use super::point::LIMITS;
 use super::query::{Query, count, positive, whole};
 use super::reply::Reply;
 use super::session::Session;
-use crate::error::{Error, Result};
-use crate::map::{Band, Enclosure, Grid, Map, Products, Resources};
-use crate::number::{Laurent, Rational};
-use crate::parallel::try_map;
-use crate::propagator::Oscillator;
-use crate::resonance::dominant_family;
-use crate::verdict::{Kind, Tier, Verdict, decide_steps, decide_with_growth};
+use clocks::map::{Band, Enclosure, Grid, Map, Products, Resources};
+use clocks::propagator::Oscillator;
+use clocks::resonance::dominant_family;
+use clocks::verdict::{Kind, Tier, Verdict, decide_steps, decide_with_growth};
+use number::error::{Error, Result};
+use number::parallel::try_map;
+use number::{Laurent, Rational};
 
 /// Kicks side by side that a tile of verdicts kick by kick may take as long as: about two seconds of a core.
 pub(super) const MOST_KICKS: u64 = 4_000_000_000;

@@ -7,10 +7,10 @@ use super::query::{Query, count, positive};
 use super::rays::ratios;
 use super::reply::Reply;
 use super::session::Session;
-use crate::error::Result;
-use crate::number::{Ratio, Rational, rational};
-use crate::question::StepRange;
-use crate::tongue::{Bounds, Listing, Request, Selection, StepWindow, Stiffness, Tongue, TongueEdge};
+use clocks::tongue::{Bounds, Listing, Request, Selection, StepWindow, Stiffness, Tongue, TongueEdge};
+use documents::question::StepRange;
+use number::error::Result;
+use number::{Ratio, Rational, rational};
 
 /// Segments, about, that a page can draw while it is dragged.
 const MOST_SEGMENTS: f64 = 3000.0;

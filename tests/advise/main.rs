@@ -1,9 +1,6 @@
 //! Which steps are safe: the worked cases, bands of periods, and what the engines write.
 
-#![cfg(feature = "advise")]
-
 mod levers;
-#[cfg(feature = "npz")]
 mod molecules;
 mod published;
 mod units;

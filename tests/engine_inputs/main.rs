@@ -2,8 +2,6 @@
 //!
 //! LAMMPS and OpenMM were asked: inputs and scripts ran, and the steps are those that they took. The others' rules are in the files.
 
-#![cfg(feature = "advise")]
-
 mod ipi;
 mod lines;
 mod logs;

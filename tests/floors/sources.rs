@@ -22,10 +22,8 @@ pub struct Import {
 /// One source.
 #[derive(Debug, Default)]
 pub struct Source {
-    /// Its path below src/; below the repository for the sources of other crates.
+    /// Its path below src/; below the repository in crates/.
     pub file: String,
-    /// Its module's path: `tongue`, `string` for src/tongue/string.rs, `plot`, `axis` for crates/plot/src/axis.rs.
-    pub module: Vec<String>,
     pub imports: Vec<Import>,
     /// All names in its code, `use` items and tests apart.
     names: BTreeSet<String>,
@@ -67,7 +65,7 @@ impl Sources {
         };
         let crates: BTreeSet<String> = texts.iter().zip(&modules).filter_map(apart).collect();
         let read = |((file, text), module): (&(String, String), &Vec<String>)| {
-            let mut source = Source { file: file.clone(), module: module.clone(), ..Source::default() };
+            let mut source = Source { file: file.clone(), ..Source::default() };
             let of_library = !file.starts_with(CRATES);
             let root = if of_library { &[][..] } else { &module[..1] };
             let module = module.clone();

@@ -16,7 +16,6 @@ fn doubles_are_taken_to_their_last_bit_or_refused() {
     );
 }
 
-#[cfg(feature = "serde")]
 #[test]
 fn exact_numbers_survive_a_document() {
     let (x, ratio): (Laurent, Ratio) = ("pi^2/25 - 3".parse().unwrap(), "7/2".parse().unwrap());

@@ -2,12 +2,12 @@
 
 use crate::cli::args::unused;
 use crate::cli::paper::Paper;
-use crate::error::Result;
-use crate::format::Format;
-use crate::map::{Grid, Products};
-use crate::question::{FAMILIES, flag};
-use crate::report::plane::{Colouring, window};
-use crate::resonance::{Curve, Families};
+use clocks::map::{Grid, Products};
+use clocks::resonance::{Curve, Families};
+use documents::format::Format;
+use documents::question::{FAMILIES, flag};
+use documents::report::plane::{Colouring, window};
+use number::error::Result;
 
 /// Flags of figures.
 #[derive(Debug, clap::Args)]

@@ -8,11 +8,11 @@ mod source;
 use std::path::PathBuf;
 
 use super::args::{self, Columns, Common, Stiffness};
-use crate::error::{Error, Result};
-use crate::format::Format;
-use crate::map::{Products, Shard};
-use crate::question::{Map, flag};
+use clocks::map::{Products, Shard};
+use documents::format::Format;
+use documents::question::{Map, flag};
 pub use drawing::Drawing;
+use number::error::{Error, Result};
 pub use output::Output;
 pub use part::Part;
 pub use source::Source;

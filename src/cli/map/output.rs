@@ -4,15 +4,15 @@ use std::path::Path;
 
 use super::{Drawing, Source};
 use crate::cli::args::{Columns, Common};
-use crate::error::{Error, Result};
-use crate::format::Format;
-use crate::map::{Band, Grid};
-use crate::question::{Fields, Map, Question};
-use crate::report::csv;
-use crate::report::document::Layout;
-use crate::report::file::{write_output, write_with};
-use crate::report::map::{self as report, Counts, MapArrays, MapTally, Marked, Rows, marked};
-use crate::report::plane::Chart;
+use clocks::map::{Band, Grid};
+use documents::format::Format;
+use documents::question::{Fields, Map, Question};
+use documents::report::csv;
+use documents::report::document::Layout;
+use documents::report::file::{write_output, write_with};
+use documents::report::map::{self as report, Counts, MapArrays, MapTally, Marked, Rows, marked};
+use documents::report::plane::Chart;
+use number::error::{Error, Result};
 
 /// A result on its way out.
 pub struct Output<'a> {

@@ -4,12 +4,12 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Map as Input, Value};
 
-use crate::error::{Error, Result};
-use crate::file;
-use crate::map::Store;
-use crate::question::{Fields, Map};
-use crate::report::file::write_output;
-use crate::scene::json;
+use clocks::map::Store;
+use documents::input::json;
+use documents::question::{Fields, Map};
+use documents::report::file::write_output;
+use number::error::{Error, Result};
+use number::file;
 
 /// The file that names the map, and what stands in it.
 const NAME: &str = "map.json";

@@ -2,9 +2,9 @@
 
 use crate::cli::args::Common;
 use crate::cli::progress::progress;
-use crate::error::Result;
-use crate::map::{Band, Grid, Map, Products, Resources, Shard, Store, merge};
-use crate::verdict::Limits;
+use clocks::map::{Band, Grid, Map, Products, Resources, Shard, Store, merge};
+use clocks::verdict::Limits;
+use number::error::Result;
 
 /// Bands in order.
 pub enum Source {

@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 
 use super::args::Common;
 use super::paper::Paper;
-use crate::error::{Error, Result};
-use crate::file;
-use crate::format::Format;
-use crate::question::{LONGEST_SCENE, Scene};
-use crate::report::file::{Folder, write_output};
+use documents::format::Format;
+use documents::question::{LONGEST_SCENE, Scene};
+use documents::report::file::{Folder, write_output};
+use number::error::{Error, Result};
+use number::file;
 use work::Work;
 
 /// Flags of `run`.

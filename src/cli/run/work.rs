@@ -10,17 +10,17 @@ use plot::Figure;
 use crate::cli::args::{Common, TO_SEE_ROWS};
 use crate::cli::paper::Paper;
 use crate::cli::tongues::{self, Atlas};
-use crate::error::Result;
-use crate::format::Format;
-use crate::map::{Grid, Products};
-use crate::question::{Colour, Map, Product, Question, Scene, Want};
-use crate::report::document::Document;
-use crate::report::file::write_output;
-use crate::report::map::{MapArrays, Marked, Rows, marked};
-use crate::report::plane::{self, Cloud};
-use crate::report::{map, tongues::TongueTally};
-use crate::resonance::{Curve, Window};
-use crate::tongue::Wanted;
+use clocks::map::{Grid, Products};
+use clocks::resonance::{Curve, Window};
+use clocks::tongue::Wanted;
+use documents::format::Format;
+use documents::question::{Colour, Map, Product, Question, Scene, Want};
+use documents::report::document::Document;
+use documents::report::file::write_output;
+use documents::report::map::{MapArrays, Marked, Rows, marked};
+use documents::report::plane::{self, Cloud};
+use documents::report::{map, tongues::TongueTally};
+use number::error::Result;
 
 /// The parts that the products are made of, each computed when first asked for.
 pub struct Work<'a> {

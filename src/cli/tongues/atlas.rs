@@ -5,13 +5,13 @@ use plot::{Figure, Foot};
 use super::output::Stream;
 use crate::cli::args::Common;
 use crate::cli::paper::Paper;
-use crate::error::{Error, Result};
-use crate::format::Format;
-use crate::number::Laurent;
-use crate::question::{Colour, Ratios};
-use crate::report::plane::{self, Segment};
-use crate::resonance::{Curve, Families, Window};
-use crate::tongue::{Bounds, Range, Tongue, TongueEdge};
+use clocks::resonance::{Curve, Families, Window};
+use clocks::tongue::{Bounds, Range, Tongue, TongueEdge};
+use documents::format::Format;
+use documents::question::{Colour, Ratios};
+use documents::report::plane::{self, Segment};
+use number::Laurent;
+use number::error::{Error, Result};
 
 /// A question whose answer is drawn.
 pub struct Atlas<'a> {
@@ -106,7 +106,7 @@ impl<'a> Atlas<'a> {
 }
 
 /// θ/π of an angle strictly between 0 and π that is a rational multiple of π.
-pub fn share_of_pi(theta: &Laurent) -> Result<crate::number::Rational> {
+pub fn share_of_pi(theta: &Laurent) -> Result<number::Rational> {
     use num_traits::{One, Signed};
     let share = theta.as_monomial().filter(|(power, _)| *power == 1).map(|(_, share)| share.clone());
     share.filter(|share| share.is_positive() && *share < One::one()).ok_or_else(|| {

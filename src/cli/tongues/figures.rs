@@ -4,12 +4,12 @@ use num_traits::Zero;
 use plot::{Figure, Foot, typeset};
 
 use super::atlas::{below, share_of_pi};
-use crate::error::{Error, Result};
-use crate::number::{Laurent, Ratio, Rational, rational};
-use crate::question::Ratios;
-use crate::report::{strength, tongues};
-use crate::tongue::sampled::{self, Diagram, LARGEST_S, Measured, Trace};
-use crate::tongue::{Labels, Stiffness};
+use clocks::tongue::sampled::{self, Diagram, LARGEST_S, Measured, Trace};
+use clocks::tongue::{Labels, Stiffness};
+use documents::question::Ratios;
+use documents::report::{strength, tongues};
+use number::error::{Error, Result};
+use number::{Laurent, Ratio, Rational, rational};
 
 /// Values of ρ of a diagram: closer than lines are wide, on paper.
 const SAMPLES: u32 = 120;

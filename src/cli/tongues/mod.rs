@@ -11,16 +11,18 @@ use clap::ValueEnum;
 use super::args::{Common, unused};
 use super::paper::Paper;
 use super::verdict::{EDGES_WORTH_CERTIFYING, within};
-use crate::error::{Error, Result};
-use crate::format::Format;
-use crate::number::rational::ratio;
-use crate::number::{Laurent, Ratio, Rational};
-use crate::question::{Colour, MOST_SUM, Question as _, Ratios, Survey, THINNEST, Tongues as Asked, flag};
-use crate::report::certificate::coq_of_tongue;
-use crate::report::file::write_output;
-use crate::report::tongues::needed;
-use crate::tongue::{self, Selection, Stiffness, Tongues, Wanted};
 pub use atlas::Atlas;
+use clocks::tongue::{self, Selection, Stiffness, Tongues, Wanted};
+use documents::format::Format;
+use documents::question::{
+    Colour, MOST_SUM, Question as _, Ratios, Survey, THINNEST, Tongues as Asked, flag,
+};
+use documents::report::certificate::coq_of_tongue;
+use documents::report::file::write_output;
+use documents::report::tongues::needed;
+use number::error::{Error, Result};
+use number::rational::ratio;
+use number::{Laurent, Ratio, Rational};
 pub use output::{Stream, put};
 
 /// Flags of `tongues`: a ratio or all of them, and rho or both stiffnesses.

@@ -2,21 +2,19 @@
 
 use std::io::Write;
 
-use indicatif::ProgressBar;
-
 use crate::cli::args::{Common, TO_SEE_ROWS};
-use crate::cli::progress::progress;
-use crate::error::{Error, Result};
-use crate::format::Format;
-use crate::parallel::map;
-use crate::question::{Fields, Ratios, Tongues};
-use crate::report::csv;
-use crate::report::document::{Document, Layout};
-use crate::report::file::write_with;
-use crate::report::stream::JsonRows;
-use crate::report::table::Choice;
-use crate::report::tongues::{CAPTION, CAPTION_LATEX, TongueTally, record};
-use crate::tongue::{self, Progress, Selection, StepWindow, Tongue, Wanted};
+use crate::cli::progress::{Shown, progress};
+use clocks::tongue::{self, Selection, StepWindow, Tongue, Wanted};
+use documents::format::Format;
+use documents::question::{Fields, Ratios, Tongues};
+use documents::report::csv;
+use documents::report::document::{Document, Layout};
+use documents::report::file::write_with;
+use documents::report::stream::JsonRows;
+use documents::report::table::Choice;
+use documents::report::tongues::{CAPTION, CAPTION_LATEX, TongueTally, record};
+use number::error::{Error, Result};
+use number::parallel::map;
 
 /// All that `tongues` asks.
 #[derive(Clone, Debug)]
@@ -33,16 +31,6 @@ const MOST: u64 = 30_000_000;
 /// Rows that a LaTeX table holds at most; text shows them up to a number that fits a terminal.
 const MOST_ROWS: u64 = 100_000;
 const ROWS_FOR_PEOPLE: u64 = 60;
-
-impl Progress for ProgressBar {
-    fn expect(&self, total: u64) {
-        self.set_length(total);
-    }
-
-    fn advance(&self, more: u64) {
-        self.inc(more);
-    }
-}
 
 impl Stream {
     /// The question, if it makes sense, with what is `wanted` of each tongue.
@@ -70,7 +58,7 @@ impl Stream {
     pub fn each(&self, common: &Common, see: impl FnMut(&[Tongue]) -> Result<()>) -> Result<()> {
         let count = self.asked.ratios.len() as u64;
         let bar = progress(common.quiet, count, if count == 1 { "tongues" } else { "ratios" });
-        self.asked.each(&bar, see)?;
+        self.asked.each(&Shown(bar.clone()), see)?;
         bar.finish_and_clear();
         Ok(())
     }

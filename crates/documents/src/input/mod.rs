@@ -1,0 +1,9 @@
+//! Input documents: systems as a person writes them, as library types; JSON in which no key stands twice.
+
+pub mod json;
+pub mod kind;
+mod system;
+
+pub(crate) use system::OUTER;
+pub use system::of_archive;
+pub use system::{Array, Arrays, Axis, NEAREST, Scan, Span, SystemFile, SystemScene};

@@ -1,0 +1,123 @@
+//! Local time steps in a system file: leapfrog as codes for waves have it, AVI.
+//!
+//! ```json
+//! "scheme": "lts",
+//! "levels": [{"fine": [4, 5, 6], "substeps": 2}, {"fine": [5], "substeps": 3}]
+//! ```
+//!
+//! * `scheme`: `lts`, leapfrog whose forces on what is not fine stand still; `avi`, each element a clock of its own.
+//! * All potentials have one step, dt, and masses are diagonal.
+//! * `levels`, the coarsest first: `fine`, the degrees of freedom that take `substeps` in a step of the level above, or `elements` of a mesh,
+//!   with all their nodes, in `avi` these alone. Each level is a part of the one above.
+
+use std::collections::BTreeSet;
+
+use super::document::{Document, LevelDocument, MeshDocument, Number};
+use number::error::{Error, Result};
+use systems::{ElementSteps, Level, LocalSteps, Model, Scheme, System};
+
+impl Document {
+    /// The scheme that the file names, with its levels.
+    pub fn named_scheme(&self) -> Result<Option<(Scheme, &[LevelDocument])>> {
+        match (self.scheme.as_deref().map(str::parse).transpose()?, &self.levels) {
+            (None, None) => Ok(None),
+            (Some(scheme), Some(levels)) => Ok(Some((scheme, levels))),
+            (Some(_), None) => {
+                let remedy = "give levels, as [{\"fine\": [3, 4], \"substeps\": 2}]";
+                Err(Error::input("levels", "missing", remedy))
+            }
+            (None, Some(_)) => {
+                let remedy = "are those of a scheme: give \"scheme\": \"lts\", too, or avi";
+                Err(Error::input("levels", "given", remedy))
+            }
+        }
+    }
+
+    /// The model with the scheme of the file, where it names one; `moving` are node and axis of each degree of freedom of a mesh.
+    pub fn with_scheme(&self, model: Model, moving: &[(usize, usize)]) -> Result<Model> {
+        let Some((scheme, levels)) = self.named_scheme()? else { return Ok(model) };
+        let Model::Rational(plain) = model else {
+            let remedy = "is for rational numbers in the file, without pi";
+            return Err(Error::input("scheme", scheme.name(), remedy));
+        };
+        if scheme == Scheme::Avi {
+            // Its clocks are those of the elements already.
+            let Some(mesh) = &self.mesh else {
+                let remedy = "needs a mesh, whose elements take the steps; without one give each potential its own step and leave out scheme";
+                return Err(Error::input("scheme", "avi", remedy));
+            };
+            let elements = ElementSteps::new(plain.clone(), mesh.elements.len(), mesh.levels(levels)?)?;
+            return Ok(Model::Elements(plain, elements));
+        }
+        if self.friction.is_some() {
+            let remedy = "has no place in a scheme of local steps: leave it out";
+            return Err(Error::input("friction", "given", remedy));
+        }
+        let level = |(l, own)| self.level(l, own, &plain, moving);
+        let levels = levels.iter().enumerate().map(level).collect::<Result<_>>()?;
+        Ok(Model::LocalSteps(LocalSteps::new(plain, levels)?))
+    }
+
+    fn level(
+        &self,
+        l: usize,
+        own: &LevelDocument,
+        plain: &System,
+        moving: &[(usize, usize)],
+    ) -> Result<Level> {
+        let field = |name: &str| format!("levels[{l}].{name}");
+        let fine = match (&own.fine, &own.elements, &self.mesh) {
+            (Some(fine), None, _) => indices(&field("fine"), fine, plain.size())?,
+            (None, Some(elements), Some(mesh)) => {
+                let elements = indices(&field("elements"), elements, mesh.elements.len())?;
+                mesh.degrees_of_freedom(&elements, moving)?
+            }
+            (fine, elements, _) => {
+                let given = if fine.is_some() && elements.is_some() { "both" } else { "none" };
+                let remedy = "give fine, the degrees of freedom, or elements, those of a mesh, one of them";
+                return Err(Error::input(&format!("levels[{l}]"), given, remedy));
+            }
+        };
+        Ok(Level { fine, substeps: own.count(l)? })
+    }
+}
+
+fn indices(field: &str, all: &[Number], n: usize) -> Result<BTreeSet<usize>> {
+    all.iter().map(|i| i.index(field, n)).collect()
+}
+
+impl LevelDocument {
+    fn count(&self, l: usize) -> Result<u32> {
+        let field = format!("levels[{l}].substeps");
+        Ok(self.substeps.count(&field, LocalSteps::MOST_SUBSTEPS as usize)? as u32)
+    }
+}
+
+impl MeshDocument {
+    /// Levels of elements.
+    pub fn levels(&self, levels: &[LevelDocument]) -> Result<Vec<Level>> {
+        let level = |(l, own): (usize, &LevelDocument)| {
+            let (Some(elements), None) = (&own.elements, &own.fine) else {
+                let remedy =
+                    "name elements: with avi elements have steps of their own, degrees of freedom have none";
+                return Err(Error::input(&format!("levels[{l}]"), "no elements", remedy));
+            };
+            let fine = indices(&format!("levels[{l}].elements"), elements, self.elements.len())?;
+            Ok(Level { fine, substeps: own.count(l)? })
+        };
+        levels.iter().enumerate().map(level).collect()
+    }
+
+    /// The degrees of freedom of all nodes of some elements.
+    fn degrees_of_freedom(
+        &self,
+        elements: &BTreeSet<usize>,
+        moving: &[(usize, usize)],
+    ) -> Result<BTreeSet<usize>> {
+        let nodes = elements.iter().flat_map(|&e| &self.elements[e]);
+        let nodes = nodes
+            .map(|node| node.index("mesh.elements", self.nodes.len()))
+            .collect::<Result<BTreeSet<_>>>()?;
+        Ok((0..moving.len()).filter(|&k| nodes.contains(&moving[k].0)).collect())
+    }
+}

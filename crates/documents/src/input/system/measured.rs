@@ -1,0 +1,431 @@
+//! Stiffnesses by reference to NumPy's files: Hessians as people measure them, in doubles.
+//!
+//! ```json
+//! {
+//!     "schema": "kickdrift/system/1",
+//!     "mass_weighted": true,
+//!     "masses": {"npz": "water.npz", "array": "masses"},
+//!     "positions": {"npz": "water.npz", "array": "positions"},
+//!     "accuracy": 1e-6,
+//!     "potentials": [
+//!         {"name": "bonded", "step": "1/2000", "stiffness": {"npz": "water.npz", "array": "fast"}},
+//!         {"name": "rest", "step": "1/250", "stiffness": {"npy": "slow.npy"}}
+//!     ]
+//! }
+//! ```
+//!
+//! `masses` are a number for each degree of freedom or for each three, or a diagonal matrix of these; `mass_matrix` is another name for that.
+//!
+//! Rigid motions are projected out: by `positions` three translations and three rotations, with `"periodic": true` the translations alone,
+//! else the common null space of all stiffnesses, if it is no larger than that. What a stiffness holds is not rigid, each by its own accuracy: then
+//! the file is refused, or the motion stays (see [`Removed`](systems::Removed)).
+//!
+//! `"hydrogen_mass": 3.024` makes hydrogens (up to 1.1) heavier at the cost of the nearest heavy particle. `"constraints": "h-bonds"`, or pairs,
+//! holds distances; then each potential has a `force` by reference, at the positions and not mass-weighted (see `held`).
+//! `"method": "molly-short"` integrates two levels otherwise than by kicks and drifts: the force of the shorter step is followed exactly, or by the
+//! midpoint rule, over the whole longer one, and the other force kicks, filtered (see [`Method`](systems::levels::Method)).
+//! `"symmetric": false` says that a force is no gradient, as one that is learned and predicted directly: then its Jacobian, minus the derivative
+//! of the force, is no Hessian, and its asymmetry no error.
+//! Of particles in space `labels` may be of three words, as `H1 HOH 4`; `elements` are their symbols, `bonded` pairs of them: by these, or by
+//! masses and distances, the motions of a molecule are named.
+//! `"along_orbit": true` says that the Hessians are those along half a period of the integrator's own orbit, which is at rest at t = 0 and at T/2: each
+//! `stiffness` is an array (k, n, n), one matrix for each kick of its clock from t = 0 to T/2, both counted, not mass-weighted. A free molecule has
+//! `positions` at t = 0 and `turned`, those at T/2, by which its rigid motions are set apart. In other coordinates than those of atoms `rigid` has these
+//! motions, an array (2, n, r): mass-weighted columns at both ends.
+//! `"keep_rigid": true` projects no rigid motions out: there are none, as of atoms among others that stand still.
+
+use nalgebra::DMatrix;
+use serde::Deserialize;
+use serde_json::Value;
+
+use super::array::{Arrays, Reference};
+use super::document::{LARGEST, Number, no_system};
+use super::held::{Constraints, Particles, reweigh};
+use number::Rational;
+use number::error::{Error, Result};
+use number::rational::to_f64;
+use systems::{Along, Body, Jacobians, MeasuredSystem, Model};
+
+/// How well a measured stiffness is known unless its file says so: a Hessian by differences is good to some 10^-6 of its norm.
+const USUAL_ACCURACY: f64 = 1e-6;
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Document {
+    #[serde(rename = "schema")]
+    _schema: String,
+    #[serde(rename = "title")]
+    _title: Option<String>,
+    #[serde(rename = "time_unit")]
+    _time_unit: Option<String>,
+    #[serde(default)]
+    pub mass_weighted: bool,
+    pub masses: Option<MassesDocument>,
+    pub mass_matrix: Option<MassesDocument>,
+    pub positions: Option<Reference>,
+    #[serde(default)]
+    pub periodic: bool,
+    pub accuracy: Option<Number>,
+    pub constraints: Option<Constraints>,
+    pub hydrogen_mass: Option<Number>,
+    #[serde(default)]
+    pub keep_rigid: bool,
+    #[serde(default)]
+    pub along_orbit: bool,
+    pub turned: Option<Reference>,
+    pub rigid: Option<Reference>,
+    #[serde(default = "yes")]
+    pub symmetric: bool,
+    pub method: Option<String>,
+    pub scheme: Option<String>,
+    pub levels: Option<Vec<LevelDocument>>,
+    pub potentials: Vec<PotentialDocument>,
+    pub labels: Option<Vec<String>>,
+    pub elements: Option<Vec<String>>,
+    pub bonded: Option<Vec<[usize; 2]>>,
+}
+
+fn yes() -> bool {
+    true
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct PotentialDocument {
+    #[serde(rename = "name")]
+    _name: Option<String>,
+    pub step: Number,
+    pub scale: Option<Number>,
+    pub stiffness: Reference,
+    pub force: Option<Reference>,
+}
+
+/// A level of local time steps; see `local`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct LevelDocument {
+    pub fine: FineDocument,
+    pub substeps: Number,
+}
+
+/// Degrees of freedom, counted from 0: as they are, or an array of them.
+#[derive(Debug, Deserialize)]
+#[serde(
+    untagged,
+    expecting = "this is no list of degrees of freedom, counted from 0, and no array of them, as [3, 4] or {\"npz\": \"h.npz\", \"array\": \"fine\"}"
+)]
+pub(super) enum FineDocument {
+    List(Vec<usize>),
+    Array(Reference),
+}
+
+/// Masses: numbers in the file, or an array of them.
+#[derive(Debug, Deserialize)]
+#[serde(try_from = "Value")]
+pub(super) enum MassesDocument {
+    List(Vec<Number>),
+    Array(Reference),
+}
+
+impl TryFrom<Value> for MassesDocument {
+    type Error = String;
+
+    fn try_from(value: Value) -> std::result::Result<Self, String> {
+        match value {
+            Value::Array(all) if all.iter().any(Value::is_array) => {
+                Err("by rows it stands beside stiffnesses by rows: here name the file of a diagonal matrix, or give masses".into())
+            }
+            Value::Array(all) => Ok(MassesDocument::List(all.into_iter().map(Number::from).collect())),
+            other => Reference::try_from(other).map(MassesDocument::Array),
+        }
+    }
+}
+
+impl MassesDocument {
+    /// A mass for each of n degrees of freedom, from as many numbers, one for each three, or a diagonal matrix of either.
+    pub fn read(&self, field: &str, n: usize, arrays: &Arrays) -> Result<Vec<f64>> {
+        let masses = match self {
+            MassesDocument::Array(at) => at.read(field, arrays)?.into_diagonal(field)?,
+            MassesDocument::List(all) => {
+                let number =
+                    |(i, own): (usize, &Number)| own.read(&format!("{field}[{i}]")).map(|own| to_f64(&own));
+                all.iter().enumerate().map(number).collect::<Result<_>>()?
+            }
+        };
+        spread(masses, n)
+    }
+}
+
+/// Whether some stiffness of the file stands by reference.
+pub(super) fn is_by_reference(source: &Value) -> bool {
+    let potentials = source.get("potentials").and_then(Value::as_array);
+    potentials.is_some_and(|all| all.iter().any(|own| own.get("stiffness").is_some_and(Value::is_object)))
+}
+
+/// The file, its arrays unread.
+pub(super) fn parse(source: &Value) -> Result<Document> {
+    serde_path_to_error::deserialize(source).map_err(|fault| {
+        let field = fault.path().to_string();
+        let error = no_system(fault.into_inner());
+        if field == "." { error } else { error.at(field) }
+    })
+}
+
+/// From a file of dense stiffnesses.
+pub(super) fn read(document: &Document, arrays: &Arrays) -> Result<Model> {
+    if document.scheme.is_some() || document.levels.is_some() {
+        let remedy = "a dense stiffness by reference takes none: name its compressed rows (csr), or write its numbers in the file";
+        return Err(Error::input("scheme", "local time steps", remedy));
+    }
+    if document.along_orbit {
+        return document.along(arrays);
+    }
+    for (field, is_given) in [("turned", document.turned.is_some()), ("rigid", document.rigid.is_some())] {
+        if is_given {
+            return Err(Error::input(field, "given", "is for \"along_orbit\": true: leave it out"));
+        }
+    }
+    let read = document.potentials.iter().enumerate().map(|(k, own)| own.read(k, arrays));
+    let mut read = read.collect::<Result<Vec<_>>>()?;
+    let n = read.first().map_or(0, |own| own.stiffness.nrows());
+    if n == 0 || n > LARGEST {
+        return Err(Error::input("potentials", n, format!("give 1 to {LARGEST} degrees of freedom")));
+    }
+    let is_sound = |k: &DMatrix<f64>| k.shape() == (n, n) && k.iter().all(|x| x.is_finite());
+    if !read.iter().all(|own| is_sound(&own.stiffness)) {
+        let remedy = format!("give {n} x {n} finite numbers for each potential");
+        return Err(Error::input("potentials", "a stiffness", remedy));
+    }
+    let masses = document.masses(n, arrays)?;
+    if masses.is_none() && !document.mass_weighted {
+        return Err(Error::missing("masses", "give them, or say \"mass_weighted\": true"));
+    }
+    let positions = document.positions(n, arrays)?;
+    let (is_weighted, is_periodic) = (document.mass_weighted, document.periodic);
+    let mut body = Body { masses, positions, is_weighted, is_periodic, held: None, rigid: None };
+    document.transform(&mut body, &mut read, arrays)?;
+    let accuracy = document.accuracy()?;
+    let potentials: Vec<_> = read.into_iter().map(|own| (own.step, own.stiffness)).collect();
+    let model = if document.symmetric {
+        let own = MeasuredSystem::new(body, potentials, accuracy)?;
+        let own = if document.keep_rigid { own.keeping_rigid() } else { own };
+        Model::Measured(match &document.method {
+            Some(method) => own.with_method(method.parse()?)?,
+            None => own,
+        })
+    } else {
+        if let Some(method) = &document.method {
+            return Err(Error::input("method", method, "is for forces that are gradients: leave it out"));
+        }
+        Model::NoGradient(Box::new(Jacobians::measured(&body, &potentials, accuracy, document.keep_rigid)?))
+    };
+    Ok(model)
+}
+
+impl Document {
+    /// Hessians along an orbit.
+    fn along(&self, arrays: &Arrays) -> Result<Model> {
+        let refused = [
+            ("mass_weighted", self.mass_weighted),
+            ("constraints", self.constraints.is_some()),
+            ("hydrogen_mass", self.hydrogen_mass.is_some()),
+            ("method", self.method.is_some()),
+            ("symmetric", !self.symmetric),
+        ];
+        if let Some((field, _)) = refused.iter().find(|(_, is_given)| *is_given) {
+            return Err(Error::input(field, "given", "has no place along an orbit: leave it out"));
+        }
+        let (mut steps, mut kicks) = (Vec::new(), Vec::new());
+        for (k, own) in self.potentials.iter().enumerate() {
+            let field = format!("potentials[{k}].stiffness");
+            steps.push(own.step(k)?);
+            if own.scale.is_some() || own.force.is_some() {
+                let remedy = "scale and force have no place along an orbit: leave them out";
+                return Err(Error::input(&format!("potentials[{k}]"), "given", remedy));
+            }
+            let own = own.stiffness.read(&field, arrays)?.matrices(&field)?;
+            check_symmetric(&field, &own, self.accuracy()?)?;
+            kicks.push(own);
+        }
+        let n = kicks.first().and_then(|own: &Vec<DMatrix<f64>>| own.first()).map_or(0, DMatrix::nrows);
+        if n == 0 || n > LARGEST {
+            return Err(Error::input("potentials", n, format!("give 1 to {LARGEST} degrees of freedom")));
+        }
+        let masses = self.masses(n, arrays)?.ok_or_else(|| Error::missing("masses", "give them"))?;
+        let own = Along::new(&masses, &steps, &kicks)?.at_accuracy(self.accuracy()?)?;
+        if let Some(at) = &self.rigid {
+            let ends = at.read("rigid", arrays)?.matrices("rigid")?;
+            if self.keep_rigid || self.periodic || self.positions.is_some() || self.turned.is_some() {
+                let remedy = "stands in place of positions, turned, periodic and keep_rigid: leave these out";
+                return Err(Error::input("rigid", "given", remedy));
+            }
+            return Ok(Model::Along(Box::new(own.free_of(&ends)?)));
+        }
+        let turned = self.turned.as_ref().map(|at| at.read("turned", arrays)).transpose()?;
+        let turned = turned.map(|own| triples(&own.into_values(), n)).transpose()?;
+        Ok(Model::Along(Box::new(match (self.positions(n, arrays)?, turned) {
+            _ if self.keep_rigid => own,
+            _ if self.periodic => own.in_box()?,
+            (Some(start), Some(turned)) => own.turning([&start, &turned])?,
+            (None, None) => own,
+            (start, _) => {
+                let missing = if start.is_some() { "turned" } else { "positions" };
+                let remedy =
+                    "give where the atoms are at both ends of the half period, or say \"keep_rigid\": true";
+                return Err(Error::missing(missing, remedy));
+            }
+        })))
+    }
+}
+
+/// A potential as it was read, its stiffness times its scale.
+struct Read {
+    step: Rational,
+    scale: f64,
+    stiffness: DMatrix<f64>,
+}
+
+impl Document {
+    /// Whether some stiffness is sparse.
+    pub fn is_sparse(&self) -> bool {
+        self.potentials.iter().any(|own| matches!(own.stiffness, Reference::Csr { .. }))
+    }
+
+    /// The mass of each degree of freedom, where masses are given.
+    pub fn masses(&self, n: usize, arrays: &Arrays) -> Result<Option<Vec<f64>>> {
+        match (&self.masses, &self.mass_matrix) {
+            (Some(_), Some(_)) => {
+                Err(Error::input("mass_matrix", "given", "stands in place of masses: give one of them"))
+            }
+            (Some(own), None) => own.read("masses", n, arrays).map(Some),
+            (None, Some(own)) => own.read("mass_matrix", n, arrays).map(Some),
+            (None, None) => Ok(None),
+        }
+    }
+
+    /// The positions of the particles, where they are given. Elements and bonds are checked against the number of particles.
+    pub fn positions(&self, n: usize, arrays: &Arrays) -> Result<Option<Vec<[f64; 3]>>> {
+        let positions = self.positions.as_ref().map(|at| at.read("positions", arrays)).transpose()?;
+        let positions = positions.map(|own| triples(&own.into_values(), n)).transpose()?;
+        self.check_atoms(n).map(|()| positions)
+    }
+
+    /// The accuracy that the file gives, or the usual one.
+    pub fn accuracy(&self) -> Result<f64> {
+        let given = self.accuracy.as_ref().map(|number| number.read("accuracy")).transpose()?;
+        Ok(given.map_or(USUAL_ACCURACY, |own| to_f64(&own)))
+    }
+
+    /// That elements and bonds are those of the particles that there are.
+    fn check_atoms(&self, n: usize) -> Result<()> {
+        let remedy = || format!("there are {} particles of three coordinates, counted from 0", n / 3);
+        match (&self.elements, self.bonded.iter().flatten().find(|pair| pair.iter().any(|&i| 3 * i + 2 >= n)))
+        {
+            (Some(all), _) if 3 * all.len() != n => {
+                Err(Error::input("elements", format!("{} of them", all.len()), remedy()))
+            }
+            (_, Some(pair)) => Err(Error::input("bonded", format!("{pair:?}"), remedy())),
+            _ => Ok(()),
+        }
+    }
+
+    /// Heavier hydrogens first, then constraints: the stiffnesses as they are then, and what is held.
+    fn transform(&self, body: &mut Body, read: &mut [Read], arrays: &Arrays) -> Result<()> {
+        if self.constraints.is_none() && self.hydrogen_mass.is_none() {
+            return Ok(());
+        }
+        let (Some(masses), Some(positions)) = (&mut body.masses, &body.positions) else {
+            let field = if body.masses.is_none() { "masses" } else { "positions" };
+            return Err(Error::missing(
+                field,
+                "constraints and heavy hydrogens need masses and positions in the file",
+            ));
+        };
+        // By the masses as given: heavy hydrogens are hydrogens still.
+        let named = self.constraints.as_ref();
+        let pairs = named.map(|own| Particles { masses, positions }.pairs(own)).transpose()?;
+        let old = body.is_weighted.then(|| masses.clone());
+        if let Some(mass) = &self.hydrogen_mass {
+            *masses = Particles { masses, positions }.heavier(to_f64(&mass.read("hydrogen_mass")?))?;
+        }
+        read.iter_mut().for_each(|own| reweigh(&mut own.stiffness, old.as_deref(), masses));
+        body.is_weighted = true;
+        let Some(pairs) = pairs else { return Ok(()) };
+        let particles = Particles { masses, positions };
+        for (k, (own, read)) in self.potentials.iter().zip(read).enumerate() {
+            let field = format!("potentials[{k}].force");
+            let remedy = "give the force of each potential at the positions: its tension bends the bonds that are held";
+            let force = own.force.as_ref().ok_or_else(|| Error::missing(&field, remedy))?;
+            let force: Vec<f64> =
+                force.read(&field, arrays)?.into_values().iter().map(|x| x * read.scale).collect();
+            particles.bend(&mut read.stiffness, &force, &pairs)?;
+        }
+        body.held = Some(particles.gradients(&pairs));
+        Ok(())
+    }
+}
+
+impl PotentialDocument {
+    /// The step of the k-th potential.
+    pub fn step(&self, k: usize) -> Result<Rational> {
+        let field = format!("potentials[{k}].step");
+        let step = self.step.read(&field)?;
+        if step <= Rational::default() {
+            return Err(Error::input(&field, step, "a step must be positive"));
+        }
+        Ok(step)
+    }
+
+    fn read(&self, k: usize, arrays: &Arrays) -> Result<Read> {
+        let field = |name: &str| format!("potentials[{k}].{name}");
+        let step = self.step(k)?;
+        let stiffness = self.stiffness.read(&field("stiffness"), arrays)?.matrix(&field("stiffness"))?;
+        let scale = self.scale.as_ref().map(|own| own.read(&field("scale"))).transpose()?;
+        let scale = scale.map_or(1.0, |own| to_f64(&own));
+        Ok(Read { step, scale, stiffness: stiffness * scale })
+    }
+}
+
+/// That the Hessians of a clock's kicks are symmetric to their accuracy, which is relative to the largest norm among them: within that the symmetric part is
+/// taken.
+fn check_symmetric(field: &str, kicks: &[DMatrix<f64>], accuracy: f64) -> Result<()> {
+    let largest = kicks.iter().map(DMatrix::norm).fold(0.0, f64::max);
+    let square = kicks.iter().enumerate().filter(|(_, own)| own.is_square());
+    for (k, own) in square {
+        let off = own - own.transpose();
+        if off.norm() / 2.0 > accuracy * largest {
+            let (i, j) = off.map(f64::abs).iamax_full();
+            let remedy = format!(
+                "differs from [{j}][{i}] by {:e}, more than the accuracy of {accuracy:e} allows: give (K + K.T)/2 of what was to be symmetric, or an \
+                 accuracy that covers it",
+                off[(i, j)].abs()
+            );
+            return Err(Error::input(&format!("{field}[{k}][{i}][{j}]"), own[(i, j)], remedy));
+        }
+    }
+    Ok(())
+}
+
+/// A mass for each degree of freedom, from one each or from one for each three.
+fn spread(masses: Vec<f64>, n: usize) -> Result<Vec<f64>> {
+    let wrong = || {
+        let remedy = format!("there are {n} degrees of freedom: give a mass for each, or for each three");
+        Error::input("masses", masses.len(), remedy)
+    };
+    if let Some((i, mass)) = masses.iter().enumerate().find(|(_, mass)| **mass <= 0.0) {
+        return Err(Error::input(&format!("masses[{i}]"), mass, "a mass must be positive"));
+    }
+    match masses.len() {
+        k if k == n => Ok(masses),
+        k if 3 * k == n => Ok(masses.iter().flat_map(|&m| [m; 3]).collect()),
+        _ => Err(wrong()),
+    }
+}
+
+fn triples(positions: &[f64], n: usize) -> Result<Vec<[f64; 3]>> {
+    if positions.len() != n || !n.is_multiple_of(3) {
+        let remedy = format!("there are {n} degrees of freedom: give three coordinates for each particle");
+        return Err(Error::input("positions", format!("{} numbers", positions.len()), remedy));
+    }
+    Ok(positions.chunks_exact(3).map(|x| [x[0], x[1], x[2]]).collect())
+}

@@ -1,0 +1,107 @@
+//! Measured levels as a molecule to be advised on.
+
+use std::sync::Arc;
+
+use serde::Deserialize;
+use serde_json::{Value, json};
+
+use super::SystemScene;
+use super::measured::MassesDocument;
+use molecules::unit::{self, Dimension};
+use molecules::{Direct, Molecule, Names, Scheme, Source, Told};
+use number::Rational;
+use number::error::{Error, Result};
+use systems::Body;
+
+/// A system file for an archive that holds `fast`, `slow`, `masses` and `positions`: mass-weighted, 1/ps², the steps in fs.
+pub fn of_archive(npz: &str, steps: [&Rational; 2]) -> Value {
+    let at = |array: &str| json!({"npz": npz, "array": array});
+    let step = |step: &Rational| (step / Rational::from_integer(1000.into())).to_string();
+    let potential =
+        |name: &str, own: &Rational| json!({"name": name, "step": step(own), "stiffness": at(name)});
+    json!({"schema": super::SCHEMA, "title": npz, "time_unit": "ps", "mass_weighted": true, "masses": at("masses"), "positions": at("positions"),
+        "potentials": [potential("fast", steps[0]), potential("slow", steps[1])]})
+}
+
+impl SystemScene {
+    /// The molecule with the scheme of steps of its file, in fs.
+    ///
+    /// # Errors
+    /// As [`SystemScene::scheme`].
+    pub fn molecule(&self) -> Result<(Molecule, Scheme)> {
+        let (scheme, unit) = (self.scheme()?, self.femtoseconds()?);
+        let (source, body, accuracy): (Arc<dyn Source>, _, _) = match self.model.many_levels()? {
+            Some(own) => (Arc::new(own.levels), own.body, own.accuracy),
+            None => {
+                let own = self.model.two_levels()?;
+                (Arc::new(own.kernel.clone()), own.body, own.accuracy)
+            }
+        };
+        Ok((Molecule::new(source, unit, self.names(body)?, accuracy), scheme))
+    }
+
+    /// Forces that are no gradient, to be advised on; `None` where they are gradients.
+    ///
+    /// # Errors
+    /// As [`SystemScene::femtoseconds`]; labels that do not fit.
+    pub fn direct(&self) -> Result<Option<Direct>> {
+        let Some(own) = self.model.jacobians() else { return Ok(None) };
+        let names = match own.accuracy() {
+            Some(_) => self.names(own.body())?,
+            None => Names::of_labels(self.labels.clone().unwrap_or_default()),
+        };
+        Ok(Some(Direct::new(own.clone(), self.femtoseconds()?, names)))
+    }
+
+    /// The names of atoms, from the labels, elements and bonds of the file.
+    fn names(&self, body: &Body) -> Result<Names> {
+        #[derive(Deserialize)]
+        struct Document {
+            labels: Option<Vec<String>>,
+            elements: Option<Vec<String>>,
+            bonded: Option<Vec<[usize; 2]>>,
+            masses: Option<MassesDocument>,
+            mass_matrix: Option<MassesDocument>,
+        }
+        let Ok(Document { labels, elements, bonded, masses, mass_matrix }) =
+            Document::deserialize(self.source())
+        else {
+            return Ok(Names::default());
+        };
+        let labels = labels.unwrap_or_default();
+        let (Some(positions), Some(moving), Some(masses)) =
+            (&body.positions, &body.masses, masses.or(mass_matrix))
+        else {
+            return Ok(Names::of_labels(labels));
+        };
+        let of_atoms = |masses: &[f64]| masses.chunks_exact(3).map(|own| own[0]).collect::<Vec<_>>();
+        let given = masses.read("masses", moving.len(), &self.arrays)?;
+        let told =
+            Told { labels, elements: elements.unwrap_or_default(), bonds: bonded, masses: of_atoms(&given) };
+        Ok(Names::new(told, positions, of_atoms(moving)))
+    }
+
+    /// The steps of measured levels, or of forces that are no gradient, in fs.
+    ///
+    /// # Errors
+    /// A file without `time_unit`, or with another than fs, ps, ns or s; as [`Model::measured_steps`](systems::Model::measured_steps).
+    pub fn scheme(&self) -> Result<Scheme> {
+        let steps = match self.model.jacobians() {
+            Some(own) => own.steps(),
+            None => self.model.measured_steps()?,
+        };
+        let unit = self.femtoseconds()?;
+        Scheme::new(steps.into_iter().map(|step| step * &unit).collect())
+    }
+
+    /// The file's unit of time in fs.
+    ///
+    /// # Errors
+    /// A file without `time_unit`, or with another than fs, ps, ns or s.
+    pub fn femtoseconds(&self) -> Result<Rational> {
+        let missing =
+            || Error::missing("time_unit", "say in the file what its steps are in, as \"time_unit\": \"ps\"");
+        let one = format!("1 {}", self.time_unit().ok_or_else(missing)?);
+        unit::rational("time_unit", &one, Dimension::Time)
+    }
+}

@@ -1,0 +1,190 @@
+//! Where tongues close.
+
+use super::asking::{Question, Work, question};
+use super::field::flag;
+use super::ratios::Ratios;
+use crate::report::decimal::outward;
+use crate::report::document::Document;
+use crate::report::record::Record;
+use crate::report::table::{Cell, Column};
+use clocks::tongue::{self, Closing, Enclosure, Found, Labels, Search};
+use number::error::{Error, Result};
+use number::parallel::try_map;
+use number::{Ratio, Rational};
+
+question! {
+    /// The pairs (s, ρ) at which tongues of one ratio or of all are closed.
+    args struct Closings {
+        /// h2/h1 = p/q.
+        #[arg(long, value_name = "P/Q", allow_hyphen_values = true, value_parser = flag::<Ratio>)]
+        ratio: Option<Ratio>,
+        /// All coprime p + q up to this number.
+        #[arg(long, value_name = "N", value_parser = flag::<u64>)]
+        max_sum: Option<u64>,
+        /// Only these labels (with --ratio), as 4 or 1,3,7..9.
+        #[arg(long, value_name = "LIST", allow_hyphen_values = true, value_parser = flag::<Labels>)]
+        m: Option<Labels>,
+        /// The closed range of rho = lambda2/lambda1, positive.
+        #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<(Rational, Rational)>)]
+        rho_range: (Rational, Rational) = "1/10000..100",
+        /// Where p + q > 24: at how many rho, evenly spaced in ln rho, edges are computed to see where two cross.
+        #[arg(long, value_name = "N", value_parser = flag::<usize>)]
+        samples: usize = "400",
+        /// Significant digits of s and rho.
+        #[arg(long, value_name = "N", value_parser = flag::<u32>)]
+        digits: u32 = "25",
+    }
+}
+
+/// Significant digits unless others are asked for: the boxes are known to 2^-100.
+pub const DIGITS: u32 = 25;
+
+const CAPTION: &str =
+    "Closed tongues, where $Q = \\pm I$, in $s = h_1^2 \\Lambda_1$ and $\\rho = \\Lambda_2/\\Lambda_1$";
+
+/// Searches cost p + q squared for each of the samples.
+const MOST_SUM: u64 = 200;
+/// Steps of a search unless a budget says otherwise: all ratios up to the largest sum at ten times the usual samples. And the seconds of one.
+const MOST_COST: u64 = 1_000_000_000_000;
+const STEP: f64 = 3e-7;
+const MOST_SAMPLES: usize = 1_000_000;
+/// The boxes are known to 2^-100 of their centres.
+const MOST_DIGITS: u32 = 28;
+
+impl Closings {
+    /// The ratios that are searched.
+    ///
+    /// # Errors
+    /// Neither one ratio nor a sum, a sum out of range.
+    pub fn ratios(&self) -> Result<Ratios> {
+        Ratios::of(self.ratio, self.max_sum)?.within(MOST_SUM)
+    }
+
+    fn words(&self) -> String {
+        self.ratios().map(Ratios::words).unwrap_or_default()
+    }
+
+    /// (p + q)² for each of the samples.
+    fn cost(&self, ratio: Ratio) -> u64 {
+        ratio.kicks().saturating_pow(2).saturating_mul(self.samples as u64)
+    }
+
+    fn of_ratio(&self, ratio: Ratio) -> Result<Found> {
+        let search = Search { m: None, rho: self.rho_range.clone(), samples: self.samples };
+        match &self.m {
+            None => tongue::closings(ratio, &search),
+            Some(labels) => tongue::closings_of(ratio, &labels.0, &search),
+        }
+    }
+}
+
+impl Question for Closings {
+    const NAME: &'static str = "closings";
+    type Answer = Vec<Found>;
+
+    fn answer(&self, work: &Work) -> Result<Vec<Found>> {
+        let ratios = self.ratios()?;
+        if matches!(ratios, Ratios::UpTo(_)) && self.m.is_some() {
+            return Err(Error::input(
+                "m",
+                "given with --max-sum",
+                "labels are those of one ratio: give --ratio P/Q, or leave --m out",
+            ));
+        }
+        if !(2..=MOST_SAMPLES).contains(&self.samples) {
+            return Err(Error::input("samples", self.samples, format!("choose 2 to {MOST_SAMPLES}")));
+        }
+        if !(1..=MOST_DIGITS).contains(&self.digits) {
+            return Err(Error::input("digits", self.digits, format!("choose 1 to {MOST_DIGITS}")));
+        }
+        let list = ratios.list();
+        let cost = list.iter().map(|ratio| self.cost(*ratio)).fold(0, u64::saturating_add);
+        if cost > work.budget.unwrap_or(MOST_COST) {
+            let name = format!("the closings of {} cost about {cost} steps of a search", ratios.words());
+            return Err(Error::budget(name, cost).or("choose fewer samples, or ratios of smaller numbers"));
+        }
+        work.announce(&format!("the closings of {}", ratios.words()), cost as f64 * STEP);
+        let bar = work.count(list.len() as u64, "ratios");
+        try_map(&list, |&ratio| {
+            let found = self.of_ratio(ratio);
+            bar.advance(1);
+            found
+        })
+    }
+
+    fn show(&self, found: &Vec<Found>) -> Document {
+        let ((lo, hi), digits) = (&self.rho_range, self.digits);
+        let what = format!("{}, rho in {lo}..{hi}", self.words());
+        let closings = || found.iter().flat_map(|of| &of.closings);
+        let ratios = Record::new()
+            .json("p", |of: &Found| of.ratio.p().into())
+            .json("q", |of| of.ratio.q().into())
+            .json("complete", |of| of.complete.into());
+        let table = |short| {
+            let record = record(digits, short);
+            record.table("closings", "Closed tongues: Q = I or -I", closings()).captioned(CAPTION)
+        };
+        Document::new(Self::NAME)
+            .entry("closings", record(digits, false).all(closings()))
+            .entry("ratios", ratios.all(found))
+            .long_rows(table(false))
+            .for_people(table(true))
+            .summary(&lines(found, &what))
+    }
+}
+
+/// s or ρ of a closing: its enclosure, and its value where that is rational.
+type Side = fn(&Closing) -> (&Enclosure, Option<&Rational>);
+
+/// The row of a closing; in the short form s and ρ are one column each, exact where they are rational.
+fn record(digits: u32, short: bool) -> Record<'static, Closing> {
+    let mut record = Record::new()
+        .field(Column::math("p", "p"), |of: &Closing| of.ratio.p().into())
+        .field(Column::math("q", "q"), |of| of.ratio.q().into())
+        .field(Column::math("m", "m"), |of| of.m.into());
+    let sides: [(&str, &str, Side); 2] = [
+        ("s", "s", |of| (&of.s, of.exact.as_ref().map(|(s, _)| s))),
+        ("rho", "\\rho", |of| (&of.rho, of.exact.as_ref().map(|(_, rho)| rho))),
+    ];
+    for (key, formula, side) in sides {
+        let column = Column::math(key, formula).enclosure();
+        let exact = move |of: &Closing| side(of).1.map(Cell::exact).unwrap_or(Cell::Missing);
+        let enclosed = move |of: &Closing| Cell::from(side(of).0.to_f64());
+        if short {
+            record = record.field(column, move |of| match exact(of) {
+                Cell::Missing => enclosed(of),
+                exact => exact,
+            });
+            continue;
+        }
+        let ends = move |of: &Closing| match side(of) {
+            (_, Some(x)) => outward(x, x, digits),
+            (x, None) => outward(&x.lo, &x.hi, digits),
+        };
+        let titled = |part: &str, title: &str| Column::new(&format!("{key}_{part}")).titled(title, title);
+        record = record
+            .field(column, enclosed)
+            .at(format!("{key}.exact"), titled("exact", "exact"), exact)
+            .at(format!("{key}.decimal.lo"), titled("decimal_lo", "lo"), move |of| Cell::exact(&ends(of)[0]))
+            .at(format!("{key}.decimal.hi"), titled("decimal_hi", "hi"), move |of| Cell::exact(&ends(of)[1]));
+    }
+    record.field(Column::new("below_verlet").titled("s < 4", "$s < 4$"), |of| of.below_verlet.into())
+}
+
+fn lines(found: &[Found], what: &str) -> Vec<String> {
+    let closings = || found.iter().flat_map(|of| &of.closings);
+    let count = closings().count();
+    let exact = closings().filter(|closing| closing.exact.is_some()).count();
+    let below = closings().filter(|closing| closing.below_verlet).count();
+    let complete = found.iter().filter(|of| of.complete).count();
+    let plural = if count == 1 { "" } else { "s" };
+    vec![
+        format!("{count} closed tongue{plural} of {what}"),
+        format!("  rational     {exact}: s and rho known exactly"),
+        format!("  below s = 4  {below}: the fast clock alone is stable there"),
+        format!(
+            "  complete     {complete} of {} ratios: elimination proves that there are no others",
+            found.len()
+        ),
+    ]
+}

@@ -1,0 +1,178 @@
+//! The trace against the predictions: over a grid, or over ratios.
+
+use super::asking::{Question, Work, question};
+use super::field::StepRange;
+use super::map::Map;
+use super::ratios::{MOST_SUM, Ratios};
+use crate::report::document::Document;
+use crate::report::record::Record;
+use crate::report::table::{Cell, Column};
+use clocks::map::Grid;
+use clocks::resonance::compare::{Comparison, Comparisons, Offender, Tally, compare_ratios};
+use number::error::{Error, Result};
+use number::{Laurent, Rational};
+
+question! {
+    /// The trace verdict against the tan criterion and against resonance: over a grid with both stiffnesses, or over all coprime
+    /// p + q up to a sum at s = 4 k/(samples + 1).
+    #[derive(Default)]
+    struct Compare {
+        /// How near q h2 must be to a multiple of T½ to count as resonant, in units of T½.
+        tolerance: Rational = "1/20",
+        /// The stiffness of the fast force, with a grid.
+        lambda1: Option<Laurent>,
+        /// The stiffness of the slow force.
+        lambda2: Option<Laurent>,
+        /// The spacing of h1.
+        step1: Option<Laurent>,
+        /// The spacing of h2.
+        step2: Option<Laurent>,
+        /// The closed range of h1.
+        h1_range: Option<StepRange>,
+        /// The closed range of h2.
+        h2_range: Option<StepRange>,
+        /// In place of a grid: all coprime p + q up to this number.
+        max_sum: Option<u64>,
+        /// λ2/λ1, with a sum.
+        rho: Option<Rational>,
+        /// Values of s, evenly spaced inside 0 < s < 4, with a sum.
+        samples: Option<u64>,
+    }
+}
+
+/// The pairs that are compared.
+pub enum Over {
+    /// All pairs of a grid.
+    Grid(Grid),
+    /// All coprime p + q up to a sum.
+    Ratios { max_sum: u64, rho: Rational, samples: u64 },
+}
+
+impl Compare {
+    /// The comparison over the grid of a map.
+    pub fn over_grid(map: Map, tolerance: Rational) -> Compare {
+        let Map { lambda1, lambda2, step1, step2, h1_range, h2_range, .. } = map;
+        let [lambda1, lambda2, step1, step2] = [lambda1, lambda2, step1, step2].map(Some);
+        let [h1_range, h2_range] = [h1_range, h2_range].map(Some);
+        Compare { tolerance, lambda1, lambda2, step1, step2, h1_range, h2_range, ..Compare::default() }
+    }
+
+    /// The comparison over all coprime p + q up to a sum.
+    pub fn over_ratios(max_sum: u64, rho: Rational, samples: u64, tolerance: Rational) -> Compare {
+        let (max_sum, rho, samples) = (Some(max_sum), Some(rho), Some(samples));
+        Compare { tolerance, max_sum, rho, samples, ..Compare::default() }
+    }
+
+    /// The error of a question that is neither, or both.
+    pub fn mixed() -> Error {
+        let remedy =
+            "give --lambda1, --lambda2 and a grid (--step, --h1-range, --h2-range), or --max-sum and --rho";
+        Error::input("flags", "incomplete or mixed", remedy)
+    }
+
+    /// The pairs that are compared.
+    ///
+    /// # Errors
+    /// Neither a whole grid nor a sum with ρ, or parts of both; whatever [`Grid::new`] refuses.
+    pub fn pairs(&self) -> Result<Over> {
+        let Compare { lambda1, lambda2, step1, step2, h1_range, h2_range, max_sum, rho, samples, .. } = self;
+        match (lambda1, lambda2, step1, step2, h1_range, h2_range, max_sum, rho) {
+            (Some(lambda1), Some(lambda2), Some(step1), Some(step2), Some(h1), Some(h2), None, None)
+                if samples.is_none() =>
+            {
+                let steps = [step1.clone(), step2.clone()];
+                Grid::new(lambda1.clone(), lambda2.clone(), steps, h1.clone(), h2.clone()).map(Over::Grid)
+            }
+            (None, None, None, None, None, None, Some(max_sum), Some(rho)) => {
+                Ratios::UpTo(*max_sum).within(MOST_SUM)?;
+                Ok(Over::Ratios { max_sum: *max_sum, rho: rho.clone(), samples: samples.unwrap_or(99) })
+            }
+            _ => Err(Compare::mixed()),
+        }
+    }
+}
+
+const CAPTION: &str = "Pairs at which the prediction $q h_2 \\approx m T_{1/2}$ is wrong";
+
+impl Question for Compare {
+    const NAME: &'static str = "compare";
+    type Answer = Comparisons;
+
+    fn answer(&self, work: &Work) -> Result<Comparisons> {
+        match self.pairs()? {
+            Over::Grid(grid) => grid.compare(&self.tolerance, &work.limits()),
+            Over::Ratios { max_sum, rho, samples } => {
+                compare_ratios(max_sum, &rho, samples, &self.tolerance, &work.limits())
+            }
+        }
+    }
+
+    fn show(&self, answer: &Comparisons) -> Document {
+        let places = if self.max_sum.is_some() { ["s", "rho"] } else { ["h1", "h2"] };
+        let Comparisons { tally, offenders } = answer;
+        Document::new(Self::NAME)
+            .entry("pairs", tally.pairs)
+            .entry("unstable", tally.unstable)
+            .entry("tan.agree", tally.tan_agree)
+            .entry("tan.disagree", tally.tan_disagree)
+            .entry("resonance.hits", tally.hits)
+            .entry("resonance.quiet", tally.quiet)
+            .entry("resonance.misses", tally.misses)
+            .entry("resonance.false_alarms", tally.false_alarms)
+            .entry("resonance.beyond_verlet", tally.beyond_verlet)
+            .rows(
+                record(places)
+                    .table("offenders", "Pairs at which a prediction is wrong", offenders)
+                    .captioned(CAPTION),
+            )
+            .summary(&lines(tally, &self.tolerance))
+    }
+}
+
+fn lines(tally: &Tally, tolerance: &Rational) -> Vec<String> {
+    let Tally { pairs, unstable, tan_agree, hits, quiet, misses, false_alarms, beyond_verlet, .. } = tally;
+    let verdict = if tally.tan_disagree == 0 { "everywhere" } else { "NOT everywhere" };
+    vec![
+        format!("{pairs} pairs, {unstable} unstable by the trace condition"),
+        format!("tan criterion: agrees {verdict} ({tan_agree} of {pairs})"),
+        format!("q h2 within {tolerance} T½ of a multiple of T½:"),
+        format!("  unstable and near (hits)           {hits:>12}"),
+        format!("  stable and away (quiet)            {quiet:>12}"),
+        format!("  unstable but away (misses)         {misses:>12}"),
+        format!("  stable but near (false alarms)     {false_alarms:>12}"),
+        format!("  s >= 4, no effective period        {beyond_verlet:>12}"),
+    ]
+}
+
+/// The row of an offender.
+fn record(places: [&str; 2]) -> Record<'static, Offender> {
+    let [first, second] = places.map(|name| Column::math(name, formula(name)));
+    let nearest = |of: &Offender| of.comparison.nearest.clone();
+    Record::new()
+        .field(first, |of: &Offender| Cell::exact(&of.place[0]))
+        .field(second, |of| Cell::exact(&of.place[1]))
+        .field(Column::math("p", "p"), |of| of.ratio.p().into())
+        .field(Column::math("q", "q"), |of| of.ratio.q().into())
+        .field(Column::new("offence").left(), |of| offence(&of.comparison).into())
+        .field(Column::new("kind").left().aside(), |of| of.comparison.trace.verdict.kind().name().into())
+        .field(Column::new("tan").in_words("tan criterion").left().aside(), |of| {
+            of.comparison.tan.kind().name().into()
+        })
+        .field(Column::new("m").titled("nearest m", "nearest $m$"), move |of| nearest(of).map(|n| n.m).into())
+        .field(Column::new("distance").titled("q h2/T½ - m", "$q h_2/T_{1/2} - m$").enclosure(), move |of| {
+            nearest(of).map(|n| n.distance.to_f64_enclosure()).into()
+        })
+}
+
+fn offence(comparison: &Comparison) -> &'static str {
+    if comparison.tan_agrees() { comparison.outcome.map_or("none", |outcome| outcome.name()) } else { "tan" }
+}
+
+fn formula(name: &str) -> &str {
+    match name {
+        "h1" => "h_1",
+        "h2" => "h_2",
+        "rho" => "\\rho",
+        other => other,
+    }
+}

@@ -1,0 +1,104 @@
+//! The (a, b) families of resonance curves.
+
+use serde_json::{Value, json};
+
+use super::asking::{Question, Work, question};
+use super::field::StepRange;
+use super::field::flag;
+use crate::report::document::Document;
+use crate::report::record::Record;
+use crate::report::table::{Column, Table};
+use clocks::resonance::{Curve, CurvePoint, Families, Window};
+use number::error::{Error, Result};
+use number::{ExactSign, Laurent, Sign};
+
+question! {
+    /// The curves 1/T½ = a/h1 + b/h2 over closed ranges of h1 and h2.
+    args struct Curves {
+        /// The stiffness of the fast force.
+        #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
+        lambda1: Laurent = "pi^2",
+        /// The spacing of h1 of a scene's grid, on which curves do not depend.
+        #[arg(skip)]
+        step1: Option<Laurent>,
+        /// The spacing of h2.
+        #[arg(skip)]
+        step2: Option<Laurent>,
+        /// The closed range of h1.
+        #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<StepRange>)]
+        h1_range: StepRange = "1/1000..2/pi",
+        /// The closed range of h2.
+        #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<StepRange>)]
+        h2_range: StepRange = "1/1000..7/2",
+        /// The range of a.
+        #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<(i64, i64)>)]
+        a: (i64, i64) = "0..3",
+        /// The range of b.
+        #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<(i64, i64)>)]
+        b: (i64, i64) = "-12..12",
+        /// Points a curve, evenly spaced in theta over its pieces in the window.
+        #[arg(long, value_name = "N", value_parser = flag::<usize>)]
+        samples: usize = "400",
+    }
+}
+
+impl Question for Curves {
+    const NAME: &'static str = "curves";
+    const EXAMPLES: &'static [&'static str] =
+        &["curves --lambda1 pi^2 --a 0..1 --b 1..3 --samples 20 --format csv"];
+    type Answer = Vec<Curve>;
+
+    fn answer(&self, _: &Work) -> Result<Vec<Curve>> {
+        for (field, (lo, hi)) in [("h1-range", &self.h1_range), ("h2-range", &self.h2_range)] {
+            if hi.sign() != Sign::Positive {
+                let remedy = "holds no positive step; raise its end";
+                return Err(Error::input(field, format!("{lo}..{hi}"), remedy));
+            }
+        }
+        let families = Families { a: self.a, b: self.b, samples: self.samples };
+        families.curves(&self.lambda1, &Window::nearest(&self.h1_range, &self.h2_range))
+    }
+
+    fn show(&self, curves: &Vec<Curve>) -> Document {
+        // Empty curves are left out.
+        let curves: Vec<&Curve> = curves.iter().filter(|curve| !curve.pieces.is_empty()).collect();
+        let points: Vec<Point> = curves.iter().flat_map(|curve| points(curve)).collect();
+        let summary =
+            format!("{} curves 1/T½ = a/h1 + b/h2 in the window, {} points", curves.len(), points.len());
+        let values: Vec<Value> = curves.iter().map(|curve| value(curve)).collect();
+        Document::new(Self::NAME).entry("curves", values).rows(table(&points)).summary(&[summary])
+    }
+}
+
+/// A point, its curve, and the number of its piece.
+type Point<'a> = (&'a Curve, usize, &'a CurvePoint);
+
+fn points(curve: &Curve) -> impl Iterator<Item = Point<'_>> {
+    let pieces = curve.pieces.iter().enumerate();
+    pieces.flat_map(move |(i, piece)| piece.iter().map(move |point| (curve, i, point)))
+}
+
+/// The columns of a point, behind those of its curve.
+fn place<'a>(record: Record<'a, Point<'a>>) -> Record<'a, Point<'a>> {
+    record
+        .field(Column::math("h1", "h_1"), |(_, _, point)| point.h1.into())
+        .field(Column::math("h2", "h_2"), |(_, _, point)| point.h2.into())
+        .field(Column::new("theta_over_pi").titled("theta/pi", "$\\theta/\\pi$"), |(_, _, point)| {
+            point.theta_over_pi.into()
+        })
+}
+
+fn value(curve: &Curve) -> Value {
+    let record = place(Record::new()).field(Column::new("piece"), |(_, piece, _)| (*piece as u64).into());
+    let points: Vec<Value> = points(curve).map(|point| record.entries(&point)).collect();
+    json!({"a": curve.a, "b": curve.b, "points": points})
+}
+
+fn table(points: &[Point]) -> Table {
+    let curve = Record::new()
+        .field(Column::math("a", "a"), |(curve, ..): &Point| curve.a.into())
+        .field(Column::math("b", "b"), |(curve, ..)| curve.b.into());
+    place(curve)
+        .table("curves", "Points of the resonance curves (a, b)", points)
+        .captioned("Points of the resonance curves $1/T_{1/2} = a/h_1 + b/h_2$, $\\theta = \\pi h_1/T_{1/2}$")
+}

@@ -1,0 +1,77 @@
+//! The half period of one pair of clocks in numbers.
+
+use super::asking::{Question, Work, question};
+use super::field::flag;
+use crate::report::document::Document;
+use crate::report::record::Record;
+use crate::report::table::{Cell, Column};
+use clocks::propagator::{HalfPeriod, TwoClocks, half_period};
+use clocks::schedule::Schedule;
+use number::error::{Error, Result};
+use number::{ExactSign, Ratio, Rational, rational};
+
+question! {
+    /// A, B, C, D of one ratio at rational s and ρ, exact and enclosed, in the time unit h1: A and D are numbers, B is in h1, C in 1/h1.
+    args struct Half {
+        /// h2/h1 = p/q.
+        #[arg(long, value_name = "P/Q", allow_hyphen_values = true, value_parser = flag::<Ratio>)]
+        ratio: Ratio,
+        /// h1^2 lambda1, rational.
+        #[arg(long, value_name = "S", allow_hyphen_values = true, value_parser = flag::<Rational>)]
+        s: Rational,
+        /// lambda2/lambda1, rational; may be negative.
+        #[arg(long, value_name = "R", allow_hyphen_values = true, value_parser = flag::<Rational>)]
+        rho: Rational,
+    }
+}
+
+/// The largest p + q unless a budget says otherwise: every kick adds the digits of s, so the entries have thousands there.
+const MOST_KICKS: u64 = 2000;
+
+/// One of the four entries.
+struct Entry<'a> {
+    name: &'static str,
+    value: &'a Rational,
+}
+
+/// The row of an entry.
+fn record<'a>() -> Record<'a, Entry<'a>> {
+    Record::new()
+        .field(Column::new("entry").left(), |of: &Entry| of.name.into())
+        .field(Column::new("sign"), |of| i64::from(of.value.sign().to_i8()).into())
+        .field(Column::new("value").enclosure(), |of| rational::enclose_f64(of.value).into())
+        .field(Column::new("exact"), |of| Cell::exact(of.value))
+}
+
+impl Question for Half {
+    const NAME: &'static str = "half";
+    const EXAMPLES: &'static [&'static str] = &["half --ratio 5/3 --s 11/4 --rho 1/25"];
+    type Answer = HalfPeriod<Rational>;
+
+    fn answer(&self, work: &Work) -> Result<HalfPeriod<Rational>> {
+        let (kicks, most) = (self.ratio.kicks(), work.budget.unwrap_or(MOST_KICKS));
+        if kicks > most {
+            let cost = format!("the half period of {} has the digits of {kicks} kicks", self.ratio);
+            return Err(Error::budget(cost, kicks).or(format!("choose p + q <= {most}")));
+        }
+        // That its ticks can be counted.
+        Schedule::two_clocks(self.ratio)?;
+        Ok(half_period(&TwoClocks::with_rho(self.ratio, self.s.clone(), self.rho.clone())))
+    }
+
+    fn show(&self, half: &HalfPeriod<Rational>) -> Document {
+        let entries = [("A", half.a()), ("B", half.b()), ("C", half.c()), ("D", half.d())];
+        let entries = entries.map(|(name, value)| Entry { name, value });
+        let summary = format!(
+            "half period of h2/h1 = {} at s = {}, rho = {}: Tr Q = {}",
+            self.ratio,
+            self.s,
+            self.rho,
+            half.trace()
+        );
+        let table =
+            record().table("entries", "The half period [[A, B], [C, D]] in the time unit h1", &entries);
+        let caption = format!("The entries of the half period at $s = {}$ in the time unit $h_1$", self.s);
+        Document::new(Self::NAME).rows(table.captioned(&caption)).summary(&[summary])
+    }
+}

@@ -1,0 +1,137 @@
+//! Questions, typed: arguments, scenes, Python's keywords and the `input` of a document all become the same ones.
+//!
+//! A question cannot be wrong in its types; it is written as the `input` of its document, and read from there again.
+//! [`Question::answer`] computes, [`Question::document`] shows what came out.
+//!
+//! ```
+//! use kickdrift_documents::question::{Fields, Proposition, Question, Work};
+//! let question = Proposition { max: 5 };
+//! let document = question.ask(&Work::default()).unwrap();
+//! assert_eq!(document.value()["holds"], true);
+//! // The document says what it answers.
+//! let input = document.value()["input"].clone();
+//! assert_eq!(Proposition::read(input.as_object().unwrap()).unwrap(), question);
+//! ```
+//!
+//! A new question is a file of its own here, with its fields declared once by `question!`, and a line in each list of those who ask:
+//! [`ask`] for Python and the page, the program's commands, the documents that `verify` reads.
+
+mod advise;
+mod advised;
+mod asking;
+mod field;
+
+mod bands;
+mod closings;
+mod compare;
+mod curves;
+mod half;
+mod map;
+mod polynomial;
+mod proposition;
+mod ratios;
+mod scene;
+mod side;
+mod simulate;
+mod survey;
+mod system;
+mod tongues;
+mod verdict;
+mod want;
+mod word;
+
+pub use advise::{Advise, Advised, Safe};
+pub(crate) use asking::question;
+pub use asking::{Fields, Question, Watch, Work};
+pub use bands::Bands;
+pub use closings::{Closings, DIGITS};
+pub use compare::{Compare, Over};
+pub use curves::Curves;
+pub use field::{Field, Notation, StepRange, flag, shown_range};
+pub use half::Half;
+pub use map::Map;
+pub use polynomial::Polynomial;
+pub use proposition::Proposition;
+pub use ratios::{MOST_SUM, Ratios};
+pub use scene::{FAMILIES, LONGEST_SCENE, Scene};
+pub use side::{CompareMethods, Side};
+pub use simulate::{Answer as Simulated, Displacement, Simulate};
+pub use survey::{Survey, THINNEST};
+pub use system::{Answer as SystemAnswer, Found, System};
+pub use tongues::{Colour, Tongues};
+pub use verdict::{Decided, Verdict};
+pub use want::{Product, Want};
+pub use word::{Linted, Methods, Word};
+
+use serde_json::{Map as Input, Value};
+
+use crate::report::document::Document;
+use number::error::{Error, Result};
+
+/// The document that answers the question of this name, NAME in `kickdrift/NAME/1`, whose fields are those of the document's `input`.
+///
+/// ```
+/// use kickdrift_documents::question::{ask, Work};
+/// let input = serde_json::json!({"ratio": "5/3"});
+/// let document = ask("polynomial", input.as_object().unwrap(), &Work::default()).unwrap();
+/// assert_eq!(document.value()["p"], 5);
+/// ```
+///
+/// # Errors
+/// An unknown name, and those of [`Fields::read`] and [`Question::answer`].
+pub fn ask(name: &str, input: &Input<String, Value>, work: &Work) -> Result<Document> {
+    (named(name)?.ask)(input, work)
+}
+
+/// The figure of the same answer; `None` where this is nothing to draw.
+///
+/// # Errors
+/// As [`ask`], and those of [`Question::figure`].
+pub fn draw(name: &str, input: &Input<String, Value>, work: &Work) -> Result<Option<plot::Figure>> {
+    (named(name)?.draw)(input, work)
+}
+
+/// A question that is read from its fields.
+struct Named {
+    name: &'static str,
+    ask: fn(&Input<String, Value>, &Work) -> Result<Document>,
+    draw: fn(&Input<String, Value>, &Work) -> Result<Option<plot::Figure>>,
+}
+
+impl Named {
+    const fn of<Q: Question>() -> Named {
+        Named {
+            name: Q::NAME,
+            ask: |input, work| Q::read(input)?.ask(work),
+            draw: |input, work| {
+                let question = Q::read(input)?;
+                question.figure(&question.answer(work)?, work)
+            },
+        }
+    }
+}
+
+fn named(name: &str) -> Result<&'static Named> {
+    const ALL: &[Named] = &[
+        Named::of::<Verdict>(),
+        Named::of::<Map>(),
+        Named::of::<Curves>(),
+        Named::of::<Compare>(),
+        Named::of::<CompareMethods>(),
+        Named::of::<Proposition>(),
+        Named::of::<Polynomial>(),
+        Named::of::<Half>(),
+        Named::of::<Closings>(),
+        Named::of::<Survey>(),
+        Named::of::<Bands>(),
+        Named::of::<Word>(),
+        Named::of::<Methods>(),
+        Named::of::<System>(),
+        Named::of::<Simulate>(),
+        Named::of::<Advise>(),
+    ];
+    ALL.iter().find(|known| known.name == name).ok_or_else(|| {
+        let names: Vec<&str> = ALL.iter().map(|known| known.name).collect();
+        Error::input("question", name, format!("there are {}", names.join(", ")))
+    })
+}

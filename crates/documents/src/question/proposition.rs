@@ -1,0 +1,83 @@
+//! The Proposition, checked exhaustively.
+
+use super::asking::{Question, Work, question};
+use super::field::flag;
+use crate::report::document::Document;
+use crate::report::record::Record;
+use crate::report::table::Column;
+use clocks::resonance::proposition::{Check, Witness, check};
+use number::error::{Error, Result};
+
+question! {
+    /// The Proposition for all coprime p, q up to a number, with all witnesses.
+    args struct Proposition {
+        /// All coprime p, q up to this number.
+        #[arg(long, value_name = "N", value_parser = flag::<u64>)]
+        max: u64 = "60",
+    }
+}
+
+/// Witnesses beyond this bound alone would fill gigabytes.
+const LARGEST_MAX: u64 = 400;
+
+const CAPTION: &str = "Resonant points h2/h1 = p/q, p theta = m pi, and a curve (a, b) through each";
+
+/// The caption in LaTeX.
+const CAPTION_LATEX: &str = "Resonant points $h_2/h_1 = p/q$, $p\\theta = m\\pi$, and a curve $(a, b)$ with $m = ap + bq$ through each";
+
+/// Seconds for each of max³ (1 + ln max) points and curves.
+const POINT: f64 = 1.5e-6;
+
+impl Question for Proposition {
+    const NAME: &'static str = "proposition";
+    const EXAMPLES: &'static [&'static str] = &["proposition --max 12"];
+    type Answer = (Check, Vec<Witness>);
+
+    fn answer(&self, work: &Work) -> Result<Self::Answer> {
+        let max = self.max;
+        if !(1..=LARGEST_MAX).contains(&max) {
+            let remedy = format!("choose 1 to {LARGEST_MAX}; the number of witnesses grows like its cube");
+            return Err(Error::input("max", max, remedy));
+        }
+        let name = format!("the Proposition up to {max}");
+        if max.pow(3) > work.limits().kicks {
+            let cost = format!("{name} has about {} points and curves", max.pow(3));
+            return Err(Error::budget(cost, max.pow(3)).or("choose a smaller --max"));
+        }
+        work.announce(&name, (max as f64).powi(3) * (1.0 + (max as f64).ln()) * POINT);
+        let mut witnesses = Vec::new();
+        let check = check(max, |witness| witnesses.push(*witness));
+        Ok((check, witnesses))
+    }
+
+    fn show(&self, (check, witnesses): &Self::Answer) -> Document {
+        let (max, Check { forward, backward, failures }) = (self.max, check);
+        let verdict = if failures.is_empty() { "holds" } else { "FAILS" };
+        let lines = [
+            format!("the Proposition {verdict} for all coprime p, q <= {max}, exactly"),
+            format!("  resonant points (p, q, m), each on a curve (a, b) with b != 0   {forward:>9}"),
+            format!("  curves (a, b) at a ratio p/q, each resonant with m = a p + b q  {backward:>9}"),
+            format!(
+                "  failures                                                        {:>9}",
+                failures.len()
+            ),
+        ];
+        Document::new(Self::NAME)
+            .entry("holds", failures.is_empty())
+            .entry("resonant_points", *forward)
+            .entry("curves", *backward)
+            .entry("failures", record().all(failures))
+            .rows(record().table("witnesses", CAPTION, witnesses).captioned(CAPTION_LATEX))
+            .summary(&lines)
+    }
+}
+
+/// The row of a resonant point.
+fn record() -> Record<'static, Witness> {
+    Record::new()
+        .field(Column::math("p", "p"), |of: &Witness| of.ratio.p().into())
+        .field(Column::math("q", "q"), |of| of.ratio.q().into())
+        .field(Column::math("m", "m"), |of| of.m.into())
+        .field(Column::math("a", "a"), |of| of.a.into())
+        .field(Column::math("b", "b"), |of| of.b.into())
+}

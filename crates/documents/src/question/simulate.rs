@@ -1,0 +1,173 @@
+//! Algorithm 1 run on a system: energy, momentum and amplitude, and growth beside the prediction.
+
+use plot::{Figure, Foot};
+
+use super::asking::{Question, Work, question};
+use super::field::notation;
+use crate::input::{SystemFile, SystemScene};
+use crate::report::document::Document;
+use crate::report::simulate as report;
+use number::error::{Error, Kind, Result};
+use number::parallel::go_on;
+use number::parse::parse_rational;
+use number::rational::to_f64;
+use systems::avi::{Ends, Force, Run, Simulation, growth_rate, irreversibility, series};
+use systems::{Limits, Route, middle};
+
+question! {
+    /// A run from rest at a displacement: the bonds themselves about the integrator's own orbit, or the equilibrium where that is one,
+    /// linear systems about 0.
+    struct Simulate {
+        /// The name of the system's file.
+        file: String,
+        /// Its title, which documents take from the system.
+        title: Option<String>,
+        /// The contents of the file.
+        system: SystemFile,
+        /// Synchronization periods to run.
+        periods: u32 = "200",
+        /// Where it starts.
+        displace: Displacement = "1/10",
+        /// The kicks at the ends of a period: whole ones at its start, or halves at both ends.
+        form: Ends = "symmetric",
+    }
+}
+
+/// The starting displacement of each degree of freedom; one number alone moves the first.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Displacement {
+    text: String,
+    values: Vec<f64>,
+}
+
+impl Displacement {
+    fn parsed(field: &str, text: &str) -> Result<Self> {
+        let read = |part: &str| Ok(to_f64(&parse_rational(field, part)?));
+        let values = text.split(',').map(read).collect::<Result<Vec<_>>>()?;
+        if values.iter().all(|&x| x == 0.0) {
+            return Err(Error::input(field, text, "nothing would move: displace something"));
+        }
+        Ok(Displacement { text: text.into(), values })
+    }
+
+    /// One for each of `size` degrees of freedom.
+    ///
+    /// # Errors
+    /// Where there are neither 1 nor `size` numbers.
+    pub fn of(&self, size: usize) -> Result<Vec<f64>> {
+        let given = self.values.len();
+        if given != 1 && given != size {
+            let remedy = format!("give 1 number or {size}, one a degree of freedom");
+            return Err(Error::input("displace", &self.text, remedy));
+        }
+        Ok(self.values.iter().copied().chain(std::iter::repeat_n(0.0, size - given)).collect())
+    }
+}
+
+fn ends(field: &str, text: &str) -> Result<Ends> {
+    let known = Ends::ALL.into_iter().find(|own| own.name() == text);
+    known.ok_or_else(|| Error::input(field, text, "is symmetric or staggered"))
+}
+
+notation! {
+    Displacement: Displacement::parsed, |own: &Displacement| own.text.clone();
+    Ends: ends, |own: &Ends| own.name();
+}
+
+/// The most periods: the series is kept in memory, and is written as some 50 MB.
+const MOST_PERIODS: u32 = 1_000_000;
+
+/// The size of the deviations whose growth is measured: their squares are lost in it, and it is far above roundoff.
+const DEVIATION: f64 = 1e-6;
+
+/// A run and the system that was run.
+pub struct Answer {
+    pub scene: SystemScene,
+    pub run: Run,
+}
+
+impl Question for Simulate {
+    const NAME: &'static str = "simulate";
+    type Answer = Answer;
+
+    fn answer(&self, work: &Work) -> Result<Answer> {
+        let scene = work.read(&self.system)?;
+        let run = self.run(&scene, &work.products())?;
+        Ok(Answer { scene, run })
+    }
+
+    fn show(&self, answer: &Answer) -> Document {
+        report::document(&answer.run)
+    }
+
+    /// With the system's own title.
+    fn document(&self, answer: &Answer) -> Document {
+        let title = Some(answer.scene.title().into());
+        self.show(answer).inputs(super::Fields::input(&Simulate { title, ..self.clone() }))
+    }
+
+    fn figure(&self, Answer { scene, run }: &Answer, _: &Work) -> Result<Option<Figure>> {
+        let foot = Foot::default().words(scene.title()).value("periods", self.periods);
+        let foot = foot.value("displaced by", &self.displace.text).words(self.form.name());
+        let figure = report::figure(run, scene.title()).footed(&foot);
+        Ok(Some(figure.in_units_of(scene.time_unit().unwrap_or("time"))))
+    }
+}
+
+impl Simulate {
+    /// The run, and the growth that the multipliers predict.
+    fn run(&self, scene: &SystemScene, limits: &Limits) -> Result<Run> {
+        if self.periods == 0 || self.periods > MOST_PERIODS {
+            return Err(Error::input("periods", self.periods, format!("choose 1 to {MOST_PERIODS}")));
+        }
+        // Without an orbit to be found: about the equilibrium.
+        let own = scene.own_orbit(limits).or_else(|error| match error.kind() {
+            Kind::Input => Ok(None),
+            _ => Err(error),
+        })?;
+        let predicted = match &own {
+            Some(orbit) => orbit.analysis.growth_rate(),
+            None => scene.model().decide(Route::Cheapest, limits)?.growth_rate(),
+        };
+        let predicted = predicted.map_or(f64::NAN, middle);
+        let shift = self.displace.of(scene.model().size())?;
+        let rest = vec![0.0; shift.len()];
+        let Some(centre) = own.as_ref().map(|orbit| orbit.start.as_slice()).or_else(|| scene.equilibrium())
+        else {
+            let make = || scene.linear_simulation(shift.clone(), rest.clone());
+            return self.measure(make, &rest, (predicted, None, true), limits);
+        };
+        let start: Vec<f64> = centre.iter().zip(&shift).map(|(x, d)| x + d).collect();
+        let make =
+            || Ok(scene.nonlinear_simulation(start.clone(), rest.clone())?.expect("a system with bonds"));
+        let displacement = own.as_ref().map(|orbit| orbit.displacement);
+        self.measure(make, centre, (predicted, displacement, scene.is_linear()), limits)
+    }
+
+    fn measure<F: Force<f64>>(
+        &self,
+        make: impl Fn() -> Result<Simulation<f64, F>>,
+        centre: &[f64],
+        (predicted, displacement, linear): (f64, Option<f64>, bool),
+        limits: &Limits,
+    ) -> Result<Run> {
+        let mut simulation = make()?;
+        let period = simulation.clocks().period();
+        // The series, the measurement of growth, and one period forward and back.
+        let runs = 2 * u64::from(self.periods) + 2;
+        limits.allow(simulation.cost(period).saturating_mul(runs), || {
+            format!("{} periods of {} kicks", self.periods, simulation.clocks().strikes())
+        })?;
+        if !simulation.energy().is_finite() {
+            let remedy = "the energy there is beyond all doubles: choose a smaller displacement";
+            return Err(Error::input("displace", &self.displace.text, remedy));
+        }
+        let series = series(&mut simulation, centre, self.periods as usize, (period, self.form));
+        // The symmetric form is at rest at t = 0 on its own orbit; the multipliers are those of the staggered one.
+        let form = if displacement.is_some() { Ends::Symmetric } else { self.form };
+        let measured = growth_rate(&mut make()?, centre, DEVIATION, (self.periods, form));
+        let irreversibility = irreversibility(&mut make()?, period);
+        go_on()?;
+        Ok(Run { series, measured, predicted, irreversibility, linear, displacement })
+    }
+}

@@ -1,0 +1,310 @@
+//! Many clocks, many degrees of freedom: is the system stable, and where does that change?
+
+use plot::{Figure, Foot};
+use serde_json::Value;
+
+use super::asking::{Question, Work, question};
+use super::field::{Field, notation};
+use crate::format::Format;
+use crate::input::{Arrays, Axis, NEAREST, Scan, Span, SystemFile, SystemScene};
+use crate::report::document::Document;
+use crate::report::system::{self as report, Beside, SystemMap};
+use number::Rational;
+use number::error::{Error, Kind, Result};
+use systems::friction::Friction;
+use systems::levels::Method;
+use systems::nearest::Nearest;
+use systems::scan::scan;
+use systems::vary::Intervals;
+use systems::{Analysis, Jacobians, Limits, NoGradient, OwnOrbit, Route, SchemeSummary};
+
+question! {
+    /// The verdict on a system; the verdicts over one of its numbers, or two; or the unstable intervals of one.
+    struct System {
+        /// The name of its file.
+        file: String,
+        /// Its title, which documents take from the system.
+        title: Option<String>,
+        /// The contents of the file.
+        system: SystemFile,
+        /// Decided in exact arithmetic alone.
+        exact: bool,
+        /// Rigid motions of measured stiffnesses are left in.
+        keep_rigid: bool,
+        /// A rate of friction per unit time: is it enough?
+        friction: Option<Rational>,
+        /// How well measured stiffnesses are known, relative to their norms.
+        accuracy: Option<f64>,
+        /// The integrator of two measured levels, in place of the file's.
+        method: Option<Method>,
+        /// The number that is varied in a map,
+        scan_x: Option<Axis>,
+        /// and another one.
+        scan_y: Option<Axis>,
+        /// The number whose unstable intervals are looked for.
+        intervals: Option<Span>,
+        /// With the verdict: the unstable intervals of the outer step next to its own.
+        nearest: bool,
+        /// The relative width above which no interval is missed, 1e-4 unless given.
+        width: Option<f64>,
+    }
+}
+
+notation! {
+    Method: |_, text: &str| text.parse(), ToString::to_string;
+    Axis: |_, text: &str| text.parse(), ToString::to_string;
+    Span: |_, text: &str| text.parse(), ToString::to_string;
+}
+
+/// A file: what is in it, or its text.
+impl Field for SystemFile {
+    fn of(given: Option<&Value>, _: &str) -> Option<Result<Self>> {
+        given.map(|value| match value {
+            Value::String(text) => SystemFile::of_text(text),
+            other => Ok(other.clone().into()),
+        })
+    }
+
+    fn shown(&self) -> Option<Value> {
+        Some(self.source().clone())
+    }
+}
+
+/// The result that was asked for.
+pub enum Found {
+    Verdict(Box<Verdict>),
+    Map(SystemMap),
+    Intervals(Intervals),
+}
+
+/// A verdict, and what stands beside it.
+pub struct Verdict {
+    pub analysis: Analysis,
+    friction: Option<Friction>,
+    orbit: Option<OwnOrbit>,
+    is_orbit_missing: bool,
+    nearest: Option<Nearest>,
+    no_gradient: Option<NoGradient>,
+    pub local: Option<SchemeSummary>,
+}
+
+/// The answer about a system.
+pub struct Answer {
+    pub scene: SystemScene,
+    pub found: Found,
+}
+
+impl Work<'_> {
+    /// The highest cost of one verdict on a system.
+    pub fn products(&self) -> Limits {
+        self.budget.map_or_else(Limits::default, |products| Limits { products, ..Limits::default() })
+    }
+
+    /// A system, read with the arrays at hand.
+    pub(super) fn read(&self, file: &SystemFile) -> Result<SystemScene> {
+        file.read(self.arrays.cloned().unwrap_or_else(|| Arrays::from("")))
+    }
+}
+
+impl System {
+    /// The system as it is asked about.
+    ///
+    /// # Errors
+    /// As [`SystemFile::read`] and [`SystemScene::asked`].
+    pub fn scene(&self, work: &Work) -> Result<SystemScene> {
+        work.read(&self.system)?.asked(self.accuracy, self.keep_rigid, self.friction.as_ref(), self.method)
+    }
+
+    /// By which means it is decided.
+    pub fn route(&self) -> Route {
+        if self.exact { Route::Exact } else { Route::Cheapest }
+    }
+
+    /// The width of intervals, where any are looked for.
+    pub fn width(&self) -> Option<f64> {
+        (self.nearest || self.intervals.is_some()).then(|| self.width.unwrap_or(1e-4))
+    }
+
+    /// The system with the numbers open that a map varies; `None` where it varies none.
+    ///
+    /// # Errors
+    /// As [`Scan::new`].
+    pub fn scan(&self, scene: &SystemScene) -> Result<Option<Scan>> {
+        let of = |x: &Axis| Scan::new(scene.clone(), x.clone(), self.scan_y.clone());
+        self.scan_x.as_ref().map(of).transpose()
+    }
+
+    fn verdict(&self, scene: &SystemScene, work: &Work) -> Result<Verdict> {
+        let (model, limits) = (scene.model(), work.products());
+        let what = format!("a verdict on {} degrees of freedom", model.size());
+        work.announce(&what, model.seconds());
+        let analysis = model.decide(self.route(), &limits)?;
+        let (orbit, is_orbit_missing) = match scene.own_orbit(&limits) {
+            Err(error) if error.kind() == Kind::Input => (None, true),
+            found => (found?, false),
+        };
+        let width = self.width().filter(|_| self.nearest);
+        let nearest = |width| {
+            let cost = scene.cost_of_nearest(width, &limits)?;
+            limits.allow(model.counted(cost) as u64, || NEAREST.into())?;
+            work.announce(NEAREST, model.seconds_of(cost));
+            scene.nearest_unstable(width, &limits)
+        };
+        let nearest = width.map(nearest).transpose()?;
+        let no_gradient = model.jacobians().map(Jacobians::no_gradient);
+        let (friction, local) = (scene.friction(&limits)?, model.local_steps_summary());
+        Ok(Verdict { analysis, friction, orbit, is_orbit_missing, nearest, no_gradient, local })
+    }
+
+    fn intervals(span: &Span, width: f64, scene: &SystemScene, work: &Work) -> Result<Intervals> {
+        let limits = work.products();
+        let cost = scene.cost_of_intervals(span, width, &limits)?;
+        limits.allow(scene.model().counted(cost) as u64, || format!("intervals of {span}"))?;
+        work.announce(&format!("intervals of {span}"), scene.model().seconds_of(cost));
+        scene.intervals(span, width, &limits)
+    }
+
+    fn map(&self, scene: &SystemScene, axes: &Scan, work: &Work) -> Result<SystemMap> {
+        let (xs, ys, limits) = (axes.x.values(), axes.ys(), work.products());
+        let points = xs.len() * ys.len();
+        let cost = System::cost_of_map(axes, &xs, &ys)?;
+        limits.allow(scene.model().counted(cost) as u64, || format!("a map of {points} points"))?;
+        let seconds = scene.model().seconds_of(cost);
+        work.announce(&format!("{points} points, each {:.2} s on average", seconds / points as f64), seconds);
+        let bar = work.count(points as u64, "points");
+        let decide = |x: &_, y: &_| axes.at(x, y)?.model().at_point(self.route(), &limits);
+        let points = scan(&xs, &ys, decide, || bar.advance(1))?;
+        Ok(SystemMap { names: axes.names(), xs, ys, points, time_unit: scene.time_unit().map(String::from) })
+    }
+
+    /// The products that a map costs, roughly, from those of some points spread over it: to ask each takes as long as many a verdict.
+    fn cost_of_map(axes: &Scan, xs: &[Rational], ys: &[Rational]) -> Result<f64> {
+        let points = xs.len() * ys.len();
+        let asked = points.min(ASKED);
+        let place = |k: usize| (2 * k + 1) * points / (2 * asked);
+        let cost = |k| Ok(axes.at(&xs[place(k) % xs.len()], &ys[place(k) / xs.len()])?.model().cost() as f64);
+        let costs = (0..asked).map(cost).collect::<Result<Vec<_>>>()?;
+        Ok(costs.iter().sum::<f64>() * points as f64 / asked as f64)
+    }
+
+    /// That only one kind of answer is asked for.
+    fn check(&self) -> Result<()> {
+        let asked = [self.scan_x.is_some(), self.intervals.is_some(), self.nearest];
+        let refused = |field, remedy| Err(Error::input(field, "given", remedy));
+        if asked.into_iter().filter(|asked| *asked).count() > 1 {
+            return refused("question", "asks for several answers: for a map, intervals or the nearest ones");
+        }
+        match (&self.scan_x, self.scan_y.is_some(), &self.intervals) {
+            (None, true, _) => refused("scan_y", "a map has a first axis: give scan_x, too"),
+            (.., Some(_)) if self.exact => refused("exact", "is for verdicts and maps: leave it out"),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// The points of a map that are asked what they cost.
+const ASKED: usize = 16;
+
+impl Question for System {
+    const NAME: &'static str = "system";
+    type Answer = Answer;
+
+    fn answer(&self, work: &Work) -> Result<Answer> {
+        self.check()?;
+        let scene = self.scene(work)?;
+        let found = match (self.scan(&scene)?, &self.intervals, self.width()) {
+            (Some(axes), ..) => Found::Map(self.map(&scene, &axes, work)?),
+            (_, Some(span), Some(width)) => Found::Intervals(System::intervals(span, width, &scene, work)?),
+            _ => Found::Verdict(Box::new(self.verdict(&scene, work)?)),
+        };
+        Ok(Answer { scene, found })
+    }
+
+    fn show(&self, Answer { scene, found }: &Answer) -> Document {
+        match found {
+            Found::Map(map) => map.document(),
+            Found::Intervals(own) => report::intervals(own),
+            Found::Verdict(own) => {
+                let Verdict { analysis, friction, orbit, is_orbit_missing, nearest, no_gradient, local } =
+                    own.as_ref();
+                let local = local.as_ref();
+                let (friction, orbit, nearest) = (friction.as_ref(), orbit.as_ref(), nearest.as_ref());
+                let (unit, labels, is_orbit_missing) = (scene.time_unit(), scene.labels(), *is_orbit_missing);
+                let remark = scene.model().remark();
+                let no_gradient = no_gradient.as_ref();
+                let beside = Beside {
+                    unit,
+                    friction,
+                    orbit,
+                    is_orbit_missing,
+                    labels,
+                    nearest,
+                    local,
+                    remark,
+                    no_gradient,
+                };
+                report::document(analysis, &beside)
+            }
+        }
+    }
+
+    /// With the system's own title, and the width that was taken.
+    fn document(&self, answer: &Answer) -> Document {
+        let (title, width) = (Some(answer.scene.title().into()), self.width());
+        self.show(answer).inputs(super::Fields::input(&System { title, width, ..self.clone() }))
+    }
+
+    fn figure(&self, answer: &Answer, work: &Work) -> Result<Option<Figure>> {
+        self.drawn(answer, report::Colouring::default(), work).map(Some)
+    }
+}
+
+impl System {
+    /// The growing modes in space, as viewers read them: extended XYZ, or VTK's unstructured grid.
+    ///
+    /// # Errors
+    /// Where the file places no points, where nothing grows, of maps and intervals.
+    pub fn in_space(&self, answer: &Answer, format: Format) -> Result<String> {
+        let Found::Verdict(own) = &answer.found else {
+            return Err(Error::input(
+                "output",
+                format.name(),
+                "holds the modes of one verdict, and this is none",
+            ));
+        };
+        let geometry = answer.scene.geometry()?;
+        match format {
+            Format::Vtu => report::vtu(&own.analysis, &geometry),
+            _ => report::xyz(&own.analysis, &geometry),
+        }
+    }
+}
+
+impl System {
+    /// The multipliers and the shapes of the growing modes; a map in these colours; growth over the intervals. In the system's unit of time,
+    /// with its title and what was varied below.
+    ///
+    /// # Errors
+    /// As [`SystemScene::growth_rates`].
+    pub fn drawn(&self, answer: &Answer, colouring: report::Colouring, work: &Work) -> Result<Figure> {
+        let (scene, title) = (&answer.scene, answer.scene.title());
+        let varied = [self.scan_x.as_ref(), self.scan_y.as_ref()].into_iter().flatten();
+        let varied = varied.fold(Foot::default(), |foot, axis| foot.words(&axis.to_string()));
+        let (figure, varied) = match (&answer.found, &self.intervals) {
+            (Found::Map(map), _) => {
+                let numbers: Vec<_> = map.names.iter().map(|path| scene.number(path)).collect();
+                (map.figure(colouring, title, &numbers), varied)
+            }
+            (Found::Intervals(own), Some(span)) => {
+                let steps = report::sampled(&own.stretches);
+                let rates = scene.growth_rates(span, &steps, &work.products())?;
+                let figure = report::intervals_figure(own, &rates, title, &scene.number(&own.number));
+                (figure, varied.words(&span.to_string()))
+            }
+            (Found::Verdict(own), _) => (report::figure(&own.analysis, title), varied),
+            (Found::Intervals(_), None) => unreachable!("intervals are those of a number"),
+        };
+        let foot = Foot::default().words(title).part(varied.to_string());
+        Ok(figure.in_units_of(scene.time_unit().unwrap_or("time")).footed(&foot))
+    }
+}

@@ -1,0 +1,293 @@
+//! Is this pair of steps stable?
+
+use num_bigint::BigInt;
+
+use super::asking::{Question, Work, question};
+use crate::report::decimal;
+use crate::report::document::Document;
+use crate::report::friction;
+use crate::report::record::Record;
+use crate::report::table::{Cell, Column};
+use clocks::orbit::refine;
+use clocks::propagator::Oscillator;
+use clocks::resonance::dominant_family;
+use clocks::verdict::{
+    Decision, Growth, Kind, Limits, Tier, decide_from, decide_steps, decide_with_growth, exact_trace,
+};
+use number::error::{Error, Result};
+use number::{Ball, Laurent, Ratio, Rational, Real, rational};
+
+question! {
+    /// One pair of steps of one oscillator.
+    struct Verdict {
+        /// The stiffness of the fast force, 1/time².
+        lambda1: Laurent,
+        /// The stiffness of the slow force.
+        lambda2: Laurent,
+        /// The fast step.
+        h1: Laurent,
+        /// The slow step; h2/h1 is rational.
+        h2: Laurent,
+        /// A rate of friction per unit time: is it enough?
+        friction: Option<Rational>,
+        /// Decided in exact arithmetic alone, the exact trace shown where it is rational.
+        exact: bool,
+    }
+}
+
+/// Seconds a kick of friction.
+const DAMPED_KICK: f64 = 1e-6;
+
+impl Verdict {
+    /// The question about an oscillator with its steps.
+    pub fn of(oscillator: &Oscillator) -> Verdict {
+        let own = [oscillator.lambda1(), oscillator.lambda2(), oscillator.h1(), oscillator.h2()];
+        let [lambda1, lambda2, h1, h2] = own.map(Clone::clone);
+        Verdict { lambda1, lambda2, h1, h2, friction: None, exact: false }
+    }
+
+    /// The oscillator with its steps.
+    ///
+    /// # Errors
+    /// As [`Oscillator::new`].
+    pub fn oscillator(&self) -> Result<Oscillator> {
+        let Verdict { lambda1, lambda2, h1, h2, .. } = self.clone();
+        Oscillator::new(lambda1, lambda2, h1, h2)
+    }
+
+    /// The tier at which the decision begins.
+    fn first_tier(&self) -> Tier {
+        if self.exact { Tier::Exact } else { Tier::Filter }
+    }
+
+    /// The verdict alone.
+    ///
+    /// # Errors
+    /// As [`Question::answer`].
+    pub fn decision(&self, oscillator: &Oscillator, work: &Work) -> Result<Decision> {
+        if !self.exact {
+            return decide_steps(oscillator, &work.limits());
+        }
+        decide_from(Tier::Exact, &oscillator.clocks()?, &work.limits()).map(|answer| answer.decision())
+    }
+
+    fn damped(&self, oscillator: &Oscillator, work: &Work) -> Result<Option<systems::friction::Friction>> {
+        let Some(rate) = &self.friction else { return Ok(None) };
+        if *rate <= Rational::default() {
+            return Err(Error::input("friction", rate, "a rate of friction must be positive"));
+        }
+        let kicks = oscillator.clocks()?.ratio().kicks();
+        work.announce(&format!("friction over {kicks} kicks"), kicks as f64 * DAMPED_KICK);
+        systems::friction::damped_pair(oscillator, rate, &work.limits()).map(Some)
+    }
+}
+
+impl Question for Verdict {
+    const NAME: &'static str = "verdict";
+    type Answer = Decided;
+
+    fn answer(&self, work: &Work) -> Result<Decided> {
+        let oscillator = self.oscillator()?;
+        let (decision, growth) = decide_with_growth(&oscillator, self.first_tier(), &work.limits())?;
+        Ok(Decided {
+            decision,
+            growth,
+            exact_trace: Decided::exact_trace(&oscillator, self.exact),
+            friction: self.damped(&oscillator, work)?,
+            oscillator,
+        })
+    }
+
+    fn show(&self, answer: &Decided) -> Document {
+        let record = record();
+        let mut document = record.document(Document::new(Self::NAME), answer);
+        if let Some(exact) = &answer.exact_trace {
+            document = document.entry("trace.exact", exact.to_string());
+        }
+        if let Some(own) = &answer.friction {
+            document = document.entry("friction", friction::value(own));
+        }
+        document
+            .long_rows(record.table("verdict", CAPTION, [answer]).captioned(CAPTION_LATEX))
+            .summary_alone(&answer.lines())
+    }
+}
+
+/// A decided pair, with all that its document holds.
+#[derive(Clone, Debug)]
+pub struct Decided {
+    pub oscillator: Oscillator,
+    pub decision: Decision,
+    pub growth: Growth,
+    /// Tr Q, where it is rational and was asked for or is short.
+    pub exact_trace: Option<Rational>,
+    /// The verdict with friction, where that was asked for.
+    pub friction: Option<systems::friction::Friction>,
+}
+
+const CAPTION: &str = "Stability of one pair of steps";
+const CAPTION_LATEX: &str =
+    "Stability of one pair of steps, $Q$ the propagator over the synchronization period $T = q h_2 = p h_1$";
+
+/// A rational trace is shown unasked where the period has at most so many kicks.
+const SHORT_PERIOD: u64 = 40;
+
+/// A ratio is much simpler whose period holds so many times fewer kicks.
+const MUCH: u64 = 1000;
+
+/// A ratio is simple whose period holds fewer kicks: that one lies within 10^-9 of another is no chance.
+const SIMPLE: u64 = 1000;
+
+/// A rational trace is shown unasked where it has at most so many characters.
+const SHORT_TEXT: usize = 60;
+
+impl Decided {
+    /// The exact trace: always where `wanted`, otherwise where it is short. `None` where a stiffness or step
+    /// makes it irrational.
+    pub fn exact_trace(oscillator: &Oscillator, wanted: bool) -> Option<Rational> {
+        let clocks = oscillator.clocks().ok()?.as_rational()?;
+        if !wanted && clocks.p() + clocks.q() > SHORT_PERIOD {
+            return None;
+        }
+        let trace = exact_trace(&clocks);
+        (wanted || trace.to_string().len() <= SHORT_TEXT).then_some(trace)
+    }
+
+    /// ln μ / T as an enclosure, 0 where nothing grows exponentially.
+    pub fn growth_rate(&self) -> (f64, f64) {
+        const BITS: u32 = 96;
+        let period = self.oscillator.period().enclosure(BITS);
+        let rate = |ln: &Ball| ln.div(&period, BITS).expect("T > 0").to_f64_enclosure();
+        self.growth.ln_multiplier.as_ref().map_or((0.0, 0.0), rate)
+    }
+
+    /// m and its dominant family.
+    fn resonance(&self) -> Option<(u64, i64, i64)> {
+        let m = self.growth.label?;
+        let (a, b) = dominant_family(self.oscillator.clocks().ok()?.ratio(), m);
+        Some((m, a, b))
+    }
+}
+
+/// The row of an answer.
+fn record() -> Record<'static, Decided> {
+    type Of<'a> = &'a Decided;
+    Record::new()
+        .column(Column::math("h1", "h_1").aside(), |of: Of| Cell::exact(of.oscillator.h1()))
+        .column(Column::math("h2", "h_2").aside(), |of| Cell::exact(of.oscillator.h2()))
+        .field(Column::math("p", "p"), |of| Cell::whole(of.oscillator.ratio().numer()))
+        .field(Column::math("q", "q"), |of| Cell::whole(of.oscillator.ratio().denom()))
+        .field(Column::new("kind").left(), |of| of.decision.verdict.kind().name().into())
+        .field(Column::new("stable").aside(), |of| of.decision.verdict.is_stable().into())
+        .field(Column::new("side").aside(), |of| i64::from(of.decision.verdict.side()).into())
+        .field(Column::math("trace", "\\operatorname{Tr} Q").enclosure(), |of| {
+            of.growth.trace.to_f64_enclosure().into()
+        })
+        .field(Column::new("growth_rate").titled("growth rate", "$\\ln\\mu/T$").enclosure(), |of| {
+            of.growth_rate().into()
+        })
+        .at("resonance.m", Column::math("m", "m"), |of| of.resonance().map(|(m, ..)| m).into())
+        .at("resonance.a", Column::math("a", "a"), |of| of.resonance().map(|(_, a, _)| a).into())
+        .at("resonance.b", Column::math("b", "b"), |of| of.resonance().map(|(.., b)| b).into())
+        .field(Column::new("decided_by").in_words("decided by").left().aside(), |of| {
+            of.decision.decided_by.name().into()
+        })
+}
+
+/// For people.
+impl Decided {
+    /// Five to seven lines; the one row of the table would only repeat them.
+    fn lines(&self) -> Vec<String> {
+        let (p, q) = (self.oscillator.ratio().numer(), self.oscillator.ratio().denom());
+        let verdict = self.decision.verdict;
+        let mut lines = vec![
+            self.headline(),
+            format!(
+                "  h2/h1        {p}/{q}: {p} fast and {q} slow kicks in the period T = {}",
+                self.oscillator.period()
+            ),
+            format!("  trace        {}", shown(self.growth.trace.to_f64_enclosure())),
+        ];
+        lines.splice(2..2, self.simpler());
+        if let Some(exact) = &self.exact_trace {
+            lines.push(format!("               = {exact} exactly"));
+        }
+        if verdict.kind() == Kind::Hyperbolic {
+            let rate = self.growth_rate();
+            let steps = std::f64::consts::LN_10 / (rate.0 * self.oscillator.h2().to_f64());
+            // Where the rate or the steps are beyond doubles, nothing can be said of the steps.
+            let steps = Some(steps).filter(|steps| steps.is_finite() && *steps > 0.0).map(significant);
+            let tenfold = steps.map_or(String::new(), |steps| format!(": tenfold in {steps} slow steps"));
+            lines.push(format!("  growth rate  {} per unit time{tenfold}", shown(rate)));
+        }
+        if let Some((m, a, b)) = self.resonance() {
+            let turns = if m == 1 { "half turn" } else { "half turns" };
+            lines.push(format!(
+                "  resonance    m = {m} {turns} a period; dominant family (a, b) = ({a}, {b})"
+            ));
+        } else if verdict.kind() == Kind::Hyperbolic {
+            lines.push(self.not_counted());
+        }
+        lines.push(format!("  decided by   {}", self.decision.decided_by.name()));
+        lines.extend(self.friction.iter().flat_map(friction::lines));
+        lines
+    }
+
+    /// Why a pair that grows has no label.
+    fn not_counted(&self) -> String {
+        let kicks = self.oscillator.clocks().ok().map(|clocks| refine::kicks(clocks.ratio()));
+        let remedy = kicks.map_or("no budget allows to count so many".into(), |kicks| {
+            format!("to count them kick by kick allow {kicks} kicks (--budget)")
+        });
+        format!("  resonance    not told: directions alone do not give the half turns a period; {remedy}")
+    }
+
+    /// The verdict at a much simpler ratio, where one lies within 10^-9: steps that are doubles stand for it, as a rule.
+    fn simpler(&self) -> Option<String> {
+        let ratio = self.oscillator.ratio();
+        let off = ratio / Rational::from_integer(1_000_000_000.into());
+        let near = rational::simplest(&(ratio - &off), &(ratio + &off));
+        let kicks = ratio.numer() + ratio.denom();
+        let is_simpler = |near: &Ratio| near.kicks() < SIMPLE && BigInt::from(near.kicks()) * MUCH < kicks;
+        let simple = Ratio::try_from(&near).ok().filter(is_simpler)?;
+        let [lambda1, lambda2, h1] =
+            [self.oscillator.lambda1(), self.oscillator.lambda2(), self.oscillator.h1()];
+        let h2 = h1 * &Laurent::from_rational(near.clone());
+        let there = Oscillator::new(lambda1.clone(), lambda2.clone(), h1.clone(), h2).ok()?;
+        let there = decide_steps(&there, &Limits::default()).ok()?.verdict;
+        let difference = rational::to_f64(&(ratio - &near));
+        let sign = if difference < 0.0 { '-' } else { '+' };
+        let (word, too) =
+            (stability(there.is_stable()), there.is_stable() == self.decision.verdict.is_stable());
+        let too = if too { ", too" } else { "" };
+        Some(format!(
+            "               {simple} {sign} {:.1e}; at {simple} itself: {word}{too}",
+            difference.abs()
+        ))
+    }
+
+    fn headline(&self) -> String {
+        let verdict = self.decision.verdict;
+        match verdict.kind() {
+            Kind::Elliptic => format!("stable: {verdict}"),
+            Kind::Coexistence => format!("stable: {verdict}; a tongue is closed here"),
+            Kind::Parabolic => format!("unstable: {verdict}; linear growth"),
+            Kind::Hyperbolic => format!("unstable: {verdict}; exponential growth"),
+        }
+    }
+}
+
+fn stability(is_stable: bool) -> &'static str {
+    if is_stable { "stable" } else { "unstable" }
+}
+
+/// An enclosure as the digits that are certain.
+fn shown((lo, hi): (f64, f64)) -> String {
+    decimal::enclosure(lo, hi).to_string()
+}
+
+/// Three significant digits.
+fn significant(x: f64) -> String {
+    let digits = (2 - x.abs().log10().floor() as i32).clamp(0, 12) as usize;
+    if x >= 1e7 { format!("{x:.2e}") } else { format!("{x:.digits$}") }
+}

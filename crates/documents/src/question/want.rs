@@ -1,0 +1,157 @@
+//! The products that a scene can want.
+
+use serde_json::Value;
+
+use super::field::Field;
+use crate::format::Format;
+use number::error::{Error, Result};
+
+/// A product of a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[non_exhaustive]
+pub enum Product {
+    /// The verdicts of the grid.
+    Map,
+    /// The (a, b) curves over the grid's window.
+    Curves,
+    /// Trace against tan criterion and resonance over the grid.
+    Compare,
+    /// The Proposition, exhaustively.
+    Proposition,
+    /// The half period as polynomials.
+    Polynomial,
+    /// Unstable pairs and curves side by side.
+    Figure,
+    /// Unstable pairs under the curves.
+    Overlay,
+    /// The tongues of the ratio, or of all ratios.
+    Tongues,
+    /// Where tongues close.
+    Closings,
+    /// All tongues of all ratios, counted and compared.
+    Survey,
+    /// All tongues of all ratios in the plane.
+    Atlas,
+}
+
+/// One product in one format: one file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Want {
+    pub product: Product,
+    pub format: Format,
+}
+
+const PRODUCTS: [(&str, Product); 11] = [
+    ("map", Product::Map),
+    ("curves", Product::Curves),
+    ("compare", Product::Compare),
+    ("proposition", Product::Proposition),
+    ("polynomial", Product::Polynomial),
+    ("figure", Product::Figure),
+    ("overlay", Product::Overlay),
+    ("tongues", Product::Tongues),
+    ("closings", Product::Closings),
+    ("survey", Product::Survey),
+    ("atlas", Product::Atlas),
+];
+
+impl Want {
+    /// Reads `NAME` or `NAME.FORMAT`. Without a format: JSON for tables, SVG for figures.
+    ///
+    /// # Errors
+    /// An unknown product or format, or a format that the product does not have.
+    fn new(text: &str) -> Result<Want> {
+        let (name, format) = text.split_once('.').map_or((text, None), |(name, format)| (name, Some(format)));
+        let product =
+            find(&PRODUCTS, name).ok_or_else(|| unknown(text, "the products are", &names(&PRODUCTS)))?;
+        let default = if product.is_figure() { Format::Svg } else { Format::Json };
+        let format = match format {
+            Some(format) => {
+                let known = Format::MAP.map(Format::extension).join(", ");
+                Format::of_extension(format)
+                    .filter(|own| Format::MAP.contains(own))
+                    .ok_or_else(|| unknown(text, "the formats are", &known))?
+            }
+            None => default,
+        };
+        let drawn = format.is_figure();
+        if drawn != product.is_figure() {
+            let remedy =
+                if drawn { "is a table: json, csv, tex or txt" } else { "is a figure: svg, pdf or png" };
+            return Err(Error::input("want", text, remedy));
+        }
+        if format == Format::Npz && product != Product::Map {
+            return Err(Error::input("want", text, "arrays are those of the map: map.npz"));
+        }
+        Ok(Want { product, format })
+    }
+
+    /// The name of the product's file.
+    pub fn file_name(&self) -> String {
+        format!("{}.{}", self.product.name(), self.format.extension())
+    }
+}
+
+impl Product {
+    /// The name in `want`.
+    pub fn name(self) -> &'static str {
+        PRODUCTS.iter().find(|(_, product)| *product == self).expect("every product has a name").0
+    }
+
+    /// Whether it is drawn.
+    pub fn is_figure(self) -> bool {
+        matches!(self, Product::Figure | Product::Overlay | Product::Atlas)
+    }
+}
+
+/// A list of texts in a scene, one text in documents.
+impl Field for Vec<Want> {
+    fn of(given: Option<&Value>, name: &str) -> Option<Result<Self>> {
+        let texts = match given? {
+            Value::String(text) => Some(text.split(", ").collect()),
+            list => list.as_array().and_then(|all| all.iter().map(Value::as_str).collect::<Option<Vec<_>>>()),
+        };
+        let refused =
+            || Error::input(name, given.unwrap_or(&Value::Null), "list the products, as [\"map.csv\"]");
+        Some(texts.ok_or_else(refused).and_then(|all| all.into_iter().map(Want::new).collect()))
+    }
+
+    fn shown(&self) -> Option<Value> {
+        Some(self.iter().map(Want::file_name).collect::<Vec<_>>().join(", ").into())
+    }
+}
+
+fn find<T: Copy>(table: &[(&str, T)], name: &str) -> Option<T> {
+    table.iter().find(|(known, _)| *known == name).map(|(_, value)| *value)
+}
+
+fn names<T>(table: &[(&str, T)]) -> String {
+    table.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ")
+}
+
+fn unknown(text: &str, what: &str, known: &str) -> Error {
+    Error::input("want", text, format!("unknown; {what} {known}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_product_has_a_file_and_a_default_format() {
+        for (name, product) in PRODUCTS {
+            let want = Want::new(name).unwrap();
+            assert_eq!(want.product, product);
+            assert_eq!(Want::new(&want.file_name()).unwrap(), want);
+        }
+        assert_eq!(Want::new("figure.png").unwrap().format, Format::Png);
+        assert_eq!(Want::new("map.npz").unwrap().format, Format::Npz);
+    }
+
+    #[test]
+    fn nonsense_is_refused() {
+        for text in ["", "maps", "map.xls", "map.png", "curves.npz", "figure.csv", "figure.svg.png", "."] {
+            assert!(Want::new(text).is_err(), "{text}");
+        }
+    }
+}

@@ -1,0 +1,146 @@
+//! The catalogue of published integrators, each linted.
+
+use std::sync::OnceLock;
+
+use super::asked::Word;
+use super::linted::Linted;
+use super::shown::chosen;
+use crate::question::asking::{Question, Work, question};
+use crate::question::field::StepRange;
+use crate::report::document::Document;
+use crate::report::record::Record;
+use crate::report::table::{Cell, Column};
+use num_traits::Zero;
+use number::error::Result;
+use number::{Ball, Laurent, Rational, Sign};
+use words::{Edge, METHODS, Method};
+
+question! {
+    /// The catalogue: published integrators, each with its order, cost and stable steps.
+    struct Methods {}
+}
+
+impl Question for Methods {
+    const NAME: &'static str = "methods";
+    type Answer = &'static [Listed];
+
+    fn answer(&self, work: &Work) -> Result<Self::Answer> {
+        // It is the same whenever it is asked for.
+        static KNOWN: OnceLock<Vec<Listed>> = OnceLock::new();
+        if let Some(known) = KNOWN.get() {
+            return Ok(known);
+        }
+        let lint = |method: &'static Method| {
+            let none = Word {
+                word: None,
+                method: Some(method.name.into()),
+                lambda1: None,
+                lambda2: None,
+                h: None,
+                h_range: None,
+                friction: None,
+            };
+            let linted = none.answer(work)?;
+            let two = || Word {
+                lambda1: Some(16.into()),
+                lambda2: Some(1.into()),
+                h_range: Some(slow_range()),
+                ..none
+            };
+            let two = if linted.word.names_forces() { Some(two().answer(work)?) } else { None };
+            Ok(Listed { method, linted, two })
+        };
+        let all = METHODS.iter().map(lint).collect::<Result<Vec<_>>>()?;
+        Ok(KNOWN.get_or_init(|| all))
+    }
+
+    fn show(&self, all: &Self::Answer) -> Document {
+        type Of<'a> = &'a Listed;
+        let exact = |of: Of| of.linted.edge().and_then(Edge::rational).map_or(Cell::Missing, Cell::exact);
+        let of = |edge: Option<Ball>| -> Cell { edge.map(|own| own.to_f64_enclosure()).into() };
+        let engines = |of: Of| match of.method.engines {
+            [] => Cell::Missing,
+            all => Cell::Text(all.join("; ")),
+        };
+        let table = Record::new()
+            .field(Column::new("name").left(), |of: Of| of.method.name.into())
+            .field(Column::new("order"), |of| of.linted.order.nominal.into())
+            .field(Column::new("evaluations").in_words("cost"), |of| of.linted.cost.total().into())
+            .field(Column::new("palindrome").left(), |of| of.linted.word.asymmetry().is_none().into())
+            .field(Column::new("edge").titled("omega h below", "$\\omega h$ below").enclosure(), move |own| {
+                of(own.linted.edge_omega_h())
+            })
+            .field(Column::new("nominal_edge").in_words("nominally").enclosure(), move |own| {
+                of(own.linted.nominal_edge())
+            })
+            .field(Column::new("edge_s").in_words("(omega h)^2").aside(), exact)
+            .field(Column::new("efficiency").enclosure(), |of| of.linted.efficiency().into())
+            .field(
+                Column::new("coupled_edge").titled("omega1 h below", "$\\omega_1 h$ below").enclosure(),
+                move |own| of(own.two.as_ref().and_then(Linted::edge_omega_h)),
+            )
+            .field(Column::new("free").titled("free", "free").left(), |of| of.is_free().into())
+            .field(Column::new("engines").left(), engines)
+            .field(Column::new("word").left().aside(), |of| Cell::exact(&of.linted.word))
+            .field(Column::new("source").left().aside(), |of| of.method.source.into())
+            .table(
+                "methods",
+                "Published integrators: order on oscillators, cost a step, stable steps, efficiency, engines",
+                all.iter(),
+            );
+        let lines = [
+            format!("{} integrators; kickdrift word --method NAME shows one in full", all.len()),
+            "two forces: omega1 h below which they are stable at lambda2/lambda1 = 1/16 (periods 1:4)".into(),
+            "free: no unstable step there before the slow force's own limit omega2 h = 2".into(),
+        ];
+        let people = chosen(
+            &table,
+            &[
+                "name",
+                "order",
+                "evaluations",
+                "palindrome",
+                "edge",
+                "nominal_edge",
+                "efficiency",
+                "coupled_edge",
+                "free",
+                "engines",
+            ],
+        );
+        Document::new(Self::NAME).rows(table).for_people(people).summary(&lines)
+    }
+}
+
+/// An entry of the catalogue.
+#[derive(Clone, Debug)]
+pub struct Listed {
+    pub method: &'static Method,
+    pub linted: Linted,
+    /// The answer for Λ1 = 16, Λ2 = 1, where the word names forces.
+    pub two: Option<Linted>,
+}
+
+/// Steps up to √Λ2 h = 2, at which the slow force alone has its edge: √Λ1 h = 8.
+fn slow_range() -> StepRange {
+    (Laurent::zero(), Laurent::from_integer(2))
+}
+
+impl Listed {
+    /// Whether no step below √Λ2 h = 2 is unstable at Λ2/Λ1 = 1/16: that is free of resonance. `None` for one force, and where edges that touch are
+    /// not separated.
+    pub fn is_free(&self) -> Option<bool> {
+        let two = self.two.as_ref()?;
+        let limit = Rational::from_integer(64.into());
+        match (&two.stability, &two.pieces) {
+            (Some(own), _) => Some(match own.first_edge() {
+                Some(edge) => edge.compare(&limit) != Sign::Negative,
+                None => own.begins_stable(),
+            }),
+            (_, Some(own)) if own.is_free => Some(true),
+            (_, Some(own)) if own.all.iter().any(|piece| !piece.stable) => Some(false),
+            (_, Some(own)) => (own.all.len() == 1).then_some(true),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,309 @@
+//! A word's answer as entries, rows and lines.
+
+use super::asked::Word;
+use super::linted::{BITS, Linted, Span, omega_h, positive};
+use crate::report::decimal;
+use crate::report::record::Record;
+use crate::report::table::{Cell, Column, Table};
+use num_traits::Zero;
+use number::{Ball, Laurent, Radical, Rational, Real};
+use words::{At, Edge, MOST_ORDER, Order};
+
+/// A name, and what is said of it.
+type Line = (&'static str, String);
+
+impl Linted {
+    /// Every interval with one answer.
+    pub(super) fn rows(&self, lambda1: Option<&Laurent>) -> Table {
+        type Of<'a> = &'a Span;
+        let exact = |square: &Option<Rational>| square.as_ref().map_or(Cell::Missing, Cell::exact);
+        let record = Record::new()
+            .field(Column::new("stable").left(), |of: Of| of.stable.into())
+            .field(
+                Column::new("lower")
+                    .titled(
+                        &format!("{} from", self.unit()),
+                        if self.word.names_forces() {
+                            "$\\sqrt{\\Lambda_1}\\,h$ from"
+                        } else {
+                            "$\\omega h$ from"
+                        },
+                    )
+                    .enclosure(),
+                |of| of.ends[0].as_ref().map(positive).into(),
+            )
+            .field(Column::new("upper").titled("to", "to").enclosure(), |of| {
+                of.ends[1].as_ref().map(Ball::to_f64_enclosure).into()
+            })
+            .field(Column::new("lower_s").in_words("lower (omega h)^2 exactly").aside(), move |of| {
+                exact(&of.squares[0])
+            })
+            .field(Column::new("upper_s").in_words("upper (omega h)^2 exactly").aside(), move |of| {
+                exact(&of.squares[1])
+            })
+            .field(Column::new("lower_included").in_words("with lower end").aside(), |of| {
+                of.includes[0].into()
+            })
+            .field(Column::new("upper_included").in_words("with upper end").aside(), |of| {
+                of.includes[1].into()
+            })
+            .field(Column::new("h_lower").titled("h from", "$h$ from").enclosure(), |of| of.h[0].into())
+            .field(Column::new("h_upper").titled("h to", "$h$ to").enclosure(), |of| of.h[1].into());
+        record.table("intervals", "Stable and unstable steps of the word", &self.spans(lambda1))
+    }
+
+    /// For people.
+    pub(super) fn lines(&self, question: &Word) -> Vec<String> {
+        let named = self.identity().into_iter().chain(self.steps(question)).chain(self.costs());
+        let named = named.chain(self.at_step(question));
+        let lines = named.map(|(name, text)| format!("  {name:<12} {text}"));
+        std::iter::once(self.word.to_string()).chain(lines).collect()
+    }
+
+    /// What its letters alone say.
+    fn identity(&self) -> Vec<Line> {
+        let sums: Vec<String> =
+            self.sums.iter().map(|(name, sum)| format!("{name} {}", beside_one(sum))).collect();
+        let consistent = if self.word.is_consistent() { "yes" } else { "no" };
+        let consistent = format!("{consistent}: the coefficients sum to {}", sums.join(", "));
+        let palindrome = self.word.asymmetry().map_or("yes".into(), |place| {
+            format!("no: letter {} is {}, its mirror image {}", place.letter, place.there, place.mirrored)
+        });
+        let Order { order, nominal, .. } = self.order;
+        let least = if order >= MOST_ORDER && !self.word.is_algebraic() { "at least " } else { "" };
+        let friction = if self.word.has_friction() { ", friction aside" } else { "" };
+        let rounded = if nominal > order {
+            format!("; {nominal} but for errors below 1e-9, as rounded coefficients have them")
+        } else {
+            String::new()
+        };
+        let order = format!("{least}{order} on oscillators{friction}{rounded}");
+        let mut lines = vec![("consistent", consistent), ("palindrome", palindrome), ("order", order)];
+        for (name, term) in [("frequency", &self.order.frequency), ("impedance", &self.order.impedance)] {
+            let Some((k, c)) = term else { continue };
+            let text = shown(c);
+            let term = match text.strip_prefix('-') {
+                _ if text.contains(' ') => format!("+ ({text})"),
+                Some(rest) => format!("- {rest}"),
+                None => format!("+ {text}"),
+            };
+            lines.push((name, format!("omega (1 {term} (omega h)^{k} + ...)")));
+        }
+        lines
+    }
+
+    /// Which steps are stable.
+    fn steps(&self, question: &Word) -> Vec<Line> {
+        let unit = self.unit();
+        let mut lines = Vec::new();
+        if let Some(stability) = &self.stability {
+            lines.push(("stable", match (stability.first_edge(), stability.begins_stable()) {
+                (Some(edge), _) => {
+                    let exact = edge.rational().map_or(String::new(), |s| format!(" = sqrt({s})"));
+                    let below = if edge.coexistence { "<=" } else { "<" };
+                    let ends = omega_h(edge).to_f64_enclosure();
+                    let nominal = self.nominal_edge().map(|own| own.to_f64_enclosure()).filter(|own| *own != ends);
+                    let nominal = nominal.map_or(String::new(), |own| {
+                        let own = enclosed(own);
+                        format!("; {own} but for unstable intervals below 1e-9, as rounded coefficients open them")
+                    });
+                    format!("0 < {unit} {below} {}{exact}{nominal}", enclosed(ends))
+                }
+                (None, true) => "at every step".into(),
+                (None, false) => "not at small steps".into(),
+            }));
+        }
+        if let Some(pieces) = &self.pieces {
+            let step = if question.lambda1.is_some() { "h" } else { "omega h" };
+            let upto =
+                format!("looked at up to {step} = {}", decimal::enclosure(pieces.range.1, pieces.range.1));
+            let begins = pieces.all.first().is_some_and(|first| first.stable);
+            lines.push((
+                "stable",
+                match (self.edge_omega_h().filter(|_| begins), pieces.is_free) {
+                    (_, true) => "at every step, by theorem: no resonance".into(),
+                    (Some(edge), _) => format!("0 < {unit} < {}; {upto}", enclosed(edge.to_f64_enclosure())),
+                    _ => format!("see the intervals; {upto}"),
+                },
+            ));
+        }
+        if self.word.has_friction() {
+            lines.push((
+                "friction",
+                match &question.friction {
+                    Some(friction) => format!("{friction}: stable steps draw every start to 0, noise aside"),
+                    None => "not given: O does nothing, and the results are of the word without it".into(),
+                },
+            ));
+        }
+        lines
+    }
+
+    /// What a step costs, and how far it goes for that.
+    fn costs(&self) -> Vec<Line> {
+        let (unit, cost) = (self.unit(), self.cost);
+        let counts = match (self.word.names_forces(), cost.evaluations) {
+            (false, [all, _]) => counted(all, "evaluation"),
+            (true, [fast, slow]) => format!("{} of force 1, {slow} of force 2", counted(fast, "evaluation")),
+        };
+        let more = [(cost.gradients, "gradient"), (cost.solves, "linear solve"), (cost.flows, "exact flow")];
+        let more = more.into_iter().filter(|(n, _)| *n > 0).map(|(n, of)| format!(", {}", counted(n, of)));
+        let mut lines = vec![("cost", format!("{counts}{} a step", more.collect::<String>()))];
+        if let Some((most, least)) = self.efficiency().zip(self.per_unit()) {
+            let (most, least) = (enclosed(most), enclosed(least));
+            lines.push((
+                "efficiency",
+                format!("{unit} = {most} for each of them at most, {least} of them per unit"),
+            ));
+        }
+        lines
+    }
+
+    /// The verdict at the step that was asked about.
+    fn at_step(&self, question: &Word) -> Vec<Line> {
+        let (Some(found), Some(h)) = (&self.at, &question.h) else { return Vec::new() };
+        let stable = match (found.kind, found.is_stable()) {
+            ("edge", _) => "on an edge or nearer to one than balls can decide",
+            (_, true) => "stable",
+            (_, false) => "unstable",
+        };
+        let trace = enclosed(found.trace.to_f64_enclosure());
+        let verdict = ("verdict", format!("{stable} at h = {h}: {}, trace {trace}", found.kind));
+        let rates = [
+            ("growth rate", &found.ln_multiplier, "per unit time"),
+            ("frequency", &found.angle, "at this step"),
+            ("impedance", &found.impedance, "at this step"),
+        ];
+        let rates = rates
+            .into_iter()
+            .filter_map(|(name, x, unit)| Some((name, format!("{} {unit}", enclosed(rate(x, h)?)))));
+        std::iter::once(verdict).chain(rates).collect()
+    }
+}
+
+/// `1 evaluation`, `2 evaluations`.
+fn counted(n: u64, of: &str) -> String {
+    format!("{n} {of}{}", if n == 1 { "" } else { "s" })
+}
+
+/// x/h as an enclosure.
+fn rate(x: &Option<Ball>, h: &Laurent) -> Option<(f64, f64)> {
+    Some(x.as_ref()?.div(&h.enclosure(BITS), BITS)?.to_f64_enclosure())
+}
+
+/// An enclosure as the digits that are certain.
+fn enclosed((lo, hi): (f64, f64)) -> String {
+    decimal::enclosure(lo, hi).to_string()
+}
+
+/// Some columns of a table, for people.
+pub(super) fn chosen(table: &Table, columns: &[&str]) -> Table {
+    let columns: Vec<String> = columns.iter().map(ToString::to_string).collect();
+    table.choose(&columns).expect("columns of the table")
+}
+
+/// An exact number where it is short, else its first digits.
+fn shown(x: &Radical) -> String {
+    const SHORT: usize = 24;
+    let text = x.text(ToString::to_string);
+    if text.len() <= SHORT { text } else { format!("{:.6e}", x.enclosure(64).mid_f64()) }
+}
+
+/// A sum that should be 1: what it lacks, where that is little.
+fn beside_one(sum: &Radical) -> String {
+    const LITTLE: f64 = 1e-5;
+    let rest = Ball::nearest_f64(|bits| sum.enclosure(bits).sub(&Ball::one(), bits));
+    match rest {
+        0.0 => shown(sum),
+        rest if rest.abs() < LITTLE => format!("1 {} {:.1e}", if rest < 0.0 { '-' } else { '+' }, rest.abs()),
+        _ => shown(sum),
+    }
+}
+
+/// The entries of a word's document.
+pub(super) fn record(question: &Word) -> Record<'_, Linted> {
+    type Of<'a> = &'a Linted;
+    let text = |x: &Radical| Cell::Text(x.text(ToString::to_string));
+    let in_rho = |f: &number::Polynomial<Radical>| {
+        let term = |(k, c): (usize, &Radical)| match k {
+            0 => c.text(ToString::to_string),
+            k => format!("({})*rho^{k}", c.text(ToString::to_string)),
+        };
+        let terms = f.coefficients().iter().enumerate().filter(|(_, c)| !c.is_zero()).map(term);
+        let terms: Vec<String> = terms.collect();
+        Cell::Text(if terms.is_empty() { "0".into() } else { terms.join(" + ") })
+    };
+    let term = |of: &Option<(u64, Radical)>, power: bool| match of {
+        None => Cell::Missing,
+        Some((k, _)) if power => (*k).into(),
+        Some((_, c)) => Cell::Text(c.text(ToString::to_string)),
+    };
+    let sum = move |of: Of, name: &str| {
+        of.sums.iter().find(|(own, _)| *own == name).map_or(Cell::Missing, |(_, sum)| text(sum))
+    };
+    let at = |of: Of, which: fn(&At) -> &Option<Ball>| -> Cell {
+        of.at.as_ref().zip(question.h.as_ref()).and_then(|(found, h)| rate(which(found), h)).into()
+    };
+    let mut record = Record::new()
+        .json("word", |of: Of| Cell::exact(&of.word))
+        .json("consistent", |of| of.word.is_consistent().into());
+    for name in ["D", "K", "K1", "K2", "O"] {
+        record = record.json(format!("sums.{name}"), move |of| sum(of, name));
+    }
+    record = record
+        .json("palindrome", |of| of.word.asymmetry().is_none().into())
+        .json("differs.letter", |of| of.word.asymmetry().map(|place| place.letter as u64).into())
+        .json("differs.there", |of| {
+            of.word.asymmetry().map_or(Cell::Missing, |place| Cell::Text(place.there))
+        })
+        .json("differs.mirrored", |of| {
+            of.word.asymmetry().map_or(Cell::Missing, |place| Cell::Text(place.mirrored))
+        })
+        .json("order", |of| of.order.order.into())
+        .json("nominal_order", |of| of.order.nominal.into());
+    for (i, name) in ["A", "B", "C", "D"].into_iter().enumerate() {
+        record = record.json(format!("error.{name}"), move |of| in_rho(&of.order.error[i]));
+    }
+    record
+        .json("frequency.power", move |of| term(&of.order.frequency, true))
+        .json("frequency.coefficient", move |of| term(&of.order.frequency, false))
+        .json("impedance.power", move |of| term(&of.order.impedance, true))
+        .json("impedance.coefficient", move |of| term(&of.order.impedance, false))
+        .json("edge.omega_h", |of| of.edge_omega_h().map(|edge| edge.to_f64_enclosure()).into())
+        .json("edge.s", |of| {
+            of.edge_omega_h()
+                .map(|edge| of.edge().map_or_else(|| edge.square(BITS), Edge::s).to_f64_enclosure())
+                .into()
+        })
+        .json("edge.exact", |of| of.edge().and_then(Edge::rational).map_or(Cell::Missing, Cell::exact))
+        .json("edge.side", |of| of.edge().map(|edge| i64::from(edge.side)).into())
+        .json("edge.polynomial", |of| of.edge().map_or(Cell::Missing, |edge| Cell::Text(polynomial(edge))))
+        .json("free", |of| of.pieces.as_ref().map(|own| own.is_free).into())
+        .json("nominal_edge", |of| of.nominal_edge().map(|own| own.to_f64_enclosure()).into())
+        .json("evaluations.first", |of| of.cost.evaluations[0].into())
+        .json("evaluations.second", |of| of.cost.evaluations[1].into())
+        .json("evaluations.gradients", |of| of.cost.gradients.into())
+        .json("evaluations.solves", |of| of.cost.solves.into())
+        .json("evaluations.flows", |of| of.cost.flows.into())
+        .json("per_unit", |of| of.per_unit().into())
+        .json("efficiency", |of| of.efficiency().into())
+        .json("verdict.kind", |of| of.at.as_ref().map(|found| found.kind).into())
+        .json("verdict.stable", |of| {
+            of.at.as_ref().filter(|own| own.kind != "edge").map(At::is_stable).into()
+        })
+        .json("verdict.side", |of| of.at.as_ref().map(|found| i64::from(found.side)).into())
+        .json("verdict.trace", |of| of.at.as_ref().map(|found| found.trace.to_f64_enclosure()).into())
+        .json("verdict.growth_rate", move |of| at(of, |found| &found.ln_multiplier))
+        .json("verdict.frequency", move |of| at(of, |found| &found.angle))
+        .json("verdict.impedance", move |of| at(of, |found| &found.impedance))
+}
+
+/// The polynomial of an edge, its coefficients exact.
+fn polynomial(edge: &Edge) -> String {
+    if let Some(f) = edge.polynomial.rational() {
+        return f.primitive().text(&["s"]);
+    }
+    let term = |(k, c): (usize, &Radical)| format!("({})*s^{k}", c.text(ToString::to_string));
+    let terms = edge.polynomial.coefficients().iter().enumerate().filter(|(_, c)| !c.is_zero()).map(term);
+    terms.collect::<Vec<_>>().join(" + ")
+}

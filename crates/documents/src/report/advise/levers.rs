@@ -1,0 +1,173 @@
+//! Levers that would let the step grow: table and lines.
+
+use serde_json::Value;
+
+use super::tables::{enclosed, for_people};
+use super::words::nearest;
+use crate::report::document::Document;
+use crate::report::record::Record;
+use crate::report::table::{Cell, Column, Table};
+use molecules::unit::{TimeUnit, decimal};
+use molecules::{Bound, Engine, Lever, Levers, Way};
+use number::Rational;
+use number::rational::to_f64;
+
+/// The method's name in documents.
+fn method(way: Way) -> &'static str {
+    match way {
+        Way::Verlet | Way::Respa | Way::Hydrogens | Way::Held | Way::HeldAndHeavy => "kicks and drifts",
+        Way::Molly(own) => own.name(),
+        Way::Equilibrium => "molly-equilibrium",
+        Way::ImplicitExplicit => "implicit-explicit",
+        Way::Friction => "kicks and drifts with friction",
+    }
+}
+
+fn joined(engines: &[Engine], each: impl Fn(&Engine) -> String) -> Cell {
+    let all: Vec<String> = engines.iter().map(each).collect();
+    if all.is_empty() { Cell::Missing } else { Cell::Text(all.join("; ")) }
+}
+
+fn record(unit: TimeUnit) -> Record<'static, Lever> {
+    let [time, rate] = unit.names();
+    // "/ps".
+    let per = &rate[1..];
+    let column = |key: &str, title: &str| Column::new(key).in_words(title);
+    let rounded = |x: Option<Rational>| Cell::from(x.as_ref().map(to_f64));
+    let step = |of: &Lever| of.step.as_ref().map(|(step, _)| step.clone());
+    Record::new()
+        .field(Column::new("lever").left(), |of: &Lever| of.name.as_str().into())
+        .field(Column::new("method").left(), |of| method(of.way).into())
+        .field(enclosed("first", "first unstable").in_unit(time), |of| of.first.into())
+        .field(column("first_exact", "exactly").in_unit(time), |of| of.exact.as_ref().map(Cell::exact).into())
+        .field(Column::new("free"), |of| of.is_free.into())
+        .field(enclosed("band_edge", "proven below").in_unit(time), |of| of.band_edge.into())
+        .field(column("step", "take").in_unit(time), move |of| step(of).as_ref().map(Cell::exact).into())
+        .field(column("bound", "bounded by").left(), |of| {
+            of.step.as_ref().map(|(_, bound)| bound.name()).into()
+        })
+        .field(Column::new("inner").in_unit(time), |of| of.inner.as_ref().map(Cell::exact).into())
+        .field(column("slow_per_ps", &format!("slow{per}")), move |of| rounded(of.slow_per_ps(unit)))
+        .field(column("fast_per_ps", &format!("fast{per}")), move |of| rounded(of.fast_per_ps(unit)))
+        .field(column("solves_per_ps", &format!("solves{per}")), move |of| rounded(of.solves_per_ps(unit)))
+        .field(Column::new("gain"), move |of| rounded(of.gain.clone()))
+        .field(column("engines", "who has it").left(), |of| {
+            joined(of.way.engines(), |own| format!("{} {}", own.name, own.keyword))
+        })
+        .field(Column::new("sources").left(), |of| joined(of.way.engines(), |own| own.source.into()))
+}
+
+/// For people: three digits; who has it stands in lines.
+fn shown(levers: &Levers, full: &Table, unit: TimeUnit) -> Table {
+    let columns: Vec<String> =
+        ["lever", "first", "band_edge", "step", "bound", "slow_per_ps", "fast_per_ps", "gain"]
+            .map(Into::into)
+            .into();
+    let mut table = for_people(full, |key| columns.iter().any(|own| own == key));
+    let rows: Vec<Vec<Cell>> = table.rows().to_vec();
+    table = Table::new(full.name(), full.caption(), table.columns().to_vec());
+    let text = |x: &Rational| Cell::Exact(nearest((to_f64(x), to_f64(x)), 3));
+    for (own, mut row) in levers.rows.iter().zip(rows) {
+        if own.is_free {
+            row[1] = Cell::Text("none".into());
+        }
+        row[3] = own.step.as_ref().map(|(step, _)| Cell::Exact(decimal(step))).into();
+        row[5] = own.slow_per_ps(unit).as_ref().map(text).into();
+        row[6] = match own.solves_per_ps(unit) {
+            Some(solves) => Cell::Text(format!("{} solves", nearest((to_f64(&solves), to_f64(&solves)), 3))),
+            None => own.fast_per_ps(unit).as_ref().map(text).into(),
+        };
+        row[7] = own.gain.as_ref().map(text).into();
+        table.push(row);
+    }
+    table
+}
+
+/// Adds the table and what was left out, where they were asked for.
+pub(super) fn add(document: Document, levers: Option<&Levers>, unit: TimeUnit) -> Document {
+    let Some(levers) = levers else { return document };
+    let caption = "What would let the outer step grow: proven below for all periods in the band";
+    let table = record(unit).table("levers", caption, &levers.rows);
+    let document = document
+        .entry("levers", table.to_json_rows())
+        .entry("levers_left_out", Value::from(levers.left_out.clone()));
+    if levers.rows.is_empty() { document } else { document.and_rows(shown(levers, &table, unit)) }
+}
+
+/// The three levers that let the outer step grow most, longer than kicks and drifts as they are.
+pub(super) fn longer(levers: Option<&Levers>) -> String {
+    let Some(levers) = levers else { return "longer: what would let the step grow was not looked at".into() };
+    let one = Rational::from_integer(1.into());
+    let mut best: Vec<(&Lever, &Rational, &Rational)> = levers.rows.iter().filter_map(gained).collect();
+    best.retain(|(own, _, gain)| **gain > one && !matches!(own.way, Way::Respa | Way::Friction));
+    best.sort_by(|a, b| b.2.cmp(a.2));
+    let shown = |(own, step, gain): &(&Lever, &Rational, &Rational)| {
+        let gain = to_f64(gain);
+        format!("{} fs by {} ({} times)", decimal(step), own.name, nearest((gain, gain), 3))
+    };
+    let shown: Vec<String> = best.iter().take(3).map(shown).collect();
+    if shown.is_empty() {
+        "longer: nothing known would let the step grow".into()
+    } else {
+        format!("longer: {}", shown.join(", "))
+    }
+}
+
+fn gained(own: &Lever) -> Option<(&Lever, &Rational, &Rational)> {
+    let (step, _) = own.step.as_ref()?;
+    Some((own, step, own.gain.as_ref()?))
+}
+
+/// The lines beside the table.
+pub(super) fn lines(levers: &Levers, unit: TimeUnit) -> Vec<String> {
+    let mut lines = Vec::new();
+    let best = levers.rows.iter().filter(|own| own.gain.is_some() && own.way != Way::Friction);
+    let best = best.max_by(|a, b| a.gain.cmp(&b.gain).then(std::cmp::Ordering::Greater));
+    if let Some((own, (step, bound))) = best.and_then(|own| Some((own, own.step.as_ref()?))) {
+        let gain = own.gain.as_ref().map_or(1.0, to_f64);
+        let word = if gain > 1.0 {
+            format!(
+                ", {} times that of kicks and drifts as given or at another ratio",
+                nearest((gain, gain), 3)
+            )
+        } else {
+            String::new()
+        };
+        lines.push(format!(
+            "  levers     the longest step: {} by {} (bounded by {}){word}",
+            unit.of(decimal(step)),
+            own.name,
+            bound.name()
+        ));
+    }
+    let solved = |own: &Lever| matches!(own.way, Way::Molly(_) | Way::Equilibrium | Way::ImplicitExplicit);
+    if levers.rows.iter().any(solved) {
+        lines.push(
+            "             MOLLY and implicit-explicit: by linear theory alone; T/3 is published of kicks and drifts. MOLLY follows the fast motion \
+             exactly; what its filter costs is not counted"
+                .into(),
+        );
+    }
+    if levers.rows.iter().any(|own| matches!(own.step, Some((_, Bound::Friction)))) {
+        lines.push(
+            "             friction: it hides what grows for the periods given; no advice rests on it".into(),
+        );
+    }
+    let unknown = |own: &&Lever| matches!(own.way, Way::Molly(_) | Way::ImplicitExplicit);
+    let unknown: Vec<&str> = levers.rows.iter().filter(unknown).map(|own| own.name.as_str()).collect();
+    if !unknown.is_empty() {
+        lines.push(format!("             {}: no engine is known to have them", unknown.join("; ")));
+    }
+    let mut shown: Vec<Way> = Vec::new();
+    for own in levers.rows.iter().filter(|own| !own.way.engines().is_empty()) {
+        if !shown.contains(&own.way) {
+            shown.push(own.way);
+            let all: Vec<String> =
+                own.way.engines().iter().map(|own| format!("{} {}", own.name, own.keyword)).collect();
+            let name = if own.way == Way::Respa { "as given, other ratios" } else { &own.name };
+            lines.push(format!("             {name}: {}", all.join("; ")));
+        }
+    }
+    lines.extend(levers.left_out.iter().map(|why| format!("  left out   {why}")));
+    lines
+}

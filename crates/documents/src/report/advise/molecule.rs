@@ -1,0 +1,323 @@
+//! Advice on the Hessians of a molecule: lines of text, then tables.
+
+use super::lines::{self, advised, read_from};
+use super::tables::{self, enclosed, for_people, published};
+use super::words::{Choice, cap, down, fs, nearest, percent, within};
+use crate::report::document::Document;
+use crate::report::record::Record;
+use crate::report::system::of_each;
+use crate::report::table::{Cell, Column, Table};
+use molecules::engine::Reading;
+use molecules::unit::{TimeUnit, decimal};
+use molecules::{Bound, Caution, Finding, Findings, Group, Scheme, Status};
+use number::Rational;
+use number::rational::to_f64;
+use systems::levels::Growing;
+
+/// The document `kickdrift/advise-system/1`.
+pub(super) fn document(findings: &Findings, reading: Option<&Reading>, notes: &[String]) -> Document {
+    let removed = findings.removed.as_ref();
+    let fastest = &findings.groups[0];
+    let (groups, rows, intervals) = (groups(findings), rows(findings), intervals(findings));
+    let (best, between) = (&findings.schemes[0], &findings.between);
+    let document = Document::new("advise-system")
+        .entries((!between.is_empty()).then(|| ("between_periods", between.clone())))
+        .entry("rigid_motions.count", removed.map(|own| own.count))
+        .entry("rigid_motions.found_by", removed.map(|own| own.found_by))
+        .entry("rigid_motions.held", removed.map(|own| own.held.clone()))
+        .entry("accuracy", findings.accuracy)
+        .entry("slow_period", findings.slow)
+        .entry("groups", groups.to_json_rows())
+        .entry("rows", rows.to_json_rows())
+        .entry("intervals", intervals.to_json_rows())
+        .entry(
+            "published",
+            published(best.scheme.steps().len(), [called(fastest); 2], |of: &Caution| {
+                (fastest.period.0 / of.place.parts()).into()
+            }),
+        )
+        .entry("unknown", UNKNOWN.to_vec())
+        .entries(reading.map(|own| ("engine", tables::engine(advised_step(best), own))))
+        .long_rows(for_people(&rows, |key| match key {
+            "holds" => false,
+            "masked_above" | "damped" => findings.friction.is_some(),
+            _ => true,
+        }));
+    super::levers::add(document, findings.levers.as_ref(), TimeUnit::Femtoseconds)
+        .and_rows(for_people(&intervals, |_| true))
+        .and_rows(for_people(&groups, |_| true))
+        .summary(&summary(findings, reading, notes))
+}
+
+/// Limits of Hessians at one place.
+const UNKNOWN: [&str; 2] = [
+    "how far the Hessians change along a run, beyond the band: they are those of one place",
+    lines::NONLINEAR,
+];
+
+fn advised_step(finding: &Finding) -> Option<&Rational> {
+    advised(&finding.scheme, &finding.safe)
+}
+
+fn summary(findings: &Findings, reading: Option<&Reading>, notes: &[String]) -> Vec<String> {
+    let (best, fastest) = (&findings.schemes[0], &findings.groups[0]);
+    let period = fastest.period.0;
+    let name = named(fastest);
+    let band = percent(&findings.band);
+    // The safe step, its limit, the levers; then the steps that were asked for.
+    let unit = TimeUnit::Femtoseconds;
+    let fastest = (name.as_str(), (period, period));
+    let (scheme, caps) = (&best.scheme, &findings.caps);
+    let (edge, harmonic) = (best.band_edge.unwrap_or(0.0), findings.harmonic);
+    let (safe, bound, largest) = (&best.safe, best.bound, &best.largest);
+    let choice = Choice { scheme, safe, bound, largest, caps, band: &band, fastest, edge, harmonic, unit };
+    let mut lines =
+        vec![choice.words(), limit(&name, findings, best), super::levers::longer(findings.levers.as_ref())];
+    lines.extend(findings.schemes.iter().map(|own| line(findings, own)));
+    if let Some(reading) = reading {
+        lines.extend(read_from(advised_step(best), reading));
+        lines.extend(lines::grompp(reading, &name, |n| rounded(period / n as f64, 3)));
+    }
+    let (ratio, slow_ones) = ratios(&best.scheme);
+    if let Some(edge) = best.band_edge {
+        lines.push(format!(
+            "  proven     every outer step below {} fs{ratio} is stable for these Hessians within {:.0e} of their norms, fast periods within \
+             {band} each for itself{slow_ones}, as long as the molecule is at a minimum",
+            down(edge),
+            findings.accuracy
+        ));
+    }
+    let inner = findings.caps.inner().map(|own| cap(own, unit));
+    lines.push(lines::published(&name, best.scheme.steps().len(), inner, |place| {
+        unit.of(rounded(period / place.parts(), 4))
+    }));
+    lines.extend((2..).zip(&findings.between).map(|(level, own)| between(level, *own)));
+    lines.extend((best.scheme.steps().len() > 1).then(|| slow(findings.slow)));
+    lines.push(format!("  unknown    {}", UNKNOWN[0]));
+    lines.extend(notes.iter().map(|note| format!("  read       {note}")));
+    if let Some(friction) = &findings.friction {
+        lines.push(lines::friction(friction, unit));
+    }
+    if let Some(removed) = &findings.removed {
+        let held = of_each(&removed.held);
+        lines.push(format!(
+            "  rigid      {} motions projected out, by {}{held}",
+            removed.count, removed.found_by
+        ));
+        lines.extend(removed.warning(findings.accuracy).map(|own| format!("  rigid      {own}")));
+    }
+    lines.extend(findings.levers.iter().flat_map(|own| super::levers::lines(own, unit)));
+    lines
+}
+
+/// By its motion, or by who moves in the fastest of it.
+pub(super) fn called(group: &Group) -> &str {
+    group.name.as_deref().unwrap_or(&group.atoms)
+}
+
+/// "O-H stretch of HOH (32 modes, 8.914-9.069 fs)".
+fn named(group: &Group) -> String {
+    let [lo, hi] = [group.period.0, group.period.1].map(|period| rounded(period, 4));
+    match group.count {
+        1 => format!("{} (T = {lo} fs)", called(group)),
+        count if lo == hi => format!("{} ({count} modes, T = {lo} fs)", called(group)),
+        count => format!("{} ({count} modes, {lo}-{hi} fs)", called(group)),
+    }
+}
+
+fn rounded(x: f64, digits: usize) -> String {
+    nearest((x, x), digits)
+}
+
+/// The bound of the outer step.
+fn limit(name: &str, findings: &Findings, own: &Finding) -> String {
+    let first = own.first.map_or_else(String::new, |(lo, hi)| {
+        format!("; the first unstable outer step is {} fs (proven)", nearest((lo, hi), 4))
+    });
+    let period = findings.groups[0].period.0;
+    match findings.caps.outer().map(|(cap, bound)| (self::cap(cap, TimeUnit::Femtoseconds), bound)) {
+        Some((_, Bound::Third)) => {
+            format!(
+                "limit: {name}: outer steps near T/3 = {} fs drift (published){first}",
+                rounded(period / 3.0, 3)
+            )
+        }
+        Some((cap, bound)) => format!("limit: {name}: {} = {cap}, h w <= 1 (published){first}", bound.name()),
+        None => format!("limit: {name}{first}"),
+    }
+}
+
+/// " at the ratio 8", " at the ratios 1:2:8", and which periods beside the fast ones may be off.
+fn ratios(scheme: &Scheme) -> (String, &'static str) {
+    let all: Vec<String> = scheme.steps().iter().map(|step| decimal(&(step / scheme.inner()))).collect();
+    match all.as_slice() {
+        [_] => (String::new(), ""),
+        [_, ratio] => (format!(" at the ratio {ratio}"), " and slow ones together"),
+        _ => (format!(" at the ratios {}", all.join(":")), " and those of each slower level together"),
+    }
+}
+
+fn between(level: usize, period: f64) -> String {
+    let shortest =
+        if period.is_infinite() { "no period".into() } else { format!("{} fs", rounded(period, 3)) };
+    format!("  level {level}    {shortest}: its shortest period, as if nothing else acted")
+}
+
+/// Where the period of the slow force comes from.
+fn slow(period: f64) -> String {
+    if period.is_infinite() {
+        return "  slow       the slow stiffness has no positive eigenvalue, so no period".into();
+    }
+    format!(
+        "  slow       {} fs: 2 pi/sqrt(s), s the largest eigenvalue of the slow stiffness, mass-weighted: as if nothing else acted; periods alone are \
+         asked about with slow={0}fs",
+        rounded(period, 3)
+    )
+}
+
+/// "5.0226-5.0228 fs (tenfold in ...), 5.0229-5.032 fs (...)".
+fn interval(own: &Finding) -> Option<String> {
+    let (lo, hi) = own.first?;
+    let one = |(n, growing): (usize, &Growing)| {
+        let lower = if n == 0 { nearest((lo, hi), 5) } else { rounded(growing.lower, 5) };
+        let end = growing.upper.map_or_else(|| " and on".into(), |upper| format!("-{}", rounded(upper, 5)));
+        let (at, rate) = growing.worst;
+        let worst = rounded(std::f64::consts::LN_10 / (rate * at), 3);
+        format!("{lower}{end} fs (at worst tenfold in {worst} steps)")
+    };
+    Some(own.growing.iter().enumerate().map(one).collect::<Vec<_>>().join(", "))
+}
+
+fn line(findings: &Findings, own: &Finding) -> String {
+    let outer = to_f64(own.scheme.outer());
+    let next = || {
+        let margin = own.first.map_or_else(String::new, |(lo, hi)| {
+            format!(", margin {} fs", nearest((lo - outer, hi - outer), 3))
+        });
+        interval(own).map_or_else(String::new, |next| format!("; next unstable interval {next}{margin}"))
+    };
+    let what = match own.status {
+        Status::Safe => format!("safe{}", next()),
+        Status::Caution => format!("stable{}; caution: {}", next(), not_below(findings, own)),
+        Status::Near => {
+            format!("stable{}: less than the band of {}: do not use", next(), percent(&findings.band))
+        }
+        Status::Island => {
+            format!("stable, but above the unstable {}: do not use", interval(own).unwrap_or_default())
+        }
+        Status::NotTold => {
+            format!(
+                "not told: nothing is proven of all Hessians within {:.0e} of their norms{}: do not use",
+                findings.accuracy,
+                if own.rate == Some(0.0) { ", though those given are stable".into() } else { grows(own) }
+            )
+        }
+        Status::Unstable => format!("unstable{}: do not use", grows(own)),
+    };
+    let within = within(own.within_run, &findings.length, TimeUnit::Femtoseconds);
+    format!("{:7} {what}{within}", fs(own.scheme.outer()))
+}
+
+/// What a step is not below.
+fn not_below(findings: &Findings, own: &Finding) -> String {
+    let unit = TimeUnit::Femtoseconds;
+    if let Some((clock, cap)) = findings.caps.too_long(&own.scheme) {
+        return format!(
+            "the step of {} is not below T/6.28 = {} of its own forces",
+            fs(&own.scheme.steps()[clock]),
+            self::cap(cap, unit)
+        );
+    }
+    let third = || unit.of(rounded(findings.groups[0].period.0 / 3.0, 3));
+    match findings.caps.outer() {
+        Some((_, Bound::Third)) => format!("not below T/3 = {}", third()),
+        Some((cap, bound)) => format!("not below {} = {}", bound.name(), self::cap(cap, unit)),
+        None => "not below what is published".into(),
+    }
+}
+
+/// ": tenfold in ...".
+fn grows(own: &Finding) -> String {
+    let Some((steps, rate)) = own.tenfold_steps().zip(own.rate) else { return String::new() };
+    let named = own.name.as_ref().map_or_else(String::new, |name| format!(", {name}"));
+    let atoms = own.atoms.as_ref().map_or_else(String::new, |atoms| format!(", {atoms} moving most"));
+    let friction = match (own.is_damped, own.masking) {
+        (Some(true), _) => "masked by the friction given, which hides it and does not cure it".into(),
+        (Some(false), Some(mask)) => {
+            format!(
+                "a friction of {}/ps masks it (proven), the one given does not",
+                rounded(1000.0 * mask, 3)
+            )
+        }
+        (None, Some(mask)) => {
+            format!(
+                "a friction of {}/ps masks it; for the one given this is not proven",
+                rounded(1000.0 * mask, 3)
+            )
+        }
+        _ => format!("a friction of some {}/ps would mask it, to first order", rounded(2000.0 * rate, 2)),
+    };
+    format!(
+        ": tenfold in {} outer steps = {} ps, {}/ps{named}{atoms} ({friction})",
+        rounded(steps, 3),
+        rounded(steps * to_f64(own.scheme.outer()) / 1000.0, 3),
+        rounded(1000.0 * rate, 3)
+    )
+}
+
+fn groups(findings: &Findings) -> Table {
+    Record::new()
+        .field(Column::new("count"), |own: &Group| (own.count as u64).into())
+        .field(Column::new("shortest").in_words("shortest period").in_unit("fs"), |own| own.period.0.into())
+        .field(Column::new("longest").in_unit("fs"), |own| own.period.1.into())
+        .field(Column::new("half").in_words("T/2"), |own| (own.period.0 / 2.0).into())
+        .field(Column::new("name").in_words("modes").left(), |own| own.name.as_deref().into())
+        .field(Column::new("atoms").in_words("the fastest moves").left(), |own| own.atoms.as_str().into())
+        .table("groups", "Modes of the fast stiffness alone, the fastest first", &findings.groups)
+}
+
+/// The intervals of each scheme at its ratio.
+fn intervals(findings: &Findings) -> Table {
+    let schemes = (1u64..).zip(&findings.schemes);
+    let found: Vec<(u64, &Growing)> =
+        schemes.flat_map(|(n, own)| own.growing.iter().map(move |growing| (n, growing))).collect();
+    let column = |key: &str, title: &str| Column::new(key).in_words(title);
+    let record = Record::new()
+        .field(Column::new("scheme"), |own: &(u64, &Growing)| own.0.into())
+        .field(column("lower", "grows from").in_unit("fs"), |own| own.1.lower.into())
+        .field(column("upper", "to").in_unit("fs"), |own| own.1.upper.into())
+        .field(column("stable_again", "stable again").in_unit("fs"), |own| own.1.stable_again.into())
+        .field(column("worst_outer", "worst at").in_unit("fs"), |own| own.1.worst.0.into())
+        .field(column("worst_growth_rate", "growth there").in_unit("1/ps"), |own| {
+            (1000.0 * own.1.worst.1).into()
+        })
+        .field(column("worst_tenfold_steps", "tenfold in steps"), |own| {
+            (std::f64::consts::LN_10 / (own.1.worst.0 * own.1.worst.1)).into()
+        });
+    record.table("intervals", "Unstable intervals of the outer step: the beginning of the first and that it is stable again proven, the rest sampled", &found)
+}
+
+fn rows(findings: &Findings) -> Table {
+    let exact = |x: &Option<Rational>| Cell::from(x.as_ref().map(Cell::exact));
+    let per_ps = |rate: Option<f64>| Cell::from(rate.map(|rate| 1000.0 * rate));
+    let column = |key: &str, title: &str| Column::new(key).in_words(title);
+    Record::new()
+        .field(column("outer", "outer step").in_unit("fs"), |own: &Finding| Cell::exact(own.scheme.outer()))
+        .field(Column::new("status").left(), |own| own.status.name().into())
+        .field(Column::new("holds").left(), |own| own.holds.name().into())
+        .field(column("margin", "margin of the stiffness"), |own| own.margin.into())
+        .field(enclosed("first", "first unstable from").in_unit("fs"), |own| own.first.into())
+        .field(column("first_upper", "at least to").in_unit("fs"), |own| own.first_upper.into())
+        .field(column("growth_rate", "growth").in_unit("1/ps"), move |own| per_ps(own.rate))
+        .field(column("tenfold_steps", "tenfold in steps"), |own| own.tenfold_steps().into())
+        .field(column("name", "growing").left(), |own| own.name.as_deref().into())
+        .field(column("atoms", "moving most").left(), |own| own.atoms.as_deref().into())
+        .field(column("masked_above", "masked by a friction").in_unit("1/ps"), move |own| per_ps(own.masking))
+        .field(Column::new("damped"), |own| own.is_damped.into())
+        .field(column("band_edge", "stable below").in_unit("fs"), |own| own.band_edge.into())
+        .field(Column::new("largest").in_unit("fs"), move |own| exact(&own.largest))
+        .field(Column::new("safe").in_unit("fs"), move |own| exact(&own.safe))
+        .field(Column::new("bound").left(), |own| own.bound.map(|own| own.name()).into())
+        .field(Column::new("within_run"), |own| own.within_run.into())
+        .table("rows", "The molecule at each scheme of steps", &findings.schemes)
+}

@@ -1,0 +1,52 @@
+//! Tables that all advice has.
+
+use serde_json::{Value, json};
+
+use super::words::nearest;
+use crate::report::record::Record;
+use crate::report::table::{Cell, Column, Table};
+use molecules::Caution;
+use molecules::engine::Reading;
+use number::Rational;
+
+/// An engine's text as it was read, and its lines rewritten with the outer step that is advised.
+pub fn engine(advised: Option<&Rational>, reading: &Reading) -> Value {
+    let rewritten = advised.and_then(|outer| reading.changed_lines(outer).ok());
+    json!({"name": reading.engine.name(), "dt": reading.engine.dt(), "forces": reading.forces, "used": reading.used, "remarks": reading.remarks, "rewritten": rewritten})
+}
+
+/// What is published about a scheme of so many steps, for the fastest mode on any clock but the outermost and for that on the innermost one: each with
+/// its limit in fs.
+pub fn published(steps: usize, modes: [&str; 2], limit: impl Fn(&Caution) -> Cell + Send + Sync) -> Value {
+    let record = Record::new()
+        .field(Column::new("mode"), |of: &Caution| modes[usize::from(of.inner)].into())
+        .field(Column::new("place"), |of| Cell::Text(of.place.name()))
+        .field(Column::new("step"), |of| if of.inner { "inner" } else { "outer" }.into())
+        .field(Column::new("limit"), |of| limit(of))
+        .field(Column::new("statement"), |of| of.statement.into())
+        .field(Column::new("source"), |of| of.source.into());
+    record.all(molecules::published(steps)).into()
+}
+
+/// A table for people: of its columns those that are to be shown, numbers rounded to five digits.
+pub fn for_people(full: &Table, shown: impl Fn(&str) -> bool) -> Table {
+    let kept = || full.columns().iter().map(|column| shown(&column.key));
+    let columns = full.columns().iter().zip(kept()).filter(|(_, kept)| *kept);
+    let columns = columns.map(|(column, _)| Column { enclosed: false, ..column.clone() }).collect();
+    let mut table = Table::new(full.name(), full.caption(), columns);
+    for row in full.rows() {
+        let cell = |(cell, kept): (&Cell, bool)| match *cell {
+            _ if !kept => None,
+            Cell::Float(x) => Some(Cell::Exact(nearest((x, x), 5))),
+            Cell::Enclosure { lo, hi } => Some(Cell::Exact(nearest((lo, hi), 5))),
+            _ => Some(cell.clone()),
+        };
+        table.push(row.iter().zip(kept()).filter_map(cell).collect());
+    }
+    table
+}
+
+/// An enclosure, in fs unless it is said otherwise.
+pub fn enclosed(key: &str, title: &str) -> Column {
+    Column::new(key).in_words(title).enclosure()
+}

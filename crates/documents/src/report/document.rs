@@ -1,0 +1,324 @@
+//! A result on its way out: one document, four formats.
+//!
+//! JSON carries everything: the schema's name, the program's version and command, the input as exact strings, the summary, the rows. CSV is the
+//! rows alone, LaTeX the rows as a table for a paper, text the summary and (where there are few) the rows for
+//! a person at a terminal.
+
+use serde_json::{Map, Value, json};
+
+use super::decimal::in_digits;
+use super::latex::{self, Equation, Float};
+use super::table::Table;
+use super::{csv, text};
+use crate::format::Format;
+use number::error::{Error, Result, visible};
+
+/// A named result.
+#[derive(Clone, Debug)]
+pub struct Document {
+    /// NAME in `kickdrift/NAME/1`.
+    name: &'static str,
+    input: Map<String, Value>,
+    body: Map<String, Value>,
+    table: Option<Table>,
+    /// In place of it, for LaTeX and text.
+    for_people: Option<Table>,
+    /// Further tables, for LaTeX and text.
+    more: Vec<Table>,
+    /// In place of the tables in LaTeX.
+    equations: Vec<Equation>,
+    /// Significant digits of tables that people read, where a number is asked for.
+    digits: Option<u32>,
+    /// The environment of tables in LaTeX, where one is asked for.
+    float: Option<Float>,
+    summary: String,
+    summary_only: bool,
+}
+
+/// The columns and digits that a person asks for.
+#[derive(Clone, Debug, Default)]
+pub struct Layout {
+    /// The keys of the columns of the first one; all that fit its form where none are given.
+    pub columns: Option<Vec<String>>,
+    /// Significant digits in text and LaTeX.
+    pub digits: Option<u32>,
+}
+
+/// Rows beyond this number are left out of the text form, which says so.
+const ROWS_FOR_PEOPLE: usize = 60;
+
+impl Document {
+    /// A document without content, `name` as in `kickdrift/NAME/1`.
+    pub fn new(name: &'static str) -> Self {
+        Document {
+            name,
+            input: Map::new(),
+            body: Map::new(),
+            table: None,
+            for_people: None,
+            more: Vec::new(),
+            equations: Vec::new(),
+            digits: None,
+            float: None,
+            summary: String::new(),
+            summary_only: false,
+        }
+    }
+
+    /// Echoes one input, as an exact string.
+    #[must_use]
+    pub fn input(mut self, key: &str, value: impl ToString) -> Self {
+        self.input.insert(key.into(), Value::String(value.to_string()));
+        self
+    }
+
+    /// Echoes inputs, in order.
+    #[must_use]
+    pub fn inputs<'a, V: Into<Value>>(self, given: impl IntoIterator<Item = (&'a str, V)>) -> Self {
+        given.into_iter().fold(self, |document, (key, value)| document.input_json(key, value.into()))
+    }
+
+    /// Echoes one input that has parts of its own, as JSON.
+    #[must_use]
+    pub fn input_json(mut self, key: &str, value: Value) -> Self {
+        self.input.insert(key.into(), value);
+        self
+    }
+
+    /// Adds one entry to the JSON body, at a path as in a [`Record`](super::record::Record).
+    #[must_use]
+    pub fn entry(mut self, key: &str, value: impl Into<Value>) -> Self {
+        put(&mut self.body, key, value.into());
+        self
+    }
+
+    /// Adds entries to the JSON body, in order; none of an `Option` that is `None`.
+    #[must_use]
+    pub fn entries<'a, V: Into<Value>>(self, given: impl IntoIterator<Item = (&'a str, V)>) -> Self {
+        given.into_iter().fold(self, |document, (key, value)| document.entry(key, value))
+    }
+
+    /// The rows for CSV, LaTeX and text; in JSON too, under the table's name, unless the body has that key.
+    #[must_use]
+    pub fn rows(mut self, table: Table) -> Self {
+        if !self.body.contains_key(table.name()) {
+            self.body.insert(table.name().into(), table.to_json_rows());
+        }
+        self.table = Some(table);
+        self
+    }
+
+    /// Rows that are too many for JSON: CSV, LaTeX and text alone show them.
+    #[must_use]
+    pub fn long_rows(mut self, table: Table) -> Self {
+        self.table = Some(table);
+        self
+    }
+
+    /// A shorter table in place of the rows, for LaTeX and text.
+    #[must_use]
+    pub fn for_people(mut self, table: Table) -> Self {
+        self.for_people = Some(table);
+        self
+    }
+
+    /// A further table, for LaTeX and text alone.
+    #[must_use]
+    pub fn and_rows(mut self, table: Table) -> Self {
+        self.more.push(table);
+        self
+    }
+
+    /// Equations, which LaTeX shows in place of the rows.
+    #[must_use]
+    pub fn equations(mut self, equations: Vec<Equation>) -> Self {
+        self.equations = equations;
+        self
+    }
+
+    /// Lays its tables out as asked for; JSON stays as it is.
+    ///
+    /// # Errors
+    /// A column that the table does not have, no digits at all.
+    pub fn laid_out(mut self, layout: &Layout) -> Result<Self> {
+        if layout.digits == Some(0) {
+            return Err(Error::input("digits", 0, "choose 1 or more"));
+        }
+        self.digits = layout.digits;
+        if let (Some(keys), Some(table)) = (&layout.columns, &self.table) {
+            self.table = Some(table.choose(keys)?);
+            self.for_people = None;
+        }
+        Ok(self)
+    }
+
+    /// Puts its LaTeX tables into this environment [default: by their width].
+    #[must_use]
+    pub fn floated(self, float: Option<Float>) -> Self {
+        Document { float, ..self }
+    }
+
+    /// The summary for people: whole lines, the last one without a newline.
+    #[must_use]
+    pub fn summary(mut self, lines: &[String]) -> Self {
+        self.summary = lines.join("\n");
+        self
+    }
+
+    /// A summary that says all: the text form leaves the rows out.
+    #[must_use]
+    pub fn summary_alone(mut self, lines: &[String]) -> Self {
+        self.summary_only = true;
+        self.summary(lines)
+    }
+
+    /// The summary alone.
+    pub fn summary_text(&self) -> &str {
+        &self.summary
+    }
+
+    /// The document in one format, ending in a newline.
+    ///
+    /// # Errors
+    /// CSV or LaTeX of a document without rows, and the forms that are not of documents.
+    pub fn render(&self, format: Format) -> Result<String> {
+        self.render_with(format, "write them as csv, json or latex")
+    }
+
+    /// The document in one format; where rows are too many for a text, `to_see` says how to see them.
+    ///
+    /// # Errors
+    /// As [`Document::render`].
+    pub fn render_with(&self, format: Format, to_see: &str) -> Result<String> {
+        let table = |format: &str| {
+            let remedy = "this result has no rows: choose text or json";
+            self.table.as_ref().ok_or_else(|| Error::input("format", format, remedy))
+        };
+        match format {
+            Format::Json => Ok(self.json()),
+            Format::Csv => Ok(csv::document(table("csv")?)),
+            Format::Latex if !self.equations.is_empty() => latex::equations(&self.equations, &self.input),
+            Format::Latex => {
+                let first = self.for_people.as_ref().map_or_else(|| table("latex"), Ok)?;
+                let all = std::iter::once(first).chain(&self.more);
+                let all: Result<Vec<String>> =
+                    all.map(|table| latex::document(table, &self.input, self.digits, self.float)).collect();
+                Ok(all?.join("\n"))
+            }
+            Format::Text => Ok(self.text(to_see)),
+            Format::Svg | Format::Pdf | Format::Png | Format::Npz | Format::Xyz | Format::Vtu => {
+                let remedy = format!("this result is written as {}", Format::extensions(&Format::DOCUMENT));
+                Err(Error::input("format", format.name(), remedy))
+            }
+        }
+    }
+
+    /// The document as a JSON value, its keys in order.
+    pub fn value(&self) -> Value {
+        let mut all = Map::new();
+        all.insert("schema".into(), format!("kickdrift/{}/1", self.name).into());
+        all.insert(
+            "kickdrift".into(),
+            json!({"version": env!("CARGO_PKG_VERSION"), "command": self.command()}),
+        );
+        all.insert("input".into(), Value::Object(self.input.clone()));
+        all.extend(self.body.clone());
+        Value::Object(all)
+    }
+
+    /// The command that makes the document, alone or as a part of a larger one.
+    fn command(&self) -> &'static str {
+        match self.name {
+            "system-verdict" | "system-map" | "system-intervals" => "system",
+            "advise-system" | "advise-direct" => "advise",
+            "survey" => "tongues",
+            "methods" => "word",
+            "compare-methods" => "compare",
+            name => name,
+        }
+    }
+
+    fn json(&self) -> String {
+        let mut out = String::new();
+        write_json(&mut out, &self.value(), 0);
+        out.push('\n');
+        out
+    }
+
+    fn text(&self, to_see: &str) -> String {
+        let mut out = self.digits.map_or_else(|| self.summary.clone(), |n| in_digits(&self.summary, n));
+        out.push('\n');
+        let first = self.for_people.as_ref().or(self.table.as_ref());
+        for table in first.into_iter().chain(&self.more).filter(|_| !self.summary_only) {
+            let rows = table.rows().len();
+            if rows > ROWS_FOR_PEOPLE {
+                out += &format!("\n{rows} rows: {to_see}\n");
+            } else if rows > 0 {
+                out += &format!(
+                    "\n{}\n",
+                    text::document(&self.digits.map_or_else(|| table.clone(), |n| table.shortened(n)))
+                        .trim_end()
+                );
+            }
+        }
+        visible(&out)
+    }
+}
+
+/// Puts a value at a path; a group begins with its first value.
+pub(super) fn put(entries: &mut Map<String, Value>, path: &str, value: Value) {
+    let Some((group, rest)) = path.split_once('.') else { return drop(entries.insert(path.into(), value)) };
+    let group = entries.entry(group).or_insert(Value::Null);
+    if !value.is_null() && group.is_null() {
+        *group = Map::new().into();
+    }
+    if let Value::Object(inside) = group {
+        put(inside, rest, value);
+    }
+}
+
+/// `{"lo": , "hi": }`.
+pub fn enclosure((lo, hi): (f64, f64)) -> Value {
+    let mut ends = Map::new();
+    ends.insert("lo".into(), lo.into());
+    ends.insert("hi".into(), hi.into());
+    Value::Object(ends)
+}
+
+/// JSON that people can read and diff: what holds only plain values stands on one line.
+fn write_json(out: &mut String, value: &Value, depth: usize) {
+    let nested = |value: &Value| matches!(value, Value::Object(_) | Value::Array(_));
+    let line = |out: &mut String, depth: usize, first: bool| {
+        *out += if first { "\n" } else { ",\n" };
+        *out += &"  ".repeat(depth);
+    };
+    match value {
+        Value::Object(map) if depth == 0 || deep(value) => {
+            out.push('{');
+            for (i, (key, value)) in map.iter().enumerate() {
+                line(out, depth + 1, i == 0);
+                *out += &format!("{}: ", Value::from(key.as_str()));
+                write_json(out, value, depth + 1);
+            }
+            *out += &format!("\n{}}}", "  ".repeat(depth));
+        }
+        Value::Array(items) if items.iter().any(nested) => {
+            out.push('[');
+            for (i, item) in items.iter().enumerate() {
+                line(out, depth + 1, i == 0);
+                write_json(out, item, depth + 1);
+            }
+            *out += &format!("\n{}]", "  ".repeat(depth));
+        }
+        _ => *out += &value.to_string(),
+    }
+}
+
+/// Whether an array of objects lies somewhere inside.
+fn deep(value: &Value) -> bool {
+    match value {
+        Value::Object(map) => map.values().any(deep),
+        Value::Array(items) => items.iter().any(|item| item.is_object() || deep(item)),
+        _ => false,
+    }
+}

@@ -1,0 +1,57 @@
+//! A run of Algorithm 1 as a document: the series as rows, measured growth beside the predicted one; and drawn.
+
+mod chart;
+
+use crate::report::decimal::few;
+use crate::report::document::Document;
+use crate::report::record::Record;
+use crate::report::table::Column;
+pub use chart::figure;
+use systems::avi::{Run, Sample};
+
+/// The document `kickdrift/simulate/1`; the caller adds the input.
+pub fn document(run: &Run) -> Document {
+    let (first, last) = (run.series.first(), run.series.last());
+    let drift = first.zip(last).map(|(a, b)| (b.energy - a.energy) / a.energy.abs());
+    let drift = drift.filter(|drift| drift.is_finite()).map(|drift| format!("{drift:.3e}"));
+    let of = if run.linear { "" } else { " of small deviations" };
+    let mut lines = vec![
+        format!("{} samples up to t = {}", run.series.len(), last.map_or(0.0, |s| s.time)),
+        format!("  relative change of energy    {}", drift.as_deref().unwrap_or("none: it begins at 0")),
+        format!("  forward and back again       {:.3e} off the start", run.irreversibility),
+        if run.predicted.is_finite() {
+            format!("  growth rate, predicted       {}{of}", few(run.predicted, 6))
+        } else {
+            "  growth rate, predicted       none: no verdict is proven".into()
+        },
+        if run.measured.is_finite() && run.resolution().is_finite() {
+            let off = run.resolution();
+            format!(
+                "  growth rate, measured        {}{of}, give or take {off:.1e}: run longer to see less",
+                few(run.measured, 6)
+            )
+        } else {
+            "  growth rate, measured        none: the run overflows".into()
+        },
+    ];
+    if let Some(off) = run.displacement {
+        lines.push(format!("  growth, about the integrator's own orbit, {off:.3e} from the equilibrium"));
+    }
+    Document::new("simulate")
+        .entry("growth_rate_predicted", run.predicted)
+        .entry("growth_rate_measured", run.measured)
+        .entry("linear", run.linear)
+        .entry("irreversibility", run.irreversibility)
+        .entries(run.displacement.map(|off| ("own_orbit", serde_json::json!({"displacement": off}))))
+        .rows(record().table("series", "Energy, momentum and amplitude over time", &run.series))
+        .summary_alone(&lines)
+}
+
+/// The record of a sample.
+fn record() -> Record<'static, Sample> {
+    Record::new()
+        .field(Column::new("time"), |of: &Sample| of.time.into())
+        .field(Column::new("energy"), |of| of.energy.into())
+        .field(Column::new("momentum"), |of| of.momentum.into())
+        .field(Column::new("amplitude"), |of| of.amplitude.into())
+}

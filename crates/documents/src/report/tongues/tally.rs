@@ -1,0 +1,102 @@
+//! Counts and extremes of many tongues.
+
+use serde_json::{Value, json};
+
+use super::rows::side;
+use crate::report::decimal::{self, few};
+use clocks::tongue::Tongue;
+
+/// Counts and extremes, in the order in which the tongues come.
+#[derive(Clone, Debug, Default)]
+pub struct TongueTally {
+    pub count: u64,
+    pub closed: u64,
+    /// Inside, on the edge, outside: predicted points.
+    predicted: [u64; 3],
+    thinnest: Option<Tongue>,
+    fastest: Option<Tongue>,
+    /// The least and the largest width over first-order width.
+    ratios: Option<(f64, f64)>,
+}
+
+impl TongueTally {
+    /// Counts a tongue in.
+    pub fn add(&mut self, tongue: &Tongue) {
+        let row = &tongue.row;
+        self.count += 1;
+        self.closed += u64::from(row.gap.closed);
+        if let Some(predicted) = &row.predicted {
+            let place = ["inside", "on the edge", "outside"].iter().position(|&s| s == side(predicted.side));
+            self.predicted[place.expect("one of three")] += 1;
+        }
+        let thinner = |other: &Tongue| row.gap.width.0 < other.row.gap.width.0;
+        if !row.gap.closed && row.gap.upper.is_some() && self.thinnest.as_ref().is_none_or(thinner) {
+            self.thinnest = Some(tongue.clone());
+        }
+        let rate = |tongue: &Tongue| tongue.row.peak.as_ref().map(|peak| peak.rate);
+        if rate(tongue) > self.fastest.as_ref().and_then(rate) {
+            self.fastest = Some(tongue.clone());
+        }
+        if let Some(law) = &row.first_order {
+            let (least, largest) = self.ratios.unwrap_or((f64::INFINITY, 0.0));
+            self.ratios = Some((least.min(law.width_ratio.0), largest.max(law.width_ratio.1)));
+        }
+    }
+
+    /// The entries behind the rows in JSON.
+    pub fn entries(&self) -> Vec<(&'static str, Value)> {
+        let mut entries = vec![
+            ("count", self.count.into()),
+            ("open", (self.count - self.closed).into()),
+            ("closed", self.closed.into()),
+        ];
+        let [inside, on_edge, outside] = self.predicted;
+        if self.predicted != [0; 3] {
+            entries.push((
+                "predicted_points",
+                json!({"inside": inside, "on_edge": on_edge, "outside": outside}),
+            ));
+        }
+        entries
+    }
+
+    /// For people; `what` says of which ratios the tongues are.
+    pub fn lines(&self, what: &str) -> Vec<String> {
+        let open = self.count - self.closed;
+        let plural = if self.count == 1 { "" } else { "s" };
+        let mut lines =
+            vec![format!("{} tongue{plural} of {what}: {open} open, {} closed", self.count, self.closed)];
+        if let Some(tongue) = &self.thinnest {
+            let (lo, hi) = tongue.row.gap.width;
+            lines.push(format!("  thinnest     {} wide: {}", decimal::enclosure(lo, hi), place(tongue)));
+        }
+        if let Some((tongue, peak)) =
+            self.fastest.as_ref().and_then(|tongue| Some((tongue, tongue.row.peak?)))
+        {
+            let (rate, unit) =
+                tongue.growth_rate.map_or((peak.rate, "√lambda1"), |rate| (rate, "per unit time"));
+            let (rate, steps) = (few(rate, 4), few(peak.slow_steps_to_tenfold, 3));
+            lines.push(format!(
+                "  fastest      {rate} {unit}, tenfold in {steps} slow steps: {} at s = {}",
+                place(tongue),
+                few(peak.s, 6)
+            ));
+        }
+        if self.predicted != [0; 3] {
+            let [inside, on_edge, outside] = self.predicted;
+            lines.push(format!(
+                "  predicted    {} points p theta = m pi: {outside} outside their own tongue, {on_edge} on its edge, {inside} inside",
+                inside + on_edge + outside
+            ));
+        }
+        if let Some((least, largest)) = self.ratios {
+            let [least, largest] = [least, largest].map(|x| few(x, 4));
+            lines.push(format!("  first order  widths are {least} to {largest} times the law's"));
+        }
+        lines
+    }
+}
+
+fn place(tongue: &Tongue) -> String {
+    format!("{}, m = {}", tongue.row.ratio, tongue.row.gap.m)
+}

@@ -1,0 +1,97 @@
+//! Traces through a resonance: Tr Q over s between the lines ±2, one tongue close by, and what of the half period vanishes
+//! at its edges.
+
+use plot::palette::{GREY, INK, family};
+use plot::{Anchor, Axis, Dash, Figure, Layer, Note, Panel, Place, Stroke, typeset};
+
+use clocks::tongue::sampled::{Near, Trace};
+
+/// Beyond this Tr Q is cut.
+const SHOWN: f64 = 3.2;
+
+/// Tr Q over all tongues; below it one of them: how far |Tr Q| exceeds 2, and the entries whose product that is.
+pub fn figure(own: &Trace) -> Figure {
+    let name = format!("Traces of h2/h1 = {}", own.ratio);
+    let figure = Figure::double_column(150.0).columns(1).named(&name);
+    [whole(own), excess(&own.near), entries(&own.near)].into_iter().fold(figure, Figure::with)
+}
+
+fn shade(panel: Panel, spans: impl Iterator<Item = [f64; 2]>, [low, high]: [f64; 2]) -> Panel {
+    let outline = |[a, b]: [f64; 2]| vec![[a, low], [b, low], [b, high], [a, high]];
+    panel.with(
+        Layer::areas(spans.map(outline).collect(), GREY, 0.35).labelled("tongue, between certified edges"),
+    )
+}
+
+fn level(values: &[f64], [from, upto]: [f64; 2]) -> Layer {
+    let lines = values.iter().map(|&y| vec![[from, y], [upto, y]]).collect();
+    Layer::lines(lines, Stroke { dash: Dash::Dashed, ..Stroke::THIN })
+}
+
+fn whole(own: &Trace) -> Panel {
+    let end = own.whole.last().map_or(4.0, |point| point[0]);
+    let panel =
+        Panel::new(Axis::linear("*s* = *h*_1^2*Λ*_1", 0.0, end), Axis::linear("Tr *Q*", -SHOWN, SHOWN));
+    let panel = panel.titled(&format!(
+        "*h*_2/*h*_1 = {}, *ρ* = {}; at each tongue *m*",
+        own.ratio,
+        typeset(&own.rho)
+    ));
+    let panel = shade(panel, own.tongues.iter().map(|own| own.1), [-SHOWN, SHOWN]);
+    let panel = panel.with(level(&[-2.0, 2.0], [0.0, end]).labelled("|Tr *Q*| = 2"));
+    let panel =
+        panel.with(Layer::lines(vec![own.whole.clone()], Stroke::LINE.in_colour(INK)).labelled("Tr *Q*"));
+    let note = |(m, [lower, upper]): &(u64, [f64; 2])| {
+        let side = if m.is_multiple_of(2) { -2.6 } else { 2.6 };
+        Note::new([0.5 * (lower + upper), side], &m.to_string()).anchored(Anchor::Middle, [0.0, 0.0])
+    };
+    own.tongues.iter().map(note).fold(panel, Panel::note).legend(Place::Above)
+}
+
+/// The axis of one tongue.
+fn across(own: &Near) -> Axis {
+    let width = match format!("{:.3e}", own.width).split_once("e-") {
+        Some((digits, power)) if own.width < 1e-3 => format!("{digits}·10^{{−{power}}}"),
+        _ => format!("{:.5}", own.width),
+    };
+    Axis::linear(
+        &format!("(*s* − *s*_0)/width, lower edge *s*_0 = {:.6}, width {width}", own.lower),
+        -1.0,
+        2.0,
+    )
+}
+
+fn excess(own: &Near) -> Panel {
+    let values = || own.excess.iter().map(|point| point[1]);
+    let (low, high) = (values().fold(0.0, f64::min), values().fold(0.0, f64::max));
+    let (low, high) = (low.max(-3.0 * high) * 1.1, high * 1.25);
+    let sign = if own.m.is_multiple_of(2) { "" } else { "−" };
+    let panel = Panel::new(across(own), Axis::linear(&format!("{sign}Tr *Q* − 2"), low, high));
+    let panel = shade(
+        panel.titled(&format!("Tongue {}: the full period", own.m)),
+        [[0.0, 1.0]].into_iter(),
+        [low, high],
+    );
+    let panel = panel.with(level(&[0.0], [-1.0, 2.0]).labelled("|Tr *Q*| = 2"));
+    let line = Layer::lines(vec![own.excess.clone()], Stroke::LINE.in_colour(INK));
+    panel.with(line.labelled(&format!("{sign}Tr *Q* − 2"))).legend(Place::Above)
+}
+
+fn entries(own: &Near) -> Panel {
+    let panel = Panel::new(across(own), Axis::linear("entry/largest", -1.1, 1.1));
+    let panel = shade(
+        panel.titled(&format!("Tongue {}: half a period", own.m)),
+        [[0.0, 1.0]].into_iter(),
+        [-1.1, 1.1],
+    );
+    let panel = panel.with(level(&[0.0], [-1.0, 2.0]));
+    let strokes = [
+        Stroke::LINE.in_colour(family(0)),
+        Stroke { dash: Dash::Dashed, ..Stroke::LINE.in_colour(family(1)) },
+    ];
+    let lines = own.entries.iter().zip(strokes);
+    let lines = lines.map(|((entry, line), stroke)| {
+        Layer::lines(vec![line.clone()], stroke.wide(1.1)).labelled(&format!("entry {}", entry.name()))
+    });
+    lines.fold(panel, Panel::with).legend(Place::Above)
+}

@@ -1,0 +1,227 @@
+//! Advice on Hessians: computed again, whole; what it proves, and growth, by another route.
+
+use std::borrow::Cow;
+
+use super::LEFT;
+use crate::input::SystemScene;
+use crate::question::{Advised, Safe};
+use crate::verify::again::{Left, Recheck, asked};
+use crate::verify::context::{Checked, Context, Outcome, REMEDY, ROOM, holds, too_costly};
+use molecules::{Finding, MOST_PRODUCTS, Scheme};
+use num_traits::Zero;
+use number::Rational;
+use number::error::{Error, Result};
+use number::rational::{from_f64_exact, to_f64};
+use systems::levels::{Hessians, Near};
+use systems::{Holds, Limits, Potential, System, decide_system};
+
+/// Another route to what a row proves.
+trait Route {
+    /// The products that it costs, about.
+    fn cost(&self, own: &Finding) -> u64;
+    fn row(&self, own: &Finding) -> Checked;
+    /// Whether the ends of the region are among what it proves.
+    fn has_ends(&self, own: &Finding) -> bool;
+    fn route(&self) -> &'static str;
+}
+
+/// The route that does not share a step with how this system is advised on.
+fn route<'a>(scene: &'a SystemScene, band: f64, limits: &'a Limits) -> Result<Box<dyn Route + 'a>> {
+    Ok(match scene.model().many_levels()? {
+        None => Box::new(Other::new(scene, band)?),
+        Some(_) => Box::new(Many { system: scene.model().moving()?, scene, band, limits }),
+    })
+}
+
+/// Levels of any number as a rational system of the doubles given: half periods kick by kick, each at one step.
+struct Many<'a> {
+    system: Cow<'a, System>,
+    scene: &'a SystemScene,
+    band: f64,
+    limits: &'a Limits,
+}
+
+impl Many<'_> {
+    /// The verdict at the steps of a scheme, all times `factor`, with the stiffness of each level times one of `scales`.
+    fn at(&self, scheme: &Scheme, factor: f64, scales: &[f64]) -> Result<Holds> {
+        let exact = |x: f64| from_f64_exact(x).unwrap_or_else(Rational::zero);
+        let (unit, factor) = (self.scene.femtoseconds()?, exact(factor));
+        let potential = |((own, step), scale): ((&Potential, &Rational), &f64)| Potential {
+            stiffness: own.stiffness.scaled(&exact(*scale)),
+            step: step * &factor / &unit,
+            ..own.clone()
+        };
+        let all = self.system.potentials().iter().zip(scheme.steps()).zip(scales).map(potential);
+        let system = System::new(self.system.mass().clone(), all.collect())?;
+        Ok(decide_system(&system, self.limits)?.holds())
+    }
+
+    fn is(&self, holds: Holds, at: (&Scheme, f64, &[f64]), what: &str) -> Checked {
+        let found = self.at(at.0, at.1 / to_f64(at.0.outer()), at.2)?;
+        crate::verify::context::holds(found == holds, || {
+            format!("at {} fs {what} is {} by half periods", at.1, found.name())
+        })
+    }
+}
+
+impl Route for Many<'_> {
+    fn cost(&self, own: &Finding) -> u64 {
+        let kicks = to_f64(&(own.scheme.outer() / own.scheme.inner())).ceil() as u64;
+        // Some eight verdicts, each of some hundred products of matrices.
+        (self.system.size() as u64).saturating_pow(3).saturating_mul(8 * (100 + kicks))
+    }
+
+    fn row(&self, own: &Finding) -> Checked {
+        let levels = own.scheme.steps().len();
+        let as_given = vec![1.0; levels];
+        if own.holds != Holds::NotTold {
+            self.is(own.holds, (&own.scheme, to_f64(own.scheme.outer()), &as_given), "the scheme")?;
+        }
+        if let Some((lo, hi)) = own.first {
+            self.is(Holds::Stable, (&own.scheme, lo * (1.0 - ROOM), &as_given), "the last stable step")?;
+            self.is(Holds::Unstable, (&own.scheme, hi * (1.0 + ROOM), &as_given), "the first unstable step")?;
+        }
+        if let Some(edge) = own.band_edge {
+            let [most, least] = [1.0 - self.band, 1.0 + self.band].map(|part| part.powi(-2));
+            for which in 0..1usize << (levels - 1) {
+                let slower = (0..levels - 1).map(|k| if which >> k & 1 == 1 { least } else { most });
+                let scales: Vec<f64> = [most].into_iter().chain(slower).collect();
+                self.is(Holds::Stable, (&own.scheme, edge * (1.0 - ROOM), &scales), "a corner of the band")?;
+            }
+        }
+        Ok(())
+    }
+
+    fn has_ends(&self, _: &Finding) -> bool {
+        true
+    }
+
+    fn route(&self) -> &'static str {
+        "the scheme, both sides of the first unstable step and the corners of the band, each at one step, by half periods of a rational system of the doubles given"
+    }
+}
+
+/// The action and the full period, in the coordinates of the Hessians.
+struct Other {
+    hessians: Hessians,
+    /// Upper bounds of both norms, times the accuracy.
+    off: [f64; 2],
+    band: f64,
+    /// fs in the file's unit of time.
+    unit: f64,
+}
+
+/// By how much growth per period may differ: a multiplier near a double one moves by the square root of the roundings.
+const GROWTH: f64 = 1e-5;
+
+impl Other {
+    fn new(scene: &SystemScene, band: f64) -> Result<Other> {
+        let levels = scene.model().two_levels()?;
+        let off = levels.kernel.norms().map(|norm| levels.accuracy * norm);
+        let unit = to_f64(&scene.femtoseconds()?);
+        Ok(Other { hessians: scene.model().hessians()?, off, band, unit })
+    }
+
+    fn inner_steps(own: &Finding) -> u64 {
+        to_f64(&(own.scheme.outer() / own.scheme.inner())).round() as u64
+    }
+
+    fn has_paths(&self, own: &Finding) -> bool {
+        self.hessians.has_paths(Other::inner_steps(own))
+    }
+}
+
+impl Route for Other {
+    fn cost(&self, own: &Finding) -> u64 {
+        let p = Other::inner_steps(own);
+        let paths = if self.has_paths(own) { self.hessians.cost_of_paths(p) } else { 0 };
+        self.hessians.cost_of_period(p).saturating_add(paths)
+    }
+
+    fn row(&self, own: &Finding) -> Checked {
+        let (p, outer) = (Other::inner_steps(own), to_f64(own.scheme.outer()));
+        let growth = self.hessians.growth_of_period(outer / self.unit, p) * outer / self.unit;
+        let right = own.rate.is_none_or(|rate| (growth - rate * outer).abs() < GROWTH);
+        holds(right, || format!("growth is {growth} in a period"))?;
+        if !self.has_paths(own) {
+            return Ok(());
+        }
+        let stable = |step: f64, near: Near| self.hessians.paths_prove_stable(step / self.unit, p, near);
+        let unstable = |step: f64| self.hessians.paths_prove_unstable(step / self.unit, p);
+        if let Some((lo, hi)) = own.first {
+            holds(stable(lo * (1.0 - ROOM), Near::EXACTLY), || format!("is not proven stable up to {lo}"))?;
+            holds(unstable(hi * (1.0 + ROOM)), || format!("is not proven unstable from {hi} on"))?;
+        }
+        if let Some(upper) = own.first_upper {
+            holds(unstable(upper * (1.0 - ROOM)), || format!("is not proven unstable up to {upper}"))?;
+        }
+        if let Some(edge) = own.band_edge {
+            let [most, least] = [1.0 - self.band, 1.0 + self.band].map(|part| part.powi(-2));
+            for slow in [most, least] {
+                let off = [most * self.off[0], slow * self.off[1]];
+                let near = Near { factors: [most, slow], off };
+                holds(stable(edge * (1.0 - ROOM), near), || {
+                    format!("the band is not proven stable up to {edge}")
+                })?;
+            }
+        }
+        Ok(())
+    }
+
+    fn has_ends(&self, own: &Finding) -> bool {
+        self.has_paths(own)
+    }
+
+    fn route(&self) -> &'static str {
+        ROUTE
+    }
+}
+
+/// `kickdrift/advise-system/1`.
+#[derive(Clone, Debug, serde::Deserialize)]
+pub struct Claim {
+    input: Advised,
+}
+
+const ROUTE: &str = "the ends of the first region and of the band by the action as one matrix over the paths, growth by the full \
+                     period kick by kick";
+
+impl Recheck for Claim {
+    const TABLE: &'static str = "rows";
+    const LEFT: &'static [Left] = LEFT;
+    asked!(Advised);
+
+    fn check(&self, safe: Safe, context: &Context) -> Result<Outcome> {
+        let Safe::Hessians(own) = safe else { return Err(Error::missing("input.system", REMEDY)) };
+        let (scene, findings) = *own;
+        let (mut failures, mut not_rechecked) = (Vec::new(), Vec::new());
+        let limits =
+            Limits { products: context.options.budget.unwrap_or(MOST_PRODUCTS), ..Limits::default() };
+        let other = route(&scene, to_f64(&self.input.band), &limits)?;
+        let mut spent: u64 = 0;
+        for (row, own) in (1..).zip(&findings.schemes) {
+            let cost = spent.saturating_add(other.cost(own));
+            if let Err(error) = limits.allow(cost, || format!("schemes 1 to {row}")) {
+                not_rechecked.push(too_costly(&format!("row {row}"), &error));
+                continue;
+            }
+            spent = cost;
+            let place = || format!("outer step {} fs", own.scheme.outer());
+            failures.extend(context.failure(row, place, other.row(own))?);
+        }
+        if !findings.schemes.iter().all(|own| other.has_ends(own)) {
+            let why = "first, band_edge by the other route: too many steps for the action's matrix, computed again only";
+            not_rechecked.push(why.into());
+        }
+        if findings.levers.is_some() {
+            not_rechecked.push("levers: computed again only".into());
+        }
+        Ok(Outcome {
+            rows: findings.schemes.len() as u64,
+            route: other.route(),
+            sample: None,
+            failures,
+            not_rechecked,
+        })
+    }
+}

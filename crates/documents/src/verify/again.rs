@@ -1,0 +1,183 @@
+//! A document held, value by value, against the same document computed again from its input.
+//!
+//! One input gives one document, digit by digit, so whatever was changed afterwards differs. Values that the input
+//! does not determine are [`Left`] out, and only those: what a check names as not rechecked follows from this comparison.
+
+use serde_json::{Map, Value};
+
+use super::context::{Context, Failure, Outcome};
+use number::error::Result;
+
+/// A value that the input does not determine: its path (`*` stands for every row), and why.
+pub type Left = (&'static str, &'static str);
+
+/// A document of one kind, in typed rows.
+pub trait Recheck {
+    /// The key of the rows; empty where the document is one row itself.
+    const TABLE: &'static str;
+    /// Values that the input does not determine.
+    const LEFT: &'static [Left] = &[];
+    /// Whether `again` reads rows of the document beside its input.
+    const READS_ROWS: bool = false;
+    /// The answer, or the part of it that the other route needs.
+    type Found;
+
+    /// The document computed again from its input.
+    fn again(&self, context: &Context) -> Result<(Value, Self::Found)>;
+
+    /// The outcome of another route.
+    fn check(&self, found: Self::Found, context: &Context) -> Result<Outcome>;
+}
+
+/// The part of a [`Recheck`] by which a question is asked again; its answer is at hand for the other route.
+macro_rules! asked {
+    ($question:ty) => {
+        type Found = <$question as $crate::question::Question>::Answer;
+
+        fn again(&self, context: &Context) -> Result<(serde_json::Value, Self::Found)> {
+            let answer = $crate::question::Question::answer(&self.input, &context.work())?;
+            Ok(($crate::question::Question::document(&self.input, &answer).value(), answer))
+        }
+    };
+}
+pub(crate) use asked;
+
+/// The result of a comparison.
+pub struct Compared {
+    /// One for every row that differs, then one for each part of the rest that does.
+    pub failures: Vec<Failure>,
+    /// The values left out that the document has.
+    pub left: Vec<String>,
+}
+
+/// Compares a document with the one computed again; `table` is the key of its rows. Of its input only the fields that `again` echoes
+/// are compared.
+pub fn compare(written: &Map<String, Value>, again: Value, table: &str, left: &[Left]) -> Compared {
+    let (mut written, mut again) = (Value::Object(written.clone()), again);
+    let version = ("kickdrift.version", "which version wrote it is no claim");
+    let mut named = Vec::new();
+    for (path, why) in [version].iter().chain(left) {
+        let steps: Vec<&str> = path.split('.').collect();
+        let met = take(&mut written, &steps);
+        take(&mut again, &steps);
+        named.extend(met.then(|| format!("{path}: {why}")));
+    }
+    if let (Some(written), Some(again)) = (written["input"].as_object_mut(), again["input"].as_object()) {
+        written.retain(|key, _| again.contains_key(key));
+    }
+    let rows = |whole: &mut Value| whole.as_object_mut().and_then(|own| own.shift_remove(table));
+    let (own, truth) = (rows(&mut written), rows(&mut again));
+    let mut failures = match (&own, &truth) {
+        (Some(Value::Array(own)), Some(Value::Array(truth))) => rows_apart(table, own, truth),
+        _ => different(own.as_ref(), truth.as_ref()).map(|own| own.of(0, table)).into_iter().collect(),
+    };
+    // A document without rows is one row itself.
+    let row = u64::from(table.is_empty());
+    failures.extend(parts_apart(&written, &again, row));
+    Compared { failures, left: named }
+}
+
+/// Takes out what lies at a path, and says whether something did.
+fn take(value: &mut Value, path: &[&str]) -> bool {
+    match (path, value) {
+        ([last], Value::Object(own)) => own.shift_remove(*last).is_some(),
+        (["*", rest @ ..], Value::Array(items)) => {
+            items.iter_mut().filter_map(|item| take(item, rest).then_some(())).count() > 0
+        }
+        ([first, rest @ ..], Value::Object(own)) => own.get_mut(*first).is_some_and(|own| take(own, rest)),
+        _ => false,
+    }
+}
+
+fn rows_apart(table: &str, written: &[Value], again: &[Value]) -> Vec<Failure> {
+    let apart = (1..).zip(written.iter().zip(again)).filter_map(|(row, (written, again))| {
+        different(Some(written), Some(again)).map(|own| own.of(row, &place(written)))
+    });
+    let count = (written.len() != again.len()).then(|| {
+        let why = format!("{table} has {} rows, not {}", again.len(), written.len());
+        Failure { row: written.len().min(again.len()) as u64 + 1, place: table.into(), why }
+    });
+    apart.chain(count).collect()
+}
+
+/// The parts of a document beside its rows, one by one.
+fn parts_apart(written: &Value, again: &Value, row: u64) -> Vec<Failure> {
+    let (Value::Object(a), Value::Object(b)) = (written, again) else { return Vec::new() };
+    let keys = b.keys().chain(a.keys().filter(|key| !b.contains_key(*key)));
+    let apart = keys.filter_map(|key| {
+        let place = if row == 0 { key.clone() } else { place(written) };
+        different(a.get(key), b.get(key)).map(|own| own.below(key).of(row, &place))
+    });
+    apart.collect()
+}
+
+/// The first plain values of a row, which name it: `p = 7, q = 3, m = 4`.
+fn place(row: &Value) -> String {
+    const NAMES: usize = 3;
+    let head = ["schema", "kickdrift", "input"];
+    let values = row.as_object().into_iter().flatten().filter(|(key, _)| !head.contains(&key.as_str()));
+    let plain = values.take_while(|(_, value)| value.is_string() || value.is_i64() || value.is_u64());
+    let text = |value: &Value| value.as_str().map_or_else(|| value.to_string(), String::from);
+    let named: Vec<String> = plain.take(NAMES).map(|(key, own)| format!("{key} = {}", text(own))).collect();
+    named.join(", ")
+}
+
+/// The first difference: where, from the inside out, and what it is.
+struct Different {
+    path: Vec<String>,
+    why: String,
+}
+
+impl Different {
+    fn below(mut self, key: impl ToString) -> Different {
+        self.path.push(key.to_string());
+        self
+    }
+
+    fn of(self, row: u64, place: &str) -> Failure {
+        let path: Vec<&str> = self.path.iter().rev().map(String::as_str).collect();
+        let why = format!("{} {}", path.join("."), self.why);
+        Failure { row, place: place.into(), why: why.trim_start().into() }
+    }
+}
+
+fn different(written: Option<&Value>, again: Option<&Value>) -> Option<Different> {
+    let here = |why: String| Some(Different { path: Vec::new(), why });
+    match (written, again) {
+        (None, None) => None,
+        (None, Some(_)) => here("is missing".into()),
+        (Some(_), None) => here("does not belong there".into()),
+        (Some(Value::Object(a)), Some(Value::Object(b))) => {
+            let keys = b.keys().chain(a.keys().filter(|key| !b.contains_key(*key)));
+            keys.into_iter().find_map(|key| Some(different(a.get(key), b.get(key))?.below(key)))
+        }
+        (Some(Value::Array(a)), Some(Value::Array(b))) => {
+            let longest = a.len().max(b.len());
+            (0..longest).find_map(|i| Some(different(a.get(i), b.get(i))?.below(i)))
+        }
+        (Some(a), Some(b)) if same(a, b) => None,
+        (Some(a), Some(b)) => here(format!("is {}, not {}", short(b), short(a))),
+    }
+}
+
+/// Numbers by their value, since 1 and 1.0 are the same; whole ones by all of their digits.
+fn same(a: &Value, b: &Value) -> bool {
+    match (a, b) {
+        (Value::Number(x), Value::Number(y)) => match (x.as_i128(), y.as_i128()) {
+            (Some(x), Some(y)) => x == y,
+            _ => x.as_f64().is_some() && x.as_f64() == y.as_f64(),
+        },
+        _ => a == b,
+    }
+}
+
+/// So many characters show what a value is.
+const SHOWN: usize = 80;
+
+fn short(value: &Value) -> String {
+    let text = value.to_string();
+    match text.char_indices().nth(SHOWN) {
+        Some((end, _)) => format!("{}...", &text[..end]),
+        None => text,
+    }
+}

@@ -1,0 +1,394 @@
+//! Documents of intervals: the stretches as they are written, held against systems at numbers inside them.
+//!
+//! Kicks and drifts of measured levels are followed over half a period in doubles, kick by kick, without the cells that made the document, at an outer
+//! step or at another value of what is varied. The eigenvalues of S = Bᵀ C say whether anything grows there. Where nothing does, each mode v has a sign of Krein's, that of vᵀ Aᵀ C v, and
+//! multipliers leave the circle only where they meet one of the other sign, or ±1. So where the order of the signs differs at two places of a stretch
+//! that is said to be stable, what was passed between them is looked for by halving. Other methods have the growth of their dense step alone.
+
+use std::borrow::Cow;
+
+use faer::Mat;
+use num_traits::One;
+
+use super::{ALONE, LEFT, outcome};
+use crate::input::{OUTER, SystemScene};
+use crate::question::{Found, System, SystemAnswer};
+use crate::verify::again::{Left, Recheck, asked};
+use crate::verify::context::{Checked, Context, Fault, Outcome, holds, same, too_costly};
+use crate::verify::sample::sample;
+use number::Rational;
+use number::error::{Error, Result};
+use number::parallel::try_map;
+use number::rational::{from_f64_exact, to_f64};
+use systems::levels::Method;
+use systems::stretches::Stretch;
+use systems::vary::Intervals;
+use systems::{Holds, Limits, Model, Route, half_period};
+
+/// Stretches that are looked at, unless all are asked for; all of measured levels where it costs no more than is allowed.
+const MOST: u64 = 24;
+
+/// Where in a stretch: beside its ends, too.
+const INSIDE: [f64; 5] = [1.0 / 64.0, 0.25, 0.5, 0.75, 63.0 / 64.0];
+
+/// ln |λ| of a period below which roundings may have made it: of modes that meet, about the square root of 10^-16 times their condition.
+const STILL: f64 = 1e-5;
+
+/// `kickdrift/system-intervals/1`.
+#[derive(Clone, Debug, serde::Deserialize)]
+pub struct Claim {
+    input: System,
+    stretches: Vec<Row>,
+}
+
+rows! {
+    struct Row {
+        lo: f64,
+        hi: f64,
+        verdict: String,
+    }
+}
+
+impl Row {
+    fn stretch(&self) -> Checked<Stretch> {
+        let verdict = Holds::ALL.into_iter().find(|own| own.name() == self.verdict);
+        let verdict = verdict.ok_or_else(|| Fault::Wrong(format!("{} is no verdict", self.verdict)))?;
+        Ok(Stretch { lo: self.lo, hi: self.hi, verdict })
+    }
+}
+
+impl Recheck for Claim {
+    const TABLE: &'static str = "stretches";
+    const LEFT: &'static [Left] = LEFT;
+    asked!(System);
+
+    fn check(&self, SystemAnswer { scene, found }: SystemAnswer, context: &Context) -> Result<Outcome> {
+        let Found::Intervals(found) = found else {
+            return Err(Error::input(
+                "input.intervals",
+                "missing",
+                "a document of intervals says of what: whole documents, as kickdrift wrote them, can be rechecked",
+            ));
+        };
+        let of = self.stretches.len() as u64;
+        let (mut failures, mut stretches) = (Vec::new(), Vec::new());
+        for (n, row) in (1..).zip(&self.stretches) {
+            let place = || format!("{} to {}", row.lo, row.hi);
+            let checked = self.joined(n, &found).and_then(|()| row.stretch());
+            failures.extend(context.failure(n as u64, place, checked.map(|own| stretches.push(own)))?);
+        }
+        let covered = self.stretches.last().map(|own| own.hi) == found.stretches.last().map(|own| own.hi);
+        let checked = holds(covered, || "the stretches end before the range does".into());
+        failures.extend(context.failure(0, || "the document".into(), checked)?);
+        if failures.is_empty() {
+            return Ok(Outcome { rows: of, ..self.stretches(&stretches, &scene, &found, context)? });
+        }
+        let route = "each stretch begins where the one before it ends";
+        Ok(Outcome { rows: of, route, sample: None, failures, not_rechecked: Vec::new() })
+    }
+}
+
+impl Claim {
+    /// That the n-th row, counted from 1, begins where the one before it ends, the first one with the range. Of isolated edges the next double begins a
+    /// stretch.
+    fn joined(&self, n: usize, found: &Intervals) -> Checked {
+        let row = &self.stretches[n - 1];
+        holds(row.lo <= row.hi, || "it ends before it begins".into())?;
+        let Some(before) = n.checked_sub(2).map(|before| self.stretches[before].hi) else {
+            let first = found.stretches.first().map_or(row.lo, |own| own.lo);
+            return same("lo", row.lo, first);
+        };
+        let is_joined = [before, before.next_up()].contains(&row.lo) || found.is_discrete && row.lo > before;
+        holds(is_joined, || format!("it begins at {}, the one before it ends at {before}", row.lo))
+    }
+
+    /// Looks at a sample of the stretches by the route that the model has.
+    fn stretches(
+        &self,
+        stretches: &[Stretch],
+        scene: &SystemScene,
+        found: &Intervals,
+        context: &Context,
+    ) -> Result<Outcome> {
+        // Other systems are looked at by their steps alone.
+        if !matches!(scene.model(), Model::Measured(_)) || found.is_discrete {
+            return outcome(context, ALONE, Ok(()));
+        }
+        let all = (1..).zip(stretches).filter(|(_, own)| own.verdict != Holds::NotTold);
+        let decided = Decided { of: stretches.len() as u64, drawn: all.collect(), context };
+        let seed = scene.source().to_string();
+        let width = self.input.width().unwrap_or_default();
+        decided.by_half_periods(&Places::of(scene, &found.number, width)?, &seed)
+    }
+}
+
+/// The stretches with a verdict that are looked at, each with its row.
+struct Decided<'a> {
+    /// Rows in all.
+    of: u64,
+    drawn: Vec<(u64, &'a Stretch)>,
+    context: &'a Context<'a>,
+}
+
+impl Decided<'_> {
+    /// Some of them, unless all are asked for.
+    fn sampled(mut self, seed: &str) -> Self {
+        if !self.context.options.all {
+            let drawn = sample(seed, self.drawn.len() as u64, MOST);
+            self.drawn = drawn.into_iter().map(|n| self.drawn[n as usize]).collect();
+        }
+        self
+    }
+
+    /// `outcome` with what `check` finds of each.
+    fn look(&self, outcome: Outcome, check: impl Fn(&Stretch) -> Checked + Sync) -> Result<Outcome> {
+        let place = |own: &Stretch| format!("{} to {}", own.lo, own.hi);
+        let look = |(row, own): &(u64, &Stretch)| self.context.failure(*row, || place(own), check(own));
+        let failures = try_map(&self.drawn, look)?;
+        let sample = Some((failures.len() as u64, self.of));
+        Ok(Outcome { sample, failures: failures.into_iter().flatten().collect(), ..outcome })
+    }
+
+    /// All, or a sample where that costs too much.
+    fn by_half_periods(self, places: &Places, seed: &str) -> Result<Outcome> {
+        let (context, limits) = (self.context, self.context.work().products());
+        let allow = |own: &Self| places.allow(own.drawn.len(), &limits);
+        let own = if allow(&self).is_ok() { self } else { self.sampled(seed) };
+        let (route, between) = if places.has_signs() {
+            (HALF, BETWEEN)
+        } else {
+            (STEP, "that nothing grows between these places")
+        };
+        let mut found = outcome(context, route, Ok(()))?;
+        if let Err(error) = allow(&own) {
+            found.not_rechecked.push(too_costly("the stretches", &error));
+            return Ok(Outcome { route: ALONE, sample: Some((0, own.of)), ..found });
+        }
+        found.not_rechecked.push(between.into());
+        own.look(found, |stretch| places.stretch(stretch))
+    }
+}
+
+/// The routes of measured levels: of kicks and drifts, and of other methods.
+const HALF: &str = "the half period in doubles, kick by kick, at five places of each stretch; the order of Krein's signs between them";
+const STEP: &str = "the growth of the dense step in doubles, at five places of each stretch";
+
+/// The part of the claim that half periods at five places leave open.
+const BETWEEN: &str =
+    "that nothing grows between these places where the order of the signs is the same at both";
+
+/// A measured system at all values of what is varied.
+struct Places<'a> {
+    scene: &'a SystemScene,
+    path: &'a str,
+    /// The system as it is, of kicks and drifts, and its longest step.
+    system: Option<systems::System>,
+    outer: Rational,
+    /// No interval as wide, relative to its end, hides where the order of signs differs.
+    width: f64,
+}
+
+/// What doubles see at a place.
+#[derive(Debug, PartialEq)]
+enum Motion {
+    /// ln |λ| of a period, above [`STILL`].
+    Grows(f64),
+    /// All multipliers turn, and none is near one of the other sign: the signs by increasing angle.
+    Turns(Vec<bool>),
+    Unclear,
+}
+
+impl<'a> Places<'a> {
+    fn of(scene: &'a SystemScene, path: &'a str, width: f64) -> Result<Places<'a>> {
+        let outer = scene.model().outer_step();
+        let is_respa = scene.model().method() == Method::Respa;
+        let system = is_respa.then(|| scene.model().moving()).transpose()?.map(Cow::into_owned);
+        Ok(Places { scene, path, system, outer, width })
+    }
+
+    fn has_signs(&self) -> bool {
+        self.system.is_some()
+    }
+
+    /// Five half periods of each stretch, about as many halvings: kicks on 2n columns, eigenvalues and vectors.
+    fn allow(&self, stretches: usize, limits: &Limits) -> Result<()> {
+        let (n, kicks) = match &self.system {
+            Some(own) => (own.size() as u64, own.schedule().strikes() / 2 + 1),
+            None => (self.scene.model().size() as u64, 1),
+        };
+        let each = n.saturating_pow(3).saturating_mul(30 + 2 * kicks);
+        let cost = each.saturating_mul(10 * stretches as u64);
+        limits.allow(cost, || format!("half periods of {n} degrees of freedom at {} places", 10 * stretches))
+    }
+
+    fn motion(&self, place: f64) -> Result<Motion> {
+        let Some(place) = from_f64_exact(place) else { return Ok(Motion::Unclear) };
+        let at = || self.scene.with("intervals", &[(self.path, &place)]);
+        let Some(system) = &self.system else {
+            let scene = at()?;
+            let outer = scene.model().outer_step();
+            let rate = scene.model().growth_of_period(&Limits::default())?;
+            let growth = rate.map_or(f64::NAN, |rate| rate * to_f64(&outer));
+            return Ok(match growth {
+                own if own > STILL => Motion::Grows(own),
+                // Less may be growth all the same: the verdict at this place says.
+                own if own.is_finite() && is_proven_stable(scene.model())? => Motion::Turns(Vec::new()),
+                _ => Motion::Unclear,
+            });
+        };
+        let h = half_period::<f64>(&match self.path {
+            OUTER => system.with(&Rational::one(), &(place / &self.outer))?,
+            _ => at()?.model().moving()?.into_owned(),
+        });
+        let n = system.size();
+        let block = |i: usize, j: usize| Mat::from_fn(n, n, |k, l| h[(i * n + k, j * n + l)]);
+        let (a, c) = (block(0, 0), block(1, 0));
+        let s = block(0, 1).transpose() * &c;
+        let is_finite = (0..n).all(|j| (0..n).all(|i| s[(i, j)].is_finite()));
+        let Some(eigen) = is_finite.then(|| s.eigen().ok()).flatten() else { return Ok(Motion::Unclear) };
+        let mu: Vec<_> = (0..n).map(|k| eigen.S()[k]).collect();
+        // 1 + 2 μ = cosh ln λ; see `system::spectrum::rate`.
+        let excess = mu.iter().map(|mu| (mu.norm() + (mu + 1.0).norm() - 1.0) / 2.0).fold(0.0, f64::max);
+        let growth = 2.0 * excess.sqrt().asinh();
+        if growth > STILL {
+            return Ok(Motion::Grows(growth));
+        }
+        // A pair that has just left the circle, or that roundings have joined.
+        if mu.iter().any(|mu| mu.im != 0.0) {
+            return Ok(Motion::Unclear);
+        }
+        let v = Mat::from_fn(n, n, |i, k| eigen.U()[(i, k)].re);
+        let (av, cv) = (&a * &v, &c * &v);
+        let sign = |k: usize| (0..n).map(|i| av[(i, k)] * cv[(i, k)]).sum::<f64>() > 0.0;
+        // μ = −sin² θ/2 for λ = e^(iθ).
+        let angle = |k: usize| 2.0 * (-mu[k].re).clamp(0.0, 1.0).sqrt().asin();
+        let mut modes: Vec<(f64, bool)> = (0..n).map(|k| (angle(k), sign(k))).collect();
+        modes.sort_by(|x, y| x.0.total_cmp(&y.0));
+        let are_apart = modes.windows(2).all(|two| two[0].1 == two[1].1 || two[1].0 - two[0].0 > STILL);
+        let are_off_ends = modes.iter().all(|own| own.0 > STILL && own.0 < std::f64::consts::PI - STILL);
+        let turns = are_apart && are_off_ends;
+        Ok(if turns { Motion::Turns(modes.into_iter().map(|own| own.1).collect()) } else { Motion::Unclear })
+    }
+
+    fn stretch(&self, said: &Stretch) -> Checked {
+        let at = |part: f64| said.lo + (said.hi - said.lo) * part;
+        let mut before = None;
+        for place in INSIDE.map(at) {
+            match (self.motion(place)?, said.verdict) {
+                (Motion::Grows(growth), Holds::Stable) => return Err(grows(place, growth)),
+                (Motion::Turns(_), Holds::Unstable) => {
+                    return Err(Fault::Wrong(format!("at {place} nothing grows: not unstable")));
+                }
+                (Motion::Turns(signs), Holds::Stable) => {
+                    let own = (place, signs);
+                    before.iter().try_for_each(|before| self.between(before, &own))?;
+                    before = Some(own);
+                }
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// That nothing grows where the order of signs changes between two places of a stable stretch.
+    fn between(&self, low: &(f64, Vec<bool>), high: &(f64, Vec<bool>)) -> Checked {
+        if low.1 == high.1 || high.0 - low.0 <= self.width / 4.0 * high.0 {
+            return Ok(());
+        }
+        let middle = low.0 / 2.0 + high.0 / 2.0;
+        match self.motion(middle)? {
+            Motion::Grows(growth) => Err(grows(middle, growth)),
+            Motion::Unclear => Ok(()),
+            Motion::Turns(signs) => {
+                let own = (middle, signs);
+                self.between(low, &own).and_then(|()| self.between(&own, high))
+            }
+        }
+    }
+}
+
+fn is_proven_stable(model: &Model) -> Result<bool> {
+    let found = model.decide(Route::Cheapest, &Limits::default())?;
+    Ok(found.is_proof() && found.is_stable())
+}
+
+fn grows(place: f64, growth: f64) -> Fault {
+    Fault::Wrong(format!("at {place} a mode grows by exp({growth:.2e}) in a period: not stable"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn scene(file: &str, method: Option<&str>) -> SystemScene {
+        let folder = std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/scenes"));
+        let text = std::fs::read_to_string(folder.join(file)).unwrap();
+        let mut source: serde_json::Value = serde_json::from_str(&text).unwrap();
+        source["potentials"][0]["scale"] = "1".into();
+        if let Some(method) = method {
+            source["method"] = method.into();
+        }
+        SystemScene::from_json_in(folder, source).unwrap()
+    }
+
+    fn found<'a>(
+        scene: &'a SystemScene,
+        path: &'a str,
+        range: &str,
+        width: f64,
+    ) -> (Places<'a>, Vec<Stretch>) {
+        let all = scene.intervals(&format!("{path}={range}").parse().unwrap(), width, &Limits::default());
+        (Places::of(scene, path, width).unwrap(), all.unwrap().stretches)
+    }
+
+    /// Stretches that hold; an unstable one moved by half of itself into a stable one, and one that is called stable with all up to the next stable ones.
+    #[test]
+    fn an_interval_that_was_moved_or_dropped_is_found_without_the_cells() {
+        for (file, method, path, range) in [
+            ("water4.json", None, OUTER, "1/250..29/5000"),
+            ("water4-levels.json", None, OUTER, "1/250..29/5000"),
+            ("water4.json", Some("molly-short"), OUTER, "1/250..29/5000"),
+            ("water4.json", None, "potentials.0.scale", "4/5..13/10"),
+            ("water4.json", Some("impulse"), "potentials.0.scale", "4/5..13/10"),
+        ] {
+            let scene = scene(file, method);
+            let (places, all) = found(&scene, path, range, 1e-3);
+            assert!(all.iter().all(|own| places.stretch(own).is_ok()), "{file}, {method:?}, {path}");
+            let is_stable = |own: &Stretch| own.verdict == Holds::Stable;
+            let (mut moved, mut dropped) = (0, 0);
+            for (k, own) in all.iter().enumerate().filter(|(_, own)| own.verdict == Holds::Unstable) {
+                let by = (own.hi - own.lo) / 2.0;
+                let after = all[k..].iter().find(|next| is_stable(next));
+                let lies_in = after.is_some_and(|next| next.lo < own.hi + by / 4.0 && own.hi + by < next.hi);
+                if lies_in {
+                    let right = Stretch { lo: own.lo + by, hi: own.hi + by, ..*own };
+                    assert!(matches!(places.stretch(&right), Err(Fault::Wrong(_))), "{file}: {right:?}");
+                    moved += 1;
+                }
+                let before = all[..k].iter().rfind(|last| is_stable(last));
+                if let (true, Some(before), Some(after)) = (places.has_signs(), before, after) {
+                    let whole = Stretch { lo: before.lo, hi: after.hi, verdict: Holds::Stable };
+                    assert!(matches!(places.stretch(&whole), Err(Fault::Wrong(_))), "{file}: {whole:?}");
+                    dropped += 1;
+                }
+            }
+            assert!(
+                moved > 0 && (dropped > 1 || path != OUTER || !places.has_signs()),
+                "{file}, {method:?}, {path}: {moved} moved, {dropped} dropped of {all:?}"
+            );
+        }
+    }
+
+    /// About a narrow interval of a molecule: at the five steps that are looked at nothing grows, and the order of signs finds it.
+    #[test]
+    fn a_narrow_interval_is_found_by_the_order_of_signs() {
+        let scene = scene("alanine-dipeptide.json", None);
+        let (steps, all) = found(&scene, OUTER, "99/20000..203/40000", 1e-4);
+        let narrow = all.iter().position(|own| own.verdict == Holds::Unstable).unwrap();
+        let (lo, hi) = (all[0].lo, all[narrow].hi + 1e-5);
+        let whole = Stretch { lo, hi, verdict: Holds::Stable };
+        let misses = |part: &f64| matches!(steps.motion(lo + (hi - lo) * part), Ok(Motion::Turns(_)));
+        assert!(INSIDE.iter().all(misses), "{:?}", all[narrow]);
+        assert!(matches!(steps.stretch(&whole), Err(Fault::Wrong(_))));
+    }
+}

@@ -1,0 +1,153 @@
+//! One edge of a tongue.
+
+use num_traits::Signed;
+
+use super::rows::{Edge, Input};
+use crate::verify::context::{Checked, Fault, holds};
+use crate::verify::exact::{ZeroOf, fraction, resonance};
+use crate::verify::written::{Decimal, exact};
+use clocks::propagator::TwoClocks;
+use clocks::tongue::{Entry, Resonance};
+use clocks::verdict::Decidable;
+use number::rational::simplest;
+use number::{Ball, Cyclotomic, Laurent, Ratio, Rational, Ring, Sign};
+
+/// An edge found again: the zero of an entry between two rationals.
+pub struct Zero<'a> {
+    pub zero: ZeroOf<'a>,
+    pub exact: Option<Rational>,
+    name: &'static str,
+}
+
+/// The largest p for which zeros are decided in the cyclotomic field: its numbers have φ(p)/2 terms.
+const MOST_TERMS: u64 = 64;
+
+const BITS: u32 = 128;
+
+impl Edge {
+    /// The zero of its entry that the edge encloses; all that it says of it holds.
+    pub fn zero<'a>(
+        &self,
+        name: &'static str,
+        (ratio, m): (Ratio, u64),
+        input: &'a Input,
+    ) -> Checked<Zero<'a>> {
+        let entry = *self.entry;
+        let pair = Entry::of_tongue(m % 2 == 1);
+        holds(pair.contains(&entry), || format!("{name}: {} bounds no tongue m = {m}", entry.name()))?;
+        holds(self.lo > 0.0, || format!("{name}: s is positive"))?;
+        let mut zero = ZeroOf::new((ratio, &input.rho), entry, exact(self.lo, self.hi)?, name)?;
+        if let Some(decimal) = &self.decimal {
+            let ends = decimal.ends()?;
+            // The digits enclose the same zero.
+            let (lo, hi) = (ends.0.max(zero.lo.clone()), ends.1.min(zero.hi.clone()));
+            holds(lo <= hi, || format!("{name}: doubles and digits have nothing in common"))?;
+            zero = ZeroOf::new((ratio, &input.rho), entry, (lo, hi), name)?;
+        }
+        let exact = self.exact.value().map(|s| s.0.clone());
+        let found = Zero { zero, exact, name };
+        self.closed_form(&found, m)?;
+        self.steps(&found, input)?;
+        Ok(found)
+    }
+
+    /// A rational edge is a zero, a resonance lies on it; neither is left out where it is known.
+    fn closed_form(&self, found: &Zero, m: u64) -> Checked {
+        let (name, zero) = (found.name, &found.zero);
+        if let Some(s) = &found.exact {
+            holds(zero.lo <= *s && *s <= zero.hi, || format!("{name}: {s} lies outside its enclosure"))?;
+            holds(zero.vanishes(s), || format!("{name}: {} does not vanish at {s}", zero.entry.name()))?;
+        } else if !self.exact.is_absent() {
+            // A few units in the last place hold few rationals of small denominators.
+            let simple = simplest(&zero.lo, &zero.hi);
+            let hidden = simple.denom().bits() <= 20 && zero.vanishes(&simple);
+            holds(!hidden, || format!("{name}: it is rational, {simple}"))?;
+        }
+        if self.on.is_absent() {
+            return Ok(());
+        }
+        let sits = |on: Resonance| found.sits(on, m);
+        let truth = [Resonance::Fast, Resonance::Slow].map(|on| (on, sits(on)));
+        match self.on.value() {
+            Some(on) => {
+                let sits = truth.iter().any(|(other, sits)| *other == on.0 && *sits != Some(false));
+                holds(sits, || format!("{name}: it does not sit on {}", on.name()))
+            }
+            None => {
+                let hidden = truth.iter().find(|(_, sits)| *sits == Some(true)).map(|(on, _)| on.name());
+                holds(hidden.is_none(), || format!("{name}: it sits on {}", hidden.unwrap_or_default()))
+            }
+        }
+    }
+
+    /// h² L over an enclosure of a step meets the enclosure of s.
+    fn steps(&self, found: &Zero, input: &Input) -> Checked {
+        let (name, back) = (found.name, Rational::from(found.zero.ratio.inverse()));
+        let Some(lambda1) = &input.lambda1 else { return Ok(()) };
+        let [from, upto] = [&found.zero.lo, &found.zero.hi].map(|s| Laurent::from_rational(s.clone()));
+        for (key, step, back) in [("h1", &self.h1, fraction(1, 1)), ("h2", &self.h2, back)] {
+            let step = step.as_ref().ok_or_else(|| Fault::Wrong(format!("{name}: {key} is missing")))?;
+            let s = |h: Rational| {
+                let h = h * &back;
+                &Laurent::from_rational(&h * &h) * lambda1
+            };
+            let decimal = step.decimal.as_ref().map(Decimal::ends).transpose()?;
+            for (lo, hi) in [exact(step.lo, step.hi)?].into_iter().chain(decimal) {
+                let meets = !lo.is_negative() && s(lo) <= upto && from <= s(hi);
+                holds(meets, || format!("{name}: {key} is not the step of s"))?;
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Zero<'_> {
+    /// Where a clock's own resonance m lies.
+    fn place(&self, on: Resonance, m: u64) -> Ball {
+        let ratio = self.zero.ratio;
+        match on {
+            Resonance::Fast => resonance(ratio.p(), m, BITS),
+            Resonance::Slow => {
+                let back = Rational::from(ratio.inverse());
+                let scale = &back * &back / self.zero.rho;
+                resonance(ratio.q(), m, BITS).mul(&Ball::from_rational(&scale, BITS), BITS)
+            }
+        }
+    }
+
+    /// Whether the edge sits exactly on a clock's own resonance; `None` where that is not decided.
+    ///
+    /// The odd solution of that resonance vanishes at all kicks of the other clock if there is one a period, or if there
+    /// are two and m is even: that clock does not act on it. Else the entry is evaluated in the cyclotomic field.
+    pub fn sits(&self, on: Resonance, m: u64) -> Option<bool> {
+        let (ratio, rho) = (self.zero.ratio, self.zero.rho);
+        let still = *rho == Rational::default();
+        let ratio = if on == Resonance::Fast { ratio } else { ratio.inverse() };
+        let (own, other) = ratio.terms();
+        if m >= own || (still && on == Resonance::Slow) {
+            return Some(false);
+        }
+        let place = self.place(on, m);
+        if place.upper() < self.zero.lo || self.zero.hi < place.lower() {
+            return Some(false);
+        }
+        let odd_start = matches!(self.zero.entry, Entry::B | Entry::D);
+        if still || (odd_start && (other == 1 || (other == 2 && self.zero.entry == Entry::B))) {
+            return Some(true);
+        }
+        if own > MOST_TERMS {
+            return None;
+        }
+        let s = Cyclotomic::resonant_s(m as i64, own as u32);
+        let rho = if on == Resonance::Fast { rho.clone() } else { rho.recip() };
+        let clocks = TwoClocks::with_rho(ratio, s, <Cyclotomic as Ring>::from_rational(&rho));
+        Some(Decidable::half_signs(&clocks).all()[self.zero.entry as usize] == Sign::Zero)
+    }
+
+    /// That without slow kicks it is the resonance.
+    pub fn on_resonance(&self, m: u64) -> Checked {
+        holds(self.sits(Resonance::Fast, m) == Some(true), || {
+            format!("{}: p theta = m pi lies elsewhere", self.name)
+        })
+    }
+}

@@ -1,0 +1,110 @@
+//! Tongues as a list: none left out, and counted as they are.
+
+use super::rows::{Claim, Tongue};
+use crate::question::StepRange;
+use crate::verify::context::{Checked, Fault, Place, holds};
+use crate::verify::exact::check_ratio;
+use clocks::resonance::dominant_family;
+use clocks::tongue::{Listing, Selection, Tongues, Wanted};
+use clocks::verdict::Limits;
+use number::error::Result;
+use number::{Laurent, Ratio, Rational};
+
+/// The label of the last tongue, which has no upper edge.
+pub fn last(ratio: Ratio, rho: &Rational) -> u64 {
+    if *rho == Rational::default() { ratio.p() } else { ratio.kicks() - 1 }
+}
+
+impl Claim {
+    /// The labels asked for are there, in order: as many edges as an entry has zeros, so each enclosure holds one.
+    pub(super) fn complete(&self, limits: &Limits) -> Checked {
+        let list = self.input.ratios()?.list();
+        let mut rows = self.tongues.iter().zip(1..);
+        for ratio in list {
+            let (p, q) = ratio.terms();
+            for m in self.labels(ratio, limits)? {
+                let place = format!("p = {p}, q = {q}, m = {m}");
+                let missing = || Fault::Wrong(format!("{place} is missing at the end"));
+                let (row, i): (&Tongue, u64) = rows.next().ok_or_else(missing)?;
+                holds((row.p, row.q, row.m) == (p, q, m), || {
+                    format!("row {i}, {}, is not {place}, which belongs here", row.place())
+                })?;
+            }
+        }
+        let next = rows.next();
+        holds(next.is_none(), || format!("row {} is one tongue too many", next.map_or(0, |(_, i)| i)))
+    }
+}
+
+impl Claim {
+    /// The columns asked for: those that the first row has.
+    pub(super) fn wanted(&self) -> Wanted {
+        let has = |find: fn(&Tongue) -> bool| self.tongues.first().is_some_and(find);
+        Wanted {
+            family: true,
+            exact: has(|row| !row.lower.exact.is_absent()),
+            growth: has(|row| !row.growth.is_absent()),
+            predicted: has(|row| !row.predicted.is_absent()),
+            first_order: has(|row| !row.first_order.is_absent()),
+        }
+    }
+}
+
+impl Claim {
+    /// The question, within the limits.
+    pub(super) fn question(&self, limits: &Limits) -> Result<Listing> {
+        if let Some(longest) = self.input.ratios()?.list().iter().max_by_key(|ratio| ratio.kicks()) {
+            check_ratio(longest.p(), longest.q(), limits).map_err(Fault::refused)?;
+        }
+        self.input.asked(self.wanted())
+    }
+
+    /// The labels asked for; those in a window by the string's counts again.
+    fn labels(&self, ratio: Ratio, limits: &Limits) -> Checked<Vec<u64>> {
+        check_ratio(ratio.p(), ratio.q(), limits)?;
+        let last = last(ratio, &self.input.rho);
+        if let Some(list) = self.input.m.as_ref().filter(|_| self.input.ratio.is_some()) {
+            let labels = list.0.iter().flat_map(|&(from, upto)| [from, upto]);
+            holds(labels.into_iter().all(|m| (1..=last).contains(&m)), || {
+                format!("{ratio} has the tongues 1 to {last}")
+            })?;
+        }
+        let within = |range: Option<(i64, i64)>, x: i64| range.is_none_or(|(lo, hi)| lo <= x && x <= hi);
+        let (a, b) = (self.input.a, self.input.b);
+        let wanted = |&m: &u64| {
+            let listed = self
+                .input
+                .m
+                .as_ref()
+                .is_none_or(|list| list.0.iter().any(|&(from, upto)| (from..=upto).contains(&m)));
+            listed
+                && ((a.is_none() && b.is_none()) || {
+                    let family = dominant_family(ratio, m);
+                    within(a, family.0) && within(b, family.1)
+                })
+        };
+        let labels: Vec<u64> = (1..=last).filter(wanted).collect();
+        let Some(window) = self.window(ratio) else { return Ok(labels) };
+        let selection = Selection { s: Some(window), ..Selection::default() };
+        let met = Tongues::new(ratio, &self.input.rho)?.select(&selection)?;
+        Ok(met.iter().map(|gap| gap.m).filter(|m| labels.binary_search(m).is_ok()).collect())
+    }
+
+    /// The window of s = h1² L1: h1 = h2 q/p.
+    fn window(&self, ratio: Ratio) -> Option<StepRange> {
+        let lambda1 = self.input.lambda1.as_ref()?;
+        let back = Laurent::from_rational(ratio.inverse().into());
+        let of_h1 = self.input.h1_range.clone();
+        let of_h2 = self.input.h2_range.as_ref().map(|(lo, hi)| (lo * &back, hi * &back));
+        let (lo, hi): StepRange = match (of_h1, of_h2) {
+            (Some((a, b)), Some((c, d))) => (a.max(c), b.min(d)),
+            (one, other) => one.or(other)?,
+        };
+        let zero = Laurent::from_integer(0);
+        if hi < lo || hi < zero {
+            return Some((Laurent::from_integer(1), zero)); // empty
+        }
+        let s = |h1: Laurent| &(&h1 * &h1) * lambda1;
+        Some((s(lo.max(zero)), s(hi)))
+    }
+}

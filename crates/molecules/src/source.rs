@@ -1,0 +1,241 @@
+//! The sources of decisions about Hessians: two levels by their eigenbasis, any other number of them by the action. Advice uses both alike.
+
+use std::fmt::Debug;
+
+use number::Rational;
+use number::error::{Error, Result};
+use number::rational::to_f64;
+use systems::friction::Damping;
+use systems::levels::{Growing, Kernel, Nested, Outer};
+use systems::{Analysis, Holds, Instability, Removed};
+
+/// Stiffnesses of levels, steps and rates in their unit of time; `steps` are those of all levels, innermost first. What is proven of an outer step is so
+/// with all others in their ratios to it.
+pub trait Source: Debug + Send + Sync {
+    /// Checks that these steps can be asked about.
+    ///
+    /// # Errors
+    /// Another number of them, ratios that are not answered for.
+    fn check(&self, steps: &[Rational]) -> Result<()>;
+
+    /// The motions that were projected out.
+    fn removed(&self) -> Option<&Removed>;
+
+    /// λ of the innermost stiffness alone, increasing, rounded.
+    fn fast_squares(&self) -> &[f64];
+
+    /// The mode of the k-th of these, mass-weighted: of length 1, rounded.
+    fn fast_mode(&self, k: usize) -> Vec<f64>;
+
+    /// The highest frequency of each slower stiffness alone, rounded; 0 where it has none.
+    fn slower_frequencies(&self) -> Vec<f64>;
+
+    /// The verdict for all stiffnesses within `accuracy` of their norms, and what grows.
+    ///
+    /// # Errors
+    /// As [`Source::check`], here and below.
+    fn decide(&self, steps: &[Rational], accuracy: f64) -> Result<Decided>;
+
+    /// \[lo, hi\]: every outer step up to lo is proven stable, hi is proven unstable.
+    fn first_unstable(&self, steps: &[Rational]) -> Result<Option<(f64, f64)>>;
+
+    /// The step up to which every one from an unstable step on is proven unstable, followed in relative steps no shorter than `least`.
+    fn unstable_up_to(&self, steps: &[Rational], from: f64, least: f64) -> Result<f64>;
+
+    /// Growth from an unstable step on, the first samples `width` apart, relative.
+    fn growing(&self, steps: &[Rational], from: f64, width: f64) -> Result<Vec<Growing>>;
+
+    /// Whether a band of periods is proven stable, at all smaller steps, too.
+    fn covers_band(&self, steps: &[Rational], band: f64, accuracy: f64) -> Result<bool>;
+
+    /// The outer step up to which the band is covered.
+    fn band_edge(&self, steps: &[Rational], band: f64, accuracy: f64) -> Result<Option<f64>>;
+
+    /// Where the spectral radius of a period with friction lies; `None`: doubles cannot decide.
+    fn damping(&self, steps: &[Rational], friction: f64) -> Result<Option<Damping>>;
+
+    /// A friction that is proven to mask what grows, about the least.
+    fn masking_friction(&self, steps: &[Rational]) -> Result<Option<f64>>;
+
+    /// The eigenbasis that other integrators of two levels are decided in.
+    fn kernel(&self) -> Option<&Kernel> {
+        None
+    }
+}
+
+/// The verdict at one scheme.
+#[derive(Clone, Debug)]
+pub struct Decided {
+    /// The verdict that is proven for all stiffnesses within the accuracy.
+    pub holds: Holds,
+    /// Whether that is stable, and so for all smaller steps.
+    pub is_in_first_region: bool,
+    /// The largest ε for which the verdict on the stiffnesses given stands; `None` where none is proven.
+    pub margin: Option<f64>,
+    /// Growth, rounded; 0 where nothing grows, `None` where that is not decided.
+    pub rate: Option<f64>,
+    /// Real and imaginary part of the fastest growing shape, mass-weighted.
+    pub growing: Option<[Vec<f64>; 2]>,
+}
+
+fn outer_of(steps: &[Rational]) -> Result<Outer> {
+    let [inner, outer] = steps else {
+        let remedy = "these Hessians are on two clocks: give two steps, as 0.5fs,4fs";
+        return Err(Error::input("steps", format!("{} of them", steps.len()), remedy));
+    };
+    Outer::of_steps(inner, outer).ok_or_else(|| {
+        let remedy =
+            "Hessians on two clocks are answered for an outer step that is a multiple of the inner one";
+        Error::input("steps", format!("a ratio of {}", outer / inner), remedy)
+    })
+}
+
+/// Two levels, the outer step a multiple of the inner one.
+impl Source for Kernel {
+    fn check(&self, steps: &[Rational]) -> Result<()> {
+        outer_of(steps).map(|_| ())
+    }
+
+    fn removed(&self) -> Option<&Removed> {
+        self.removed.as_ref()
+    }
+
+    fn fast_squares(&self) -> &[f64] {
+        self.fast_squares()
+    }
+
+    fn fast_mode(&self, k: usize) -> Vec<f64> {
+        self.fast_mode(k)
+    }
+
+    fn slower_frequencies(&self) -> Vec<f64> {
+        vec![self.highest_slow_frequency()]
+    }
+
+    fn decide(&self, steps: &[Rational], accuracy: f64) -> Result<Decided> {
+        let outer = outer_of(steps)?;
+        let analysis = self.decide(&outer, &steps[1], accuracy);
+        let measured = analysis.measured.as_ref().expect("Hessians are measured");
+        Ok(Decided {
+            holds: measured.holds,
+            is_in_first_region: self.is_in_first_region(&outer, accuracy),
+            margin: measured.margin.filter(|_| analysis.is_stable()),
+            rate: growth(&analysis),
+            growing: fastest_instability(&analysis).map(|own| [own.shape.clone(), own.quadrature.clone()]),
+        })
+    }
+
+    fn first_unstable(&self, steps: &[Rational]) -> Result<Option<(f64, f64)>> {
+        Ok(self.first_unstable(outer_of(steps)?.inner_steps()))
+    }
+
+    fn unstable_up_to(&self, steps: &[Rational], from: f64, least: f64) -> Result<f64> {
+        self.unstable_up_to(outer_of(steps)?.inner_steps(), from, least)
+    }
+
+    fn growing(&self, steps: &[Rational], from: f64, width: f64) -> Result<Vec<Growing>> {
+        self.growing(outer_of(steps)?.inner_steps(), from, width)
+    }
+
+    fn covers_band(&self, steps: &[Rational], band: f64, accuracy: f64) -> Result<bool> {
+        Ok(self.covers_band(&outer_of(steps)?, band, accuracy))
+    }
+
+    fn band_edge(&self, steps: &[Rational], band: f64, accuracy: f64) -> Result<Option<f64>> {
+        Ok(self.band_edge(outer_of(steps)?.inner_steps(), band, accuracy))
+    }
+
+    fn damping(&self, steps: &[Rational], friction: f64) -> Result<Option<Damping>> {
+        Ok(self.damping(&outer_of(steps)?, friction))
+    }
+
+    fn masking_friction(&self, steps: &[Rational]) -> Result<Option<f64>> {
+        Ok(self.masking_friction(&outer_of(steps)?))
+    }
+
+    fn kernel(&self) -> Option<&Kernel> {
+        Some(self)
+    }
+}
+
+/// Any other number of levels, or ratios.
+impl Source for Nested {
+    fn check(&self, steps: &[Rational]) -> Result<()> {
+        self.at(steps).map(|_| ())
+    }
+
+    fn removed(&self) -> Option<&Removed> {
+        self.removed.as_ref()
+    }
+
+    fn fast_squares(&self) -> &[f64] {
+        self.fast_squares()
+    }
+
+    fn fast_mode(&self, k: usize) -> Vec<f64> {
+        self.fast_mode(k)
+    }
+
+    fn slower_frequencies(&self) -> Vec<f64> {
+        self.slower_frequencies()
+    }
+
+    fn decide(&self, steps: &[Rational], accuracy: f64) -> Result<Decided> {
+        let (at, outer) = (self.at(steps)?, outermost(steps));
+        let own = at.decide(outer, accuracy);
+        let margin = (own.rate == Some(0.0)).then(|| at.margin(outer)).flatten();
+        Ok(Decided {
+            holds: own.holds,
+            is_in_first_region: own.is_in_first_region,
+            margin,
+            rate: own.rate,
+            growing: own.growing,
+        })
+    }
+
+    fn first_unstable(&self, steps: &[Rational]) -> Result<Option<(f64, f64)>> {
+        Ok(self.at(steps)?.first_unstable())
+    }
+
+    fn unstable_up_to(&self, steps: &[Rational], from: f64, least: f64) -> Result<f64> {
+        Ok(self.at(steps)?.unstable_up_to(from, least))
+    }
+
+    fn growing(&self, steps: &[Rational], from: f64, width: f64) -> Result<Vec<Growing>> {
+        self.at(steps)?.growing(from, width)
+    }
+
+    fn covers_band(&self, steps: &[Rational], band: f64, accuracy: f64) -> Result<bool> {
+        Ok(self.at(steps)?.covers_band(outermost(steps), band, accuracy))
+    }
+
+    fn band_edge(&self, steps: &[Rational], band: f64, accuracy: f64) -> Result<Option<f64>> {
+        Ok(self.at(steps)?.band_edge(band, accuracy))
+    }
+
+    fn damping(&self, steps: &[Rational], friction: f64) -> Result<Option<Damping>> {
+        Ok(self.at(steps)?.damping(outermost(steps), friction))
+    }
+
+    fn masking_friction(&self, steps: &[Rational]) -> Result<Option<f64>> {
+        Ok(self.at(steps)?.masking_friction(outermost(steps)))
+    }
+}
+
+fn outermost(steps: &[Rational]) -> f64 {
+    steps.iter().max().map_or(0.0, to_f64)
+}
+
+/// The largest growth rate, per unit of time, rounded; `None` where it is not decided whether anything grows.
+fn growth(analysis: &Analysis) -> Option<f64> {
+    let largest = instabilities(analysis).map(|own| own.multiplier.size().ln()).fold(0.0, f64::max);
+    analysis.is_proof().then(|| largest / analysis.period.to_f64())
+}
+
+fn instabilities(analysis: &Analysis) -> impl Iterator<Item = &Instability> {
+    analysis.parts.iter().flat_map(|part| &part.instabilities)
+}
+
+fn fastest_instability(analysis: &Analysis) -> Option<&Instability> {
+    instabilities(analysis).max_by(|a, b| a.multiplier.size().total_cmp(&b.multiplier.size()))
+}

@@ -1,0 +1,86 @@
+//! Stable and unstable stretches of outer steps at a fixed ratio, without a gap.
+
+use super::cell::Cells;
+use super::kernel::{Kernel, Outer};
+use crate::spectrum::rate::exponent;
+use crate::vary::stretches::{Stretch, cover, merged};
+use crate::verdict::measured::Holds;
+use number::error::{Error, Result};
+
+/// The largest relative change of the stiffnesses by which one verdict is carried on.
+const WIDEST: f64 = 0.05;
+
+impl Kernel {
+    /// The largest growth rate ln |λ|/H at an outer step H, per unit time, rounded; `None` where the period is beyond doubles.
+    pub fn growth_rate(&self, outer: &Outer) -> Option<f64> {
+        let (_, spectrum) = self.spectrum(outer, false)?;
+        Some(spectrum.mu.iter().map(|&mu| exponent(mu).re).fold(0.0, f64::max) / outer.step)
+    }
+
+    /// The verdicts that are proven for all stiffnesses within `accuracy` of their norms on all outer steps of `inner_steps` inner ones from `lo`
+    /// to `hi`, as stretches that cover them. No interval wider than `width` times the larger end is missed that the accuracy resolves.
+    ///
+    /// Cost: the first stable region is one bisection; beyond it two factorizations and, where these cannot decide, the eigenvalues for each
+    /// cell (file `cell`), more cells where intervals are thin.
+    ///
+    /// # Errors
+    /// A range that is empty or not positive, a width outside \[10^-9, 1/10\].
+    pub fn stretches(
+        &self,
+        inner_steps: u64,
+        (lo, hi): (f64, f64),
+        width: f64,
+        accuracy: f64,
+    ) -> Result<Vec<Stretch>> {
+        if !(lo > 0.0 && lo < hi && hi.is_finite()) {
+            let remedy = "write the smaller step first, both positive";
+            return Err(Error::input("range", format!("{lo}..{hi}"), remedy));
+        }
+        let first = self.first_region_end(inner_steps, accuracy).map_or(lo, |(end, _)| end.clamp(lo, hi));
+        let known = (first > lo).then_some(Stretch { lo, hi: first, verdict: Holds::Stable });
+        let cells = Cells::new(self, accuracy)?;
+        let rest = if first < hi {
+            cover((first, hi), width, |lo, hi| cells.verdict(inner_steps, (lo, hi)))?
+        } else {
+            Vec::new()
+        };
+        Ok(merged(known.into_iter().chain(rest)))
+    }
+
+    /// The step up to which every outer one from `at` on, as many inner ones in it, is proven by counts to have a real multiplier off the
+    /// circle: up to where the step by which a verdict is carried on falls to `least`, relative, or 1.5 `at`.
+    ///
+    /// # Errors
+    /// As [`Outer::new`].
+    pub fn unstable_up_to(&self, inner_steps: u64, at: f64, least: f64) -> Result<f64> {
+        let (mut at, last, mut epsilon) = (at, 1.5 * at, least);
+        while at < last {
+            // A little inwards, for the roundings of the roots.
+            let inner = 0.999_999 * epsilon;
+            let middle = at / (1.0 - inner).sqrt();
+            if self.has_real_unstable_mode(&Outer::new(middle, inner_steps)?, epsilon) {
+                at = middle * (1.0 + inner).sqrt();
+                epsilon = (4.0 * epsilon).min(WIDEST);
+            } else if epsilon <= least {
+                break;
+            } else {
+                epsilon = (epsilon / 4.0).max(least);
+            }
+        }
+        Ok(at.min(last))
+    }
+
+    /// The verdict that is proven for all stiffnesses within `epsilon` of their norms.
+    pub fn verdict_within(&self, outer: &Outer, epsilon: f64) -> Holds {
+        if self.is_in_first_region(outer, epsilon) {
+            return Holds::Stable;
+        }
+        if self.has_real_unstable_mode(outer, epsilon) {
+            return Holds::Unstable;
+        }
+        if self.is_stable_by_index(outer, epsilon) {
+            return Holds::Stable;
+        }
+        self.beyond(outer, epsilon).into()
+    }
+}

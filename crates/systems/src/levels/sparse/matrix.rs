@@ -1,0 +1,573 @@
+//! Symmetric sparse matrices of doubles: products with vectors, sums that are proven positive definite.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::perm::PermRef;
+use faer::sparse::linalg::cholesky::simplicial::SymbolicSimplicialCholesky;
+use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
+use faer::sparse::linalg::cholesky::{
+    LltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering, factorize_symbolic_cholesky,
+};
+use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
+use faer::{Conj, Mat, Side};
+
+use super::dissect::dissected;
+use super::fronts::{Elimination, Fronts, Pivots, products_of, supernodes, zeros};
+use super::krylov::top;
+use number::U;
+use number::error::{Error, Result};
+use number::parallel::map;
+
+/// The lower triangles of some matrices of one pattern, column by column, every diagonal entry there.
+#[derive(Clone, Debug)]
+pub(crate) struct Pattern {
+    /// Where each column begins, and where the last one ends.
+    columns: Vec<usize>,
+    rows: Vec<usize>,
+    symbolic: Arc<SymbolicCholesky<usize>>,
+    /// The most entries of a row of Cholesky's factor: no sum of products in the factorization has more terms.
+    terms: usize,
+}
+
+/// A symmetric matrix of n rows as triplets (i, j, x), each pair of entries once or both alike; triplets of one entry add up, in doubles.
+pub type Triplets = [(usize, usize, f64)];
+
+/// Entries of both triangles may differ by so much, relative to the largest one: the roundings of a product.
+const SYMMETRIC: f64 = 1e-14;
+
+/// The lower triangle of a symmetric matrix of n rows. Where it `is_whole` an entry that is not given is 0, else it is that of the other triangle.
+///
+/// # Errors
+/// Numbers that are not finite, indices beyond the rows, an entry and its mirror image that differ, all by `field`.
+pub fn symmetric(
+    field: &str,
+    n: usize,
+    given: &Triplets,
+    is_whole: bool,
+) -> Result<Vec<(usize, usize, f64)>> {
+    if let Some((i, j, x)) = given.iter().find(|(i, j, x)| !x.is_finite() || *i.max(j) >= n) {
+        let remedy = format!("give finite numbers, and indices below {n}");
+        return Err(Error::input(&format!("{field}[{i}][{j}]"), x, remedy));
+    }
+    let largest = given.iter().fold(0.0f64, |most, own| most.max(own.2.abs()));
+    let lower: Vec<_> = given.iter().filter(|(i, j, _)| i >= j).copied().collect();
+    let upper: Vec<_> = given.iter().filter(|(i, j, _)| i < j).map(|&(i, j, x)| (j, i, x)).collect();
+    let (lower, upper) = (added(lower), added(upper));
+    let (mut below, mut above) = (lower.iter().peekable(), upper.iter().peekable());
+    let mut all = Vec::with_capacity(lower.len());
+    let place = |own: &&(usize, usize, f64)| (own.0, own.1);
+    while let Some(at) = below.peek().into_iter().chain(above.peek()).map(place).min() {
+        let (i, j) = at;
+        let [x, y] = [&mut below, &mut above].map(|own| own.next_if(|own| place(own) == at).map(|own| own.2));
+        let (x, y) = match (x, y) {
+            (x, y) if is_whole && i != j => (x.unwrap_or(0.0), y.unwrap_or(0.0)),
+            (x, y) => (x.or(y).unwrap_or(0.0), y.or(x).unwrap_or(0.0)),
+        };
+        if (x - y).abs() > SYMMETRIC * largest {
+            let remedy = format!(
+                "is not symmetric: entry [{j}][{i}] is {y}, and they differ by {:e}; give (K + K.T)/2 where that is meant",
+                (x - y).abs()
+            );
+            return Err(Error::input(&format!("{field}[{i}][{j}]"), x, remedy));
+        }
+        all.push((i, j, x));
+    }
+    Ok(all)
+}
+
+/// In order, the triplets of each entry added up.
+fn added(mut own: Vec<(usize, usize, f64)>) -> Vec<(usize, usize, f64)> {
+    own.sort_by_key(|&(i, j, _)| (i, j));
+    own.dedup_by(|next, kept| {
+        let is_same = (next.0, next.1) == (kept.0, kept.1);
+        if is_same {
+            kept.2 += next.2;
+        }
+        is_same
+    });
+    own
+}
+
+impl Pattern {
+    /// That of all entries of some matrices, each with its entries in it.
+    ///
+    /// # Errors
+    /// No row; an index beyond the last row; where the symbolic factorization runs out of memory.
+    pub fn of<const K: usize>(n: usize, matrices: [&Triplets; K]) -> Result<(Pattern, [Vec<f64>; K])> {
+        let (pattern, values) = Pattern::of_all(n, &matrices)?;
+        Ok((pattern, values.try_into().expect("as many as matrices")))
+    }
+
+    /// The same of any number of matrices.
+    ///
+    /// # Errors
+    /// As [`Pattern::of`].
+    pub fn of_all(n: usize, matrices: &[&Triplets]) -> Result<(Pattern, Vec<Vec<f64>>)> {
+        let place = |(k, own): (usize, &&Triplets)| -> Vec<(usize, usize, usize, f64)> {
+            own.iter().filter(|(i, j, _)| i >= j).map(|&(i, j, x)| (j, i, k, x)).collect()
+        };
+        if n == 0 || matrices.iter().any(|own| own.iter().any(|&(i, j, _)| i.max(j) >= n)) {
+            return Err(Error::input("stiffness", n, "give 1 row or more, and indices below their number"));
+        }
+        let mut all: Vec<_> = matrices.iter().enumerate().flat_map(place).collect();
+        all.extend((0..n).map(|i| (i, i, 0, 0.0)));
+        all.sort_unstable_by_key(|&(j, i, k, _)| (j, i, k));
+        let (mut columns, mut rows) = (vec![0; n + 1], Vec::new());
+        let mut values = vec![Vec::new(); matrices.len()];
+        let mut last = None;
+        for (j, i, k, x) in all {
+            if last != Some((j, i)) {
+                last = Some((j, i));
+                columns[j + 1] += 1;
+                rows.push(i);
+                values.iter_mut().for_each(|own: &mut Vec<f64>| own.push(0.0));
+            }
+            *values[k].last_mut().expect("just pushed") += x;
+        }
+        (0..n).for_each(|j| columns[j + 1] += columns[j]);
+        let symbolic = symbolic(&columns, &rows)
+            .ok_or_else(|| Error::input("stiffness", n, "is too large for the memory of this machine"))?;
+        let terms = longest_row(&symbolic);
+        Ok((Pattern { columns, rows, symbolic: Arc::new(symbolic), terms }, values))
+    }
+
+    /// n.
+    pub fn size(&self) -> usize {
+        self.columns.len() - 1
+    }
+
+    /// The entries of one triangle.
+    pub fn entries(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// The products of one factorization: half the squares of its columns' lengths.
+    pub fn products(&self) -> f64 {
+        products(&self.symbolic)
+    }
+
+    fn column(&self, j: usize) -> impl Iterator<Item = (usize, usize)> + '_ {
+        (self.columns[j]..self.columns[j + 1]).map(|at| (at, self.rows[at]))
+    }
+
+    /// A x for each column x.
+    pub fn times(&self, values: &[f64], x: &Mat<f64>) -> Mat<f64> {
+        // As many parts whatever the threads, so that sums have one order.
+        let parts = if self.rows.len() < MANY { 1 } else { PARTS };
+        let end = |part: usize| self.columns.partition_point(|&at| at < part * self.rows.len() / parts);
+        let ranges: Vec<Range<usize>> = (0..parts)
+            .map(|part| end(part)..if part + 1 < parts { end(part + 1) } else { self.size() })
+            .collect();
+        let sums = map(&ranges, |columns| self.part_times(columns.clone(), values, x));
+        sums.into_iter().reduce(|sum, part| sum + part).expect("one part or more")
+    }
+
+    /// What the columns of a range add, and the rows of the same.
+    fn part_times(&self, columns: Range<usize>, values: &[f64], x: &Mat<f64>) -> Mat<f64> {
+        let mut y = Mat::zeros(x.nrows(), x.ncols());
+        for c in 0..x.ncols() {
+            let (from, to) = (x.col_as_slice(c), y.col_as_slice_mut(c));
+            for j in columns.clone() {
+                let mut sum = 0.0;
+                for (at, i) in self.column(j) {
+                    sum += values[at] * from[i];
+                    if i != j {
+                        to[i] += values[at] * from[j];
+                    }
+                }
+                to[j] += sum;
+            }
+        }
+        y
+    }
+
+    /// The largest sum of |entries| of a row: no less than the 2-norm, rounded up; and the largest number of entries of one.
+    pub fn size_of(&self, values: &[f64]) -> (f64, usize) {
+        let (mut sums, mut counts) = (vec![0.0; self.size()], vec![0; self.size()]);
+        for j in 0..self.size() {
+            for (at, i) in self.column(j) {
+                for k in if i == j { [Some(i), None] } else { [Some(i), Some(j)] }.into_iter().flatten() {
+                    sums[k] += values[at].abs();
+                    counts[k] += 1;
+                }
+            }
+        }
+        let most = counts.into_iter().max().unwrap_or(0);
+        (sums.into_iter().fold(0.0, f64::max) * (1.0 + (most as f64 + 2.0) * U), most)
+    }
+
+    /// c + Σ a_k A_k, and the sum of |entries| on its diagonal.
+    fn sum(&self, c: f64, terms: &[(f64, &[f64])]) -> (Vec<f64>, f64) {
+        let mut values = vec![0.0; self.rows.len()];
+        for (a, own) in terms {
+            values.iter_mut().zip(*own).for_each(|(sum, x)| *sum += a * x);
+        }
+        let mut trace = 0.0;
+        for j in 0..self.size() {
+            let at = self.diagonal(j);
+            values[at] += c;
+            trace += values[at].abs();
+        }
+        (values, trace)
+    }
+
+    /// Where the diagonal entry of a column is: rows below it follow.
+    fn diagonal(&self, j: usize) -> usize {
+        self.columns[j]
+    }
+
+    fn matrix<'a>(&'a self, values: &'a [f64]) -> SparseColMatRef<'a, usize, f64> {
+        let n = self.size();
+        SparseColMatRef::new(
+            SymbolicSparseColMatRef::new_checked(n, n, &self.columns, None, &self.rows),
+            values,
+        )
+    }
+
+    /// Whether every matrix within `slack` (2-norm) of c + Σ a_k A_k is proven positive definite, as [`Pattern::factored`] proves it, without the
+    /// factors: memory holds some fronts. False where that proves nothing, or memory runs out.
+    pub fn is_definite(&self, c: f64, terms: &[(f64, &[f64])], slack: f64) -> bool {
+        match self.symbolic.raw() {
+            SymbolicCholeskyRaw::Simplicial(_) => self.factored(c, terms, slack).is_some(),
+            SymbolicCholeskyRaw::Supernodal(own) => self
+                .lowered(c, terms, slack)
+                .and_then(|values| self.fronts(own, values, Elimination::Cholesky))
+                .is_some(),
+        }
+    }
+
+    /// The pivots of a matrix of this pattern.
+    fn fronts(
+        &self,
+        own: &SymbolicSupernodalCholesky<usize>,
+        values: Vec<f64>,
+        kind: Elimination,
+    ) -> Option<Pivots> {
+        let places = self.symbolic.perm().map(|perm| perm.arrays().1);
+        let place = |i: usize| places.map_or(i, |places| places[i]);
+        let fronts = Fronts::new(own, place, [&self.columns, &self.rows], &values, kind)?;
+        drop(values);
+        fronts.pivots()
+    }
+
+    /// The factors of c + Σ a_k A_k minus what makes them prove that every matrix within `slack` of it (2-norm) is positive definite, by
+    /// Rump's criterion (BIT 46, 2006); `None` where that proves nothing, or memory runs out.
+    pub fn factored(&self, c: f64, terms: &[(f64, &[f64])], slack: f64) -> Option<Factors> {
+        let values = self.factors(&self.lowered(c, terms, slack)?, false)?;
+        Some(Factors { symbolic: Arc::clone(&self.symbolic), values })
+    }
+
+    /// c + Σ a_k A_k minus as much of the identity as Cholesky's factors may be off by: where they exist, whatever the order of their sums, every
+    /// matrix within `slack` of the sum is positive definite. `None` where a diagonal entry shows that they do not.
+    fn lowered(&self, c: f64, terms: &[(f64, &[f64])], slack: f64) -> Option<Vec<f64>> {
+        let n = self.size();
+        let (mut values, trace) = self.sum(c, terms);
+        // γ of the longest sum, with room for the reciprocals of pivots, the rounding of the shifted diagonal and of the sums here.
+        let shift = 1.01 * (slack + (self.terms as f64 + 24.0) * U * trace)
+            + f64::MIN_POSITIVE * (n as f64 + 1.0).powi(2);
+        if !shift.is_finite() || (0..n).any(|j| values[self.diagonal(j)] <= shift) {
+            return None;
+        }
+        (0..n).for_each(|j| values[self.diagonal(j)] -= shift);
+        Some(values)
+    }
+
+    /// \[lo, hi\], which holds the largest eigenvalue of every matrix within `slack` of A (2-norm), to `within` of itself or as near as doubles
+    /// tell: above it c − A is proven positive definite, below it c − A has a negative pivot. `None` where it is not positive.
+    pub fn largest(&self, values: &[f64], slack: f64, within: f64) -> Option<(f64, f64)> {
+        let (mut lo, mut hi) = (0.0, self.size_of(values).0 + slack);
+        let minus = [(-1.0, values)];
+        while hi - lo > within * hi {
+            // Beside the middle, where c − A of a regular chain has a pivot 0, which nothing is divided by.
+            let middle = lo + 0.486_2 * (hi - lo);
+            if self.is_definite(middle, &minus, slack) {
+                hi = middle;
+                continue;
+            }
+            match self.negative(-middle, &minus) {
+                Some((1.., off)) if middle - 1.01 * (off + slack) > lo => lo = middle - 1.01 * (off + slack),
+                _ => break,
+            }
+        }
+        (lo > 0.0).then_some((lo, hi))
+    }
+
+    /// How many negative eigenvalues a matrix has that is no farther from Σ a_k A_k − c (2-norm) than the number beside: that of the negative
+    /// pivots of L D Lᵀ without exchanges, whose error is γ |L||D||Lᵀ| (Higham, chapter 11) and the roundings of the sum.
+    pub fn negative(&self, c: f64, terms: &[(f64, &[f64])]) -> Option<(usize, f64)> {
+        let (values, trace) = self.sum(-c, terms);
+        let Pivots { negative, size } = match self.symbolic.raw() {
+            SymbolicCholeskyRaw::Simplicial(own) => self.simplicial(own, &values)?,
+            SymbolicCholeskyRaw::Supernodal(own) => self.fronts(own, values, Elimination::Signed)?,
+        };
+        let off = self.off(size + trace, c);
+        off.is_finite().then_some((negative, off))
+    }
+
+    /// How far pivots may be off, by Σ |d_k| |l_k|² and the sum of |entries| on the diagonal.
+    fn off(&self, sizes: f64, c: f64) -> f64 {
+        2.0 * (self.terms as f64 + 24.0) * U * (sizes + c.abs())
+    }
+
+    /// No fewer than the eigenvalues that are not above 0 of any matrix within `slack` of c + Σ a_k A_k: those below a τ that is proven to lie beyond the slack
+    /// and what the factorization may be off by.
+    pub fn at_most_negative(&self, c: f64, terms: &[(f64, &[f64])], slack: f64) -> Option<usize> {
+        let mut tau = 1.1 * slack;
+        for _ in 0..SHIFTS {
+            let (negative, own) = self.negative(tau - c, terms)?;
+            if tau > 1.01 * (own + slack) {
+                return Some(negative);
+            }
+            tau = 1.1 * (own + slack);
+        }
+        None
+    }
+
+    /// The pivots of L D Lᵀ column by column.
+    fn simplicial(&self, own: &SymbolicSimplicialCholesky<usize>, values: &[f64]) -> Option<Pivots> {
+        let factor = self.factors(values, true)?;
+        // Of each column: its pivot, and the square of its length, 1 on the diagonal.
+        Some(own.col_ptr().windows(2).fold(Pivots::default(), |sum, ends| {
+            let (pivot, below) = (factor[ends[0]], &factor[ends[0] + 1..ends[1]]);
+            let square = 1.0 + below.iter().map(|x| x * x).sum::<f64>();
+            sum.and(Pivots { negative: usize::from(pivot < 0.0), size: pivot.abs() * square })
+        }))
+    }
+
+    /// The values of the factors L Lᵀ of a matrix of this pattern, or L D Lᵀ; `None` where a pivot is none, memory runs out, or they are too many to keep.
+    fn factors(&self, entries: &[f64], is_signed: bool) -> Option<Vec<f64>> {
+        let (own, threads) = (&self.symbolic, faer::get_global_parallelism());
+        let scratch = match is_signed {
+            false => own.factorize_numeric_llt_scratch::<f64>(threads, Default::default()),
+            true => own.factorize_numeric_ldlt_scratch::<f64>(threads, Default::default()),
+        };
+        let mut room = MemBuffer::try_new(scratch).ok()?;
+        let mut values = if own.len_val() < MOST_KEPT { zeros(own.len_val(), 0.0)? } else { return None };
+        let (to, matrix, side) = (&mut values[..], self.matrix(entries), Side::Lower);
+        let (none, stack) = (Default::default(), MemStack::new(&mut room));
+        let is_done = if is_signed {
+            own.factorize_numeric_ldlt(to, matrix, side, none, threads, stack, Default::default()).is_ok()
+        } else {
+            let none = Default::default();
+            own.factorize_numeric_llt(to, matrix, side, none, threads, stack, Default::default()).is_ok()
+        };
+        is_done.then_some(values)
+    }
+}
+
+/// Shifts τ that are tried: from the second one on a tenth above what the factorization with the last one may be off by.
+const SHIFTS: u32 = 8;
+
+/// So many values of factors are not kept: 8 GB.
+const MOST_KEPT: usize = 1_000_000_000;
+
+/// Entries from which on a product is made in parts, and how many.
+const MANY: usize = 1 << 18;
+const PARTS: usize = 4;
+
+/// The residual, relative to the inverse's eigenvalue, at which a vector is taken: the eigenvalue's error is its square, over the distance of the next one.
+const ENOUGH: f64 = 1e-3;
+
+/// Cholesky's factors.
+pub struct Factors {
+    symbolic: Arc<SymbolicCholesky<usize>>,
+    values: Vec<f64>,
+}
+
+impl Factors {
+    /// What the matrix takes to x, rounded; `None` where memory runs out.
+    pub fn solve(&self, mut x: Mat<f64>) -> Option<Mat<f64>> {
+        let threads = faer::get_global_parallelism();
+        let scratch = self.symbolic.solve_in_place_scratch::<f64>(x.ncols(), threads);
+        let mut room = MemBuffer::try_new(scratch).ok()?;
+        let stack = MemStack::new(&mut room);
+        let own = LltRef::<usize, f64>::new(&self.symbolic, &self.values);
+        own.solve_in_place_with_conj(Conj::No, x.as_mut(), threads, stack);
+        Some(x)
+    }
+
+    /// The eigenvector of the least eigenvalue as a Krylov space of the inverse has it, so many steps from x, off the columns of `rigid`: of length 1,
+    /// rounded. `None` where memory runs out or nothing is left.
+    pub fn least(&self, x: Mat<f64>, rigid: &Mat<f64>, steps: usize) -> Option<Mat<f64>> {
+        top(x, rigid, steps, ENOUGH, |x| self.solve(x.clone()))
+    }
+
+    /// So many rounds of inverse iteration from x, off the columns of `rigid`; of length 1, rounded. `None` where memory runs out or nothing is left.
+    pub fn iterated(&self, mut x: Mat<f64>, rigid: &Mat<f64>, rounds: usize) -> Option<Mat<f64>> {
+        for _ in 0..rounds {
+            x = self.solve(x)?;
+            x -= rigid * (rigid.transpose() * &x);
+            let length = x.norm_l2();
+            if !(length.is_finite() && length > 0.0) {
+                return None;
+            }
+            x /= faer::Scale(length);
+        }
+        Some(x)
+    }
+}
+
+/// Cholesky's factors in the order of least degrees, or by dissection where that fills them less; `None` where memory runs out.
+fn symbolic(columns: &[usize], rows: &[usize]) -> Option<SymbolicCholesky<usize>> {
+    let n = columns.len() - 1;
+    let pattern = SymbolicSparseColMatRef::new_checked(n, n, columns, None, rows);
+    let in_order = |order| factorize_symbolic_cholesky(pattern, Side::Lower, order, Default::default()).ok();
+    let own = in_order(SymmetricOrdering::Amd)?;
+    // Where a factorization costs little more than to find an order, any does.
+    if products(&own) < WORTH_AN_ORDER * rows.len() as f64 {
+        return Some(own);
+    }
+    let order = dissected(columns, rows);
+    let mut places = vec![0; n];
+    order.iter().enumerate().for_each(|(place, &i)| places[i] = place);
+    let other = in_order(SymmetricOrdering::Custom(PermRef::new_checked(&order, &places, n)));
+    Some(other.filter(|other| products(other) < products(&own)).unwrap_or(own))
+}
+
+/// Products an entry of the matrix.
+const WORTH_AN_ORDER: f64 = 1000.0;
+
+/// Half the squares of the lengths of the factor's columns.
+fn products(symbolic: &SymbolicCholesky<usize>) -> f64 {
+    match symbolic.raw() {
+        SymbolicCholeskyRaw::Simplicial(own) => {
+            own.col_ptr().windows(2).map(|ends| products_of(1, ends[1] - ends[0] - 1)).sum()
+        }
+        SymbolicCholeskyRaw::Supernodal(own) => {
+            supernodes(own).map(|(columns, below)| products_of(columns.len(), below.len())).sum()
+        }
+    }
+}
+
+/// The most entries of a row of the factor, zeros that are kept within supernodes included.
+fn longest_row(symbolic: &SymbolicCholesky<usize>) -> usize {
+    let mut counts = vec![0; symbolic.nrows()];
+    match symbolic.raw() {
+        SymbolicCholeskyRaw::Simplicial(own) => own.row_idx().iter().for_each(|&i| counts[i] += 1),
+        SymbolicCholeskyRaw::Supernodal(own) => supernodes(own).for_each(|(columns, below)| {
+            let width = columns.len();
+            columns.chain(below.iter().copied()).for_each(|i| counts[i] += width);
+        }),
+    }
+    counts.into_iter().max().unwrap_or(0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A matrix of n rows with entries up to so far from its diagonal, numbers without a pattern.
+    fn banded(n: usize, width: usize) -> (Vec<(usize, usize, f64)>, Mat<f64>) {
+        let entry = |i: usize, j: usize| ((i * n + j + 1) as f64 * 0.754_877_666_246_692_7).fract() - 0.5;
+        let near = |i: usize| (i.saturating_sub(width)..=i).map(move |j| (i, j, entry(i, j)));
+        let triplets: Vec<_> = (0..n).flat_map(near).collect();
+        let mut dense = Mat::zeros(n, n);
+        triplets.iter().for_each(|&(i, j, x)| (dense[(i, j)], dense[(j, i)]) = (x, x));
+        (triplets, dense)
+    }
+
+    /// A cubic lattice with entries up to a distance.
+    fn lattice(side: usize, far: i64) -> Vec<(usize, usize, f64)> {
+        let place = |i: usize| [i % side, i / side % side, i / side / side].map(|x| x as i64);
+        let apart =
+            |i: usize, j: usize| -> i64 { place(i).iter().zip(place(j)).map(|(a, b)| (a - b).pow(2)).sum() };
+        let n = side.pow(3);
+        let near = |i: usize| (0..i).filter(move |&j| apart(i, j) <= far * far).map(move |j| (i, j, -0.01));
+        (0..n).flat_map(|i| near(i).chain([(i, i, 2.0)])).collect()
+    }
+
+    #[test]
+    fn bodies_in_space_are_dissected_where_that_fills_less() {
+        for side in [12, 16] {
+            let triplets = lattice(side, 2);
+            let n = side.pow(3);
+            let (pattern, [values]) = Pattern::of(n, [&triplets]).unwrap();
+            let mut order = dissected(&pattern.columns, &pattern.rows);
+            let amd = factorize_symbolic_cholesky(
+                SymbolicSparseColMatRef::new_checked(n, n, &pattern.columns, None, &pattern.rows),
+                Side::Lower,
+                SymmetricOrdering::Amd,
+                Default::default(),
+            );
+            let amd = products(&amd.unwrap());
+            assert!(amd > WORTH_AN_ORDER * pattern.rows.len() as f64 && pattern.products() < amd, "{side}");
+            order.sort_unstable();
+            assert!(order.into_iter().eq(0..n));
+            let x = Mat::from_fn(n, 1, |i, _| (i % 7) as f64 - 2.5);
+            let solved = pattern.factored(0.0, &[(1.0, &values)], 0.0).unwrap().solve(x.clone()).unwrap();
+            // The shift that makes the factors a proof is some 10^-9 of the matrix here.
+            assert!((pattern.times(&values, &solved) - &x).norm_l2() < 1e-6 * x.norm_l2());
+            assert!(pattern.is_definite(0.0, &[(1.0, &values)], 0.0));
+        }
+    }
+
+    #[test]
+    fn orders_hold_every_row_once() {
+        // Parts without a path between them, rows that all meet, rows without any entry beside the diagonal.
+        let apart: Vec<_> = (0..2000).map(|i| (i, i, 1.0)).collect();
+        let chains: Vec<_> = apart.iter().copied().chain((5..2000).map(|i| (i, i - 5, 1.0))).collect();
+        let full: Vec<_> = (0..400).flat_map(|i| (0..=i).map(move |j| (i, j, 1.0))).collect();
+        for (n, triplets) in [(2000, apart), (2000, chains), (400, full)] {
+            let (pattern, _) = Pattern::of(n, [&triplets]).unwrap();
+            let mut order = dissected(&pattern.columns, &pattern.rows);
+            order.sort_unstable();
+            assert!(order.into_iter().eq(0..n));
+        }
+    }
+
+    #[test]
+    fn fronts_count_what_is_negative_in_bodies_apart() {
+        // Three lattices that do not meet, each large enough to be eliminated by supernodes; one is twice as stiff.
+        let (body, n) = (lattice(9, 2), 729);
+        let moved = |k: usize| {
+            let by = if k == 2 { 2.0 } else { 1.0 };
+            body.iter().map(move |&(i, j, x)| (i + k * n, j + k * n, by * x))
+        };
+        let all: Vec<_> = (0..3).flat_map(moved).collect();
+        let (pattern, [values]) = Pattern::of(3 * n, [&all]).unwrap();
+        assert!(matches!(pattern.symbolic.raw(), SymbolicCholeskyRaw::Supernodal(_)));
+        let mut own = Mat::zeros(n, n);
+        body.iter().for_each(|&(i, j, x)| (own[(i, j)], own[(j, i)]) = (x, x));
+        let eigenvalues = own.self_adjoint_eigenvalues(Side::Lower).unwrap();
+        for c in [1.4, 1.9, 2.0001, 2.3, 4.1, 5.0] {
+            let (negative, off) = pattern.negative(c, &[(1.0, &values)]).expect("no pivot vanishes");
+            let below = |c: f64| eigenvalues.iter().filter(|&&x| x < c).count();
+            let count = |by: f64| 2 * below(c + by) + below((c + by) / 2.0);
+            assert!(off < 1e-3 && count(-off) <= negative && negative <= count(off), "{c} {off}");
+            assert_eq!(pattern.is_definite(-c, &[(1.0, &values)], 0.0), negative == 0, "{c}");
+        }
+    }
+
+    #[test]
+    fn counts_products_and_solutions_are_those_of_the_dense_matrix() {
+        let mut kinds = [0, 0];
+        for (n, width) in [(1, 0), (40, 0), (60, 1), (90, 2), (30, 30), (70, 70), (120, 40), (400, 400)] {
+            let (triplets, dense) = banded(n, width);
+            let (pattern, [values]) = Pattern::of(n, [&triplets]).unwrap();
+            kinds[usize::from(matches!(pattern.symbolic.raw(), SymbolicCholeskyRaw::Supernodal(_)))] += 1;
+            let x = Mat::from_fn(n, 2, |i, j| (i + 3 * j) as f64 - 1.5);
+            // Some hundred roundings of numbers up to some hundreds.
+            assert!((pattern.times(&values, &x) - &dense * &x).norm_l2() < 1e-9);
+            let eigenvalues = dense.self_adjoint_eigenvalues(Side::Lower).unwrap();
+            let beyond = pattern.size_of(&values).0 + 1.0;
+            for shift in [-3.0, -0.3, 0.1, 1.7, beyond] {
+                let Some((negative, off)) = pattern.negative(shift, &[(1.0, &values)]) else { continue };
+                let below = |by: f64| eigenvalues.iter().filter(|&&x| x < shift + by).count();
+                // Without exchanges pivots can be small and the bound large: it holds all the same.
+                assert!(below(-off) <= negative && negative <= below(off), "{n} {width} {shift} {off}");
+                assert!(shift < beyond || negative == n && off < 1e-7, "{n} {width} {off}");
+            }
+            let positive = |c: f64| pattern.is_definite(c, &[(1.0, &values)], 0.0);
+            // Below the least eigenvalue, and above it, by far more than what elimination may be off by.
+            assert!(positive(1e-6 - eigenvalues[0]) && !positive(-1e-6 - eigenvalues[0]), "{n} {width}");
+            let factors = pattern.factored(beyond, &[(1.0, &values)], 1e-3).expect("above all eigenvalues");
+            let solved = factors.solve(x.clone()).unwrap();
+            let back = pattern.times(&values, &solved) + &solved * faer::Scale(beyond);
+            assert!((back - &x).norm_l2() < 0.01 * x.norm_l2());
+            assert!(pattern.factored(-beyond, &[(1.0, &values)], 0.0).is_none());
+        }
+        assert!(kinds.iter().all(|&count| count > 0), "{kinds:?}");
+    }
+}

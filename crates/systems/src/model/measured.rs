@@ -1,0 +1,482 @@
+//! Stiffnesses in doubles, as people measure them, each potential with its clock.
+
+use std::borrow::Cow;
+use std::sync::{Arc, OnceLock};
+
+use nalgebra::DMatrix;
+use num_traits::{One, Zero};
+
+use crate::friction::Friction;
+use crate::levels::{Cells, Hessians, Kernel, Method, Nested, Outer};
+use crate::linear::sparse::Symmetric;
+use crate::linear::system::{Potential, System};
+use crate::vary::stretches::{Stretch, cover, most_cells};
+use crate::verdict::analysis::Analysis;
+use crate::verdict::limits::{Limits, Route};
+use crate::verdict::measured::{Holds, check_accuracy};
+use number::Rational;
+use number::error::{Error, Result};
+use number::rational::{from_f64_exact, to_f64};
+
+/// The masses that move, and the motions that are held.
+#[derive(Clone, Debug, Default)]
+pub struct Body {
+    /// The mass of each degree of freedom; `None`: the stiffnesses are mass-weighted and no masses are known.
+    pub masses: Option<Vec<f64>>,
+    /// The place of each particle in space.
+    pub positions: Option<Vec<[f64; 3]>>,
+    /// Whether the stiffnesses are M^-½ K M^-½ instead of K.
+    pub is_weighted: bool,
+    /// Whether rotations are no rigid motions, as in a periodic box.
+    pub is_periodic: bool,
+    /// The mass-weighted gradients of the distances that are held, a column each; by these the stiffnesses are bent.
+    pub held: Option<DMatrix<f64>>,
+    /// The rigid motions where these are known, mass-weighted and independent, a column each; `None`: they are looked for.
+    pub rigid: Option<DMatrix<f64>>,
+}
+
+/// Measured stiffnesses with their clocks.
+#[derive(Clone, Debug)]
+pub struct MeasuredSystem {
+    /// The sums of the stiffnesses of each step, by increasing step.
+    potentials: Vec<(Rational, DMatrix<f64>)>,
+    /// The stiffnesses of steps that several potentials have: each is known to its own norm.
+    shares: Vec<(Rational, Vec<DMatrix<f64>>)>,
+    pub(super) body: Body,
+    pub(super) accuracy: f64,
+    pub(super) keeps_rigid: bool,
+    method: Method,
+    system: OnceLock<System>,
+    kernel: Arc<OnceLock<Kernel>>,
+}
+
+/// Two levels of measured stiffnesses.
+#[derive(Clone, Debug)]
+pub struct TwoLevels<'a> {
+    pub kernel: &'a Kernel,
+    pub body: &'a Body,
+    pub outer: Rational,
+    /// Every stiffness is known to this times its norm.
+    pub accuracy: f64,
+}
+
+/// Any number of levels of measured stiffnesses.
+#[derive(Clone, Debug)]
+pub struct ManyLevels<'a> {
+    pub levels: Nested,
+    pub body: &'a Body,
+    /// Every stiffness is known to this times its norm.
+    pub accuracy: f64,
+}
+
+/// The accuracy of rational stiffnesses in doubles, relative to their norms: more than (√n + 4) 2⁻⁵³ of n = 4096 rows, from half a unit in the last place
+/// of each entry and each mass, and enough for rigid motions to be found.
+const ROUNDED: f64 = 1e-12;
+
+/// A cell of a range of n degrees of freedom takes n² (n + this) products, as measured for 81 to 1,080 of them: eigenvalues, factorizations and
+/// norms in wide cells that decide much, and in narrow ones; what goes by entries is slower than products of matrices.
+const CELL: f64 = 1100.0;
+
+impl MeasuredSystem {
+    /// From the step and the stiffness of each potential, at least one, all n x n finite doubles; masses and positions, where they are given,
+    /// fit them.
+    ///
+    /// # Errors
+    /// Steps as those of [`System::new`]; an accuracy as for [`MeasuredSystem::at_accuracy`].
+    pub fn new(body: Body, given: Vec<(Rational, DMatrix<f64>)>, accuracy: f64) -> Result<MeasuredSystem> {
+        let mut shares: Vec<(Rational, Vec<DMatrix<f64>>)> = Vec::new();
+        for (step, stiffness) in given {
+            match shares.iter_mut().find(|(other, _)| *other == step) {
+                Some((_, own)) => own.push(stiffness),
+                None => shares.push((step, vec![stiffness])),
+            }
+        }
+        let sum = |(step, own): &(Rational, Vec<DMatrix<f64>>)| {
+            let (n, m) = own[0].shape();
+            (step.clone(), own.iter().fold(DMatrix::zeros(n, m), |sum, k| sum + k))
+        };
+        let mut potentials: Vec<(Rational, DMatrix<f64>)> = shares.iter().map(sum).collect();
+        shares.retain(|(_, own)| own.len() > 1);
+        potentials.sort_by(|a, b| a.0.cmp(&b.0));
+        // The steps, checked as those of any system are.
+        let clock = |(step, _): &(Rational, _)| Potential::new(Symmetric::zero(1), step.clone());
+        System::new(Symmetric::diagonal(&[Rational::one()]), potentials.iter().map(clock).collect())?;
+        let (system, kernel) = (OnceLock::new(), Arc::default());
+        let (keeps_rigid, method) = (false, Method::default());
+        let read = MeasuredSystem { potentials, shares, body, accuracy, keeps_rigid, method, system, kernel };
+        read.at_accuracy(accuracy)
+    }
+
+    /// The clocks of a rational system in doubles.
+    ///
+    /// # Errors
+    /// A mass matrix that is not diagonal; numbers that are no doubles of full precision.
+    pub fn rounded(system: &System) -> Result<MeasuredSystem> {
+        let (mass, n) = (system.mass(), system.size());
+        if !mass.is_diagonal() {
+            let remedy =
+                "methods but implicit-explicit are decided in doubles: give masses in place of mass_matrix";
+            return Err(Error::input("mass_matrix", "not diagonal", remedy));
+        }
+        let double = |x: &Rational| {
+            let own = to_f64(x);
+            let error =
+                || Error::input("method", x, "decides in doubles of full precision: choose other units");
+            (own.is_normal() || x.is_zero()).then_some(own).ok_or_else(error)
+        };
+        let masses = (0..n).map(|i| double(&mass.get(i, i))).collect::<Result<_>>()?;
+        let dense = |clock: &Potential| {
+            let mut own = DMatrix::zeros(n, n);
+            for i in 0..n {
+                for (&j, x) in clock.stiffness.row(i) {
+                    own[(i, j)] = double(x)?;
+                }
+            }
+            Ok((clock.step.clone(), own))
+        };
+        let masses: Vec<f64> = masses;
+        // Exactly: what is soft beside the roundings of doubles is not rigid.
+        let rigid = system.rigid_modes();
+        let rigid = DMatrix::from_fn(n, rigid.len(), |i, k| to_f64(&rigid[k].1[i]) * masses[i].sqrt());
+        let body = Body { masses: Some(masses), rigid: Some(rigid), ..Body::default() };
+        let clocks = system.clocks().iter().map(dense).collect::<Result<_>>()?;
+        MeasuredSystem::new(body, clocks, ROUNDED)
+    }
+
+    /// This system with every stiffness known to this times its norm.
+    ///
+    /// # Errors
+    /// An accuracy that is not in (0, 1/10).
+    pub fn at_accuracy(mut self, accuracy: f64) -> Result<MeasuredSystem> {
+        check_accuracy(accuracy)?;
+        (self.accuracy, self.kernel) = (accuracy, Arc::default());
+        Ok(self)
+    }
+
+    /// This system with its rigid motions left in.
+    #[must_use]
+    pub fn keeping_rigid(mut self) -> MeasuredSystem {
+        (self.keeps_rigid, self.kernel) = (true, Arc::default());
+        self
+    }
+
+    /// This system under another integrator of two levels.
+    ///
+    /// # Errors
+    /// Where there are not two levels.
+    pub fn with_method(mut self, method: Method) -> Result<MeasuredSystem> {
+        (self.method, self.kernel) = (method, Arc::default());
+        match (method, self.potentials.len(), self.is_of_two_levels()) {
+            (Method::Respa, ..) | (_, 2, true) => Ok(self),
+            _ => Err(Error::input(
+                "method",
+                method,
+                "is for two levels: give two potentials with different steps, the shorter one's force is the fast one",
+            )),
+        }
+    }
+
+    pub fn method(&self) -> Method {
+        self.method
+    }
+
+    /// That kicks and drifts integrate it.
+    pub fn refuse_method(&self, what: &str) -> Result<()> {
+        match self.method {
+            Method::Respa => Ok(()),
+            own => Err(Error::input("method", own, format!("{what} is for respa: leave it out"))),
+        }
+    }
+
+    /// Takes over the accuracy and the method of another of the same body, whether it keeps rigid motions, and its eigenbasis where the stiffnesses are the
+    /// same.
+    pub fn follow(&mut self, other: &MeasuredSystem) {
+        (self.accuracy, self.keeps_rigid, self.method) = (other.accuracy, other.keeps_rigid, other.method);
+        if self.potentials.iter().map(|(_, k)| k).eq(other.potentials.iter().map(|(_, k)| k)) {
+            self.kernel = Arc::clone(&other.kernel);
+        }
+    }
+
+    /// The steps, increasing.
+    pub(super) fn steps(&self) -> Vec<Rational> {
+        self.potentials.iter().map(|(step, _)| step.clone()).collect()
+    }
+
+    /// The number of degrees of freedom.
+    pub fn size(&self) -> usize {
+        self.potentials[0].1.nrows()
+    }
+
+    /// These doubles as a rational system: in mass-weighted coordinates with unit masses where they are.
+    pub(super) fn system(&self) -> &System {
+        self.system.get_or_init(|| {
+            let masses = self.body.masses.as_ref().filter(|_| !self.body.is_weighted);
+            rational(masses.map_or(&vec![1.0; self.size()], |own| own), &self.potentials)
+        })
+    }
+
+    /// The two levels, with their period; `None` where the steps are of another kind.
+    pub(super) fn outer(&self) -> Option<(Outer, Rational)> {
+        match self.potentials.as_slice() {
+            [(step, _)] => Some((Outer::of_steps(step, step)?, step.clone())),
+            [_, (outer, _)] if !self.method.has_inner_steps() => {
+                Some((Outer::new(to_f64(outer), 1).ok()?, outer.clone()))
+            }
+            [(inner, _), (outer, _)] => Some((Outer::of_steps(inner, outer)?, outer.clone())),
+            _ => None,
+        }
+    }
+
+    /// Whether the kernel of two levels decides it.
+    pub(super) fn is_of_two_levels(&self) -> bool {
+        self.outer().is_some()
+    }
+
+    pub(super) fn inner_steps(&self) -> u64 {
+        self.outer().map_or(1, |(outer, _)| outer.inner_steps())
+    }
+
+    /// The verdict: two levels by their kernel, anything else as a rational system of the doubles given.
+    pub(super) fn decide(&self, route: Route, limits: &Limits) -> Result<Analysis> {
+        let Some((outer, period)) = self.outer().filter(|_| route == Route::Cheapest) else {
+            self.refuse_method("exact arithmetic")?;
+            return self.decide_projected(route, limits);
+        };
+        self.allow(limits)?;
+        self.decided(&outer, &period)
+    }
+
+    /// Of one potential, too, which is one clock.
+    fn decided(&self, outer: &Outer, period: &Rational) -> Result<Analysis> {
+        let own = self.kernel()?.decide(outer, period, self.accuracy);
+        Ok(Analysis { clocks: self.potentials.len(), ..own })
+    }
+
+    /// The verdict that is proven for the doubles given: of two levels in the eigenbasis, where it is known, else at the least cost for this one
+    /// verdict.
+    pub(super) fn verdict(&self, limits: &Limits) -> Result<Holds> {
+        let Some((outer, _)) = self.outer() else {
+            return Ok(self.decide_projected(Route::Cheapest, limits)?.holds());
+        };
+        self.allow(limits)?;
+        match self.kernel.get() {
+            Some(kernel) => Ok(kernel.verdict_within(&outer, 0.0)),
+            None if self.method == Method::Respa => self.hessians()?.verdict(&outer),
+            None => Ok(self.kernel()?.verdict_within(&outer, 0.0)),
+        }
+    }
+
+    /// What is proven of all stiffnesses within the accuracy.
+    pub(super) fn holds(&self, limits: &Limits) -> Result<Holds> {
+        self.allow(limits)?;
+        match self.outer() {
+            Some((outer, _)) => Ok(self.kernel()?.verdict_within(&outer, self.accuracy)),
+            None => self.over_steps(|levels, steps| {
+                let outer = to_f64(steps.last().expect("at least one"));
+                Ok(levels.at(steps)?.verdict_within(outer, self.accuracy))
+            }),
+        }
+    }
+
+    /// The verdict at an outer step, as many inner ones in it as in its own.
+    pub(super) fn decide_at(&self, outer: &Rational, limits: &Limits) -> Result<Analysis> {
+        self.allow(limits)?;
+        let at = Outer::new(to_f64(outer), self.inner_steps())?;
+        self.decided(&at, outer)
+    }
+
+    /// The effect of friction of this rate per unit time.
+    pub(super) fn friction(&self, rate: &Rational, limits: &Limits) -> Result<Friction> {
+        self.refuse_method("friction")?;
+        let Some((outer, _)) = self.outer() else { return self.friction_projected(rate, limits) };
+        // Some 20 eigenvalue problems of 2n rows, each 25 (2n)³.
+        let cost = (self.size() as u64).saturating_pow(3).saturating_mul(4_000);
+        limits.allow_dense(cost, || format!("the eigenvalues of a period of {} rows", 2 * self.size()))?;
+        Ok(self.kernel()?.friction(&outer, rate))
+    }
+
+    fn other_steps(&self, remedy: &str) -> Error {
+        Error::input("potentials", format!("{} steps", self.potentials.len()), remedy)
+    }
+
+    fn allow(&self, limits: &Limits) -> Result<()> {
+        limits.allow_dense(self.cost(), || format!("eigenvalues and factorizations of {} rows", self.size()))
+    }
+
+    /// The products that a verdict costs, roughly: two eigenvalue problems, changes of basis, some fifty factorizations.
+    pub(super) fn cost(&self) -> u64 {
+        (self.size() as u64).saturating_pow(3).saturating_mul(60)
+    }
+
+    /// What is proven of all stiffnesses within an accuracy on a range of outer steps, all steps in their ratios.
+    pub(super) fn stretches(&self, range: (f64, f64), width: f64, accuracy: f64) -> Result<Vec<Stretch>> {
+        if self.is_of_two_levels() {
+            return self.kernel()?.stretches(self.inner_steps(), range, width, accuracy);
+        }
+        self.over_steps(|levels, steps| levels.at(steps)?.stretches(range, width, accuracy))
+    }
+
+    /// The products that these cost, roughly, where cells are narrow throughout.
+    pub(super) fn cost_of_stretches(&self, range: (f64, f64), width: f64) -> Result<f64> {
+        if self.is_of_two_levels() {
+            let n = self.size() as f64;
+            return Ok(self.cost() as f64 + most_cells(range, width) * n * n * (n + CELL));
+        }
+        self.over_steps(|levels, steps| Ok(levels.at(steps)?.cost_of_stretches(range, width)))
+    }
+
+    /// What `ask` finds of levels that are not two of an inner and an outer step, and of their steps.
+    pub(super) fn over_steps<T>(&self, ask: impl FnOnce(&Nested, &[Rational]) -> Result<T>) -> Result<T> {
+        let many = self.nested()?.expect("not of two levels");
+        ask(&many.levels, &self.steps())
+    }
+
+    /// The verdicts on a range of factors of one level, 0 the fast one, of the present value `factor`, all else as it is.
+    pub(super) fn stretches_of_scale(
+        &self,
+        level: usize,
+        (lo, hi): (f64, f64),
+        factor: f64,
+        (width, accuracy): (f64, f64),
+    ) -> Result<Vec<Stretch>> {
+        let Some((outer, _)) = self.outer() else {
+            return Ok(vec![Stretch { lo, hi, verdict: Holds::NotTold }]);
+        };
+        let cells = Cells::new(self.kernel()?, accuracy)?;
+        cover((lo, hi), width, |lo, hi| {
+            let (a, b) = (lo / factor, hi / factor);
+            Ok(cells.verdict_scaled(&outer, level, (a.min(b), a.max(b))))
+        })
+    }
+
+    /// The growth rate at each outer step, as many inner ones in it; `None` where none is known.
+    pub(super) fn growth_rates(&self, steps: &[f64]) -> Result<Vec<Option<f64>>> {
+        let (inner_steps, kernel) = (self.inner_steps(), self.kernel()?);
+        steps.iter().map(|&step| Ok(kernel.growth_rate(&Outer::new(step, inner_steps)?))).collect()
+    }
+
+    /// The largest ln |λ|/T over the eigenvalues of the dense full period, rounded; `None` where it is not of two levels.
+    pub(super) fn growth_of_period(&self, limits: &Limits) -> Result<Option<f64>> {
+        let Some((outer, _)) = self.outer() else { return Ok(None) };
+        let (hessians, inner_steps) = (self.hessians()?, outer.inner_steps());
+        let cost = hessians.cost_of_period(inner_steps);
+        limits.allow_dense(cost, || "the full period, kick by kick,".into())?;
+        Ok(Some(hessians.growth_of_step(self.method, outer.step(), inner_steps)))
+    }
+
+    /// The eigenbasis with the outer step, and how well the stiffnesses are known.
+    pub(super) fn two_levels(&self) -> Result<TwoLevels<'_>> {
+        let [_, outer] = self.two_steps()?;
+        Ok(TwoLevels { kernel: self.kernel()?, body: &self.body, outer, accuracy: self.accuracy })
+    }
+
+    /// The inner and the outer step.
+    pub(super) fn two_steps(&self) -> Result<[Rational; 2]> {
+        self.refuse_method("advice")?;
+        let [(inner, _), (outer, _)] = self.potentials.as_slice() else { return Err(self.not_two()) };
+        self.outer().ok_or_else(|| self.not_two())?;
+        Ok([inner.clone(), outer.clone()])
+    }
+
+    /// Levels of any number, by the action; `None` where they are two, which have a kernel.
+    ///
+    /// # Errors
+    /// As [`MeasuredSystem::kernel`]; another integrator.
+    pub(super) fn nested(&self) -> Result<Option<ManyLevels<'_>>> {
+        self.refuse_method("advice")?;
+        if self.potentials.len() == 2 && self.is_of_two_levels() {
+            return Ok(None);
+        }
+        let weighted = |own: &[DMatrix<f64>]| own.iter().map(|k| self.weighted(k)).collect();
+        let clocks: Vec<Vec<DMatrix<f64>>> = self.clocks().map(|(_, own)| weighted(own)).collect();
+        let levels = Nested::new(&self.hessians()?, &clocks)?;
+        Ok(Some(ManyLevels { levels, body: &self.body, accuracy: self.accuracy }))
+    }
+
+    /// The stiffnesses as they were given, those of each step together, by increasing step.
+    pub(super) fn clocks(&self) -> impl Iterator<Item = (&Rational, &[DMatrix<f64>])> {
+        self.potentials.iter().map(|(step, own)| {
+            let shares = self.shares.iter().find(|(other, _)| other == step).map(|(_, own)| &own[..]);
+            (step, shares.unwrap_or(std::slice::from_ref(own)))
+        })
+    }
+
+    fn not_two(&self) -> Error {
+        self.other_steps("give two potentials, the step of one a multiple of the other's; `kickdrift system FILE` decides any number of steps")
+    }
+
+    /// The eigenbasis, computed when it is first asked for.
+    pub fn kernel(&self) -> Result<&Kernel> {
+        if let Some(kernel) = self.kernel.get() {
+            return Ok(kernel);
+        }
+        let kernel = Kernel::new(&self.hessians()?)?.with_method(self.method);
+        Ok(self.kernel.get_or_init(|| kernel))
+    }
+
+    /// The stiffness of the shortest step and the sum of the others, rigid motions and held distances projected out.
+    pub(super) fn hessians(&self) -> Result<Hessians> {
+        let whole = self.summed_hessians()?;
+        Ok(self.shares.iter().fold(whole, |whole, (step, own)| {
+            let level = usize::from(*step != self.potentials[0].0);
+            whole.of_shares(level, &own.iter().map(|k| self.weighted(k)).collect::<Vec<_>>())
+        }))
+    }
+
+    /// M^-½ K M^-½ of a stiffness given.
+    pub(super) fn weighted(&self, k: &DMatrix<f64>) -> DMatrix<f64> {
+        match self.body.masses.as_ref().filter(|_| !self.body.is_weighted) {
+            Some(m) => DMatrix::from_fn(k.nrows(), k.ncols(), |i, j| k[(i, j)] / (m[i].sqrt() * m[j].sqrt())),
+            None => k.clone(),
+        }
+    }
+
+    /// M^-½ K M^-½ of each potential, with its step.
+    pub(super) fn all_weighted(&self) -> impl Iterator<Item = (Rational, DMatrix<f64>)> {
+        self.potentials.iter().map(|(step, k)| (step.clone(), self.weighted(k)))
+    }
+
+    fn summed_hessians(&self) -> Result<Hessians> {
+        let ((_, fast), others) = self.potentials.split_first().expect("at least one");
+        let slow = match others {
+            [(_, slow)] => Cow::Borrowed(slow),
+            _ => Cow::Owned(
+                others.iter().fold(DMatrix::zeros(self.size(), self.size()), |sum, (_, k)| sum + k),
+            ),
+        };
+        let slow = slow.as_ref();
+        let hessians = match &self.body.masses {
+            Some(masses) if !self.body.is_weighted => Hessians::weighted(masses, fast, slow, self.accuracy)?,
+            _ => Hessians::new(fast, slow, self.accuracy)?,
+        };
+        self.without_rigid(hessians)
+    }
+
+    /// Where the matrices themselves would be taken, all distances free.
+    ///
+    /// # Errors
+    /// Where distances are held.
+    pub fn refuse_constraints(&self) -> Result<()> {
+        let remedy = "a run leaves all distances free: take the constraints out";
+        let given =
+            |held: &DMatrix<f64>| Error::input("constraints", format!("{} pairs", held.ncols()), remedy);
+        self.body.held.as_ref().map_or(Ok(()), |held| Err(given(held)))
+    }
+}
+
+/// Doubles as a rational system; what asymmetry there is is split evenly.
+pub(super) fn rational(masses: &[f64], potentials: &[(Rational, DMatrix<f64>)]) -> System {
+    let exact = |x: f64| from_f64_exact(x).expect("finite, as it was read");
+    let masses: Vec<_> = masses.iter().map(|&m| exact(m)).collect();
+    let potential = |(step, stiffness): &(Rational, DMatrix<f64>)| {
+        let mut sum = Symmetric::zero(masses.len());
+        for i in 0..masses.len() {
+            for j in 0..=i {
+                sum.add(i, j, &exact(stiffness[(i, j)] / 2.0 + stiffness[(j, i)] / 2.0));
+            }
+        }
+        Potential::new(sum, step.clone())
+    };
+    let potentials = potentials.iter().map(potential).collect();
+    System::new(Symmetric::diagonal(&masses), potentials).expect("masses and steps as they were checked")
+}

@@ -1,0 +1,436 @@
+//! A system by the numbers that it is made of. Which route decides it is the model's own affair.
+//!
+//! | file | what |
+//! |---|---|
+//! | `oscillator` | one mass, some number of which involves π: its steps may, too |
+//! | `measured`, `projected` | dense stiffnesses in doubles: as two levels with margins, or on any clocks |
+//! | `intervals` | verdicts and growth rates over the outer step, or over another number |
+
+mod intervals;
+mod measured;
+mod oscillator;
+mod projected;
+mod sparse;
+
+use std::borrow::Cow;
+
+use crate::along::Along;
+use crate::friction::{Friction, damped_system};
+use crate::implicit::{ImplicitExplicit, two_clocks};
+use crate::jacobian::Jacobians;
+use crate::levels::{Hessians, Method};
+use crate::linear::system::{Potential, System};
+use crate::lts::{ElementSteps, LocalSteps, Scheme, SchemeSummary};
+use crate::verdict::analysis::Analysis;
+use crate::verdict::decide::{decide_around, decide_by, exact_kind, verdict_cost};
+use crate::verdict::limits::{DENSE, Limits, PACE, Route};
+use crate::verdict::measured::Holds;
+use clocks::propagator;
+use clocks::verdict::Kind;
+pub use intervals::Number;
+pub use measured::{Body, ManyLevels, MeasuredSystem, TwoLevels};
+use number::error::{Error, Result};
+use number::{Laurent, Rational};
+pub use oscillator::Oscillator;
+pub use sparse::SparseSystem;
+
+/// The kinds of systems.
+#[derive(Clone, Debug)]
+pub enum Model {
+    /// Rational masses, stiffnesses and steps, few entries or many.
+    Rational(System),
+    /// Several degrees of freedom with π in the stiffnesses, by the rational system beside it ([`beside_pi`](crate::beside_pi)).
+    Pi(System),
+    /// One oscillator over ℚ\[π, 1/π\].
+    Oscillator(Oscillator),
+    /// Stiffnesses in doubles, known to some accuracy.
+    Measured(MeasuredSystem),
+    /// One clock, some degrees of freedom with substeps of their own while forces on the others stand still.
+    LocalSteps(LocalSteps),
+    /// Two rational levels, the force of the shorter step by the midpoint rule over the longer one.
+    Implicit(Box<ImplicitExplicit>),
+    /// Forces that are no gradient: their Jacobians are not symmetric.
+    NoGradient(Box<Jacobians>),
+    /// AVI of elements in levels, each level a clock of rational stiffness.
+    Elements(System, ElementSteps),
+    /// Hessians measured along the integrator's own orbit, one for each kick.
+    Along(Box<Along>),
+    /// Sparse stiffnesses of thousands of degrees of freedom: two levels, or one with local time steps.
+    Sparse(Box<SparseSystem>),
+}
+
+impl Model {
+    /// The rational system that stands for it: itself; with π in the stiffnesses of several degrees of freedom within 2^-150 of every
+    /// entry, of one within 2^-60 (where steps are irrational in the unit of time of the shortest one); of doubles these doubles; of local
+    /// steps Verlet's with its effective stiffness, of the midpoint rule Verlet's with its effective masses, both exactly. Forces that are no
+    /// gradient, Hessians along an orbit, and sparse stiffnesses, have none: what is returned has their size and their clocks, no more.
+    pub fn system(&self) -> &System {
+        match self {
+            Model::Rational(own) | Model::Pi(own) | Model::Elements(own, _) => own,
+            Model::Oscillator(own) => &own.rounded,
+            Model::Measured(own) => own.system(),
+            Model::LocalSteps(own) => own.system(),
+            Model::Implicit(own) => own.system(),
+            Model::NoGradient(own) => own.symmetric(),
+            Model::Along(own) => own.clocks(),
+            Model::Sparse(own) => own.system(),
+        }
+    }
+
+    /// The number of degrees of freedom.
+    pub fn size(&self) -> usize {
+        match self {
+            Model::Measured(own) => own.size(),
+            _ => self.system().size(),
+        }
+    }
+
+    /// The products of doubles that the verdict costs, roughly, where doubles prove it.
+    pub fn cost(&self) -> u64 {
+        match self {
+            Model::Measured(own) => own.cost(),
+            Model::NoGradient(own) => own.cost(),
+            Model::Along(own) => own.cost(),
+            Model::Sparse(own) => own.cost(),
+            _ => verdict_cost(self.system()),
+        }
+    }
+
+    /// The seconds of one core that these take, as measured on two machines: dense products go side by side.
+    pub fn seconds(&self) -> f64 {
+        self.seconds_of(self.cost() as f64)
+    }
+
+    /// Those that so many products take.
+    pub fn seconds_of(&self, products: f64) -> f64 {
+        self.counted(products) / PACE
+    }
+
+    /// How many of these products limits count.
+    pub fn counted(&self, products: f64) -> f64 {
+        if self.measured().is_some() || self.along().is_some() { products / DENSE as f64 } else { products }
+    }
+
+    /// The verdict with everything that is known beside it.
+    ///
+    /// # Errors
+    /// As [`decide_by`]; a budget error where what would decide exceeds the limits.
+    pub fn decide(&self, route: Route, limits: &Limits) -> Result<Analysis> {
+        match self {
+            Model::Rational(own) | Model::Elements(own, _) => decide_by(route, own, limits),
+            Model::Pi(_) if route == Route::Exact => Err(self.refused("exact arithmetic")),
+            Model::Pi(own) => decide_around(own, limits),
+            Model::Oscillator(own) => own.decide(limits),
+            Model::Measured(own) => own.decide(route, limits),
+            Model::LocalSteps(own) => decide_by(route, own.system(), limits),
+            Model::Implicit(own) => decide_by(route, own.system(), limits),
+            Model::NoGradient(own) => own.decide(route, limits),
+            Model::Along(own) => own.decide(route, limits),
+            Model::Sparse(_) if route == Route::Exact => Err(self.refused("exact arithmetic")),
+            Model::Sparse(own) => own.decide(limits),
+        }
+    }
+
+    /// The verdict and the growth, which is what a scan shows of each point: of sparse levels without the margin.
+    ///
+    /// # Errors
+    /// As [`Model::decide`].
+    pub fn at_point(&self, route: Route, limits: &Limits) -> Result<Analysis> {
+        match self {
+            Model::Sparse(own) if route == Route::Cheapest => own.at_point(limits),
+            _ => self.decide(route, limits),
+        }
+    }
+
+    /// The proven verdict and nothing else: for two measured levels without an eigenbasis, where it is proven without one.
+    ///
+    /// # Errors
+    /// As [`Model::decide`].
+    pub fn verdict(&self, route: Route, limits: &Limits) -> Result<Holds> {
+        match self {
+            Model::Measured(own) if route == Route::Cheapest => own.verdict(limits),
+            Model::Sparse(own) if route == Route::Cheapest => own.verdict(limits),
+            _ => Ok(self.decide(route, limits)?.holds()),
+        }
+    }
+
+    /// What is proven of it, of measured stiffnesses for all within their accuracy: as of its stretches.
+    ///
+    /// # Errors
+    /// As [`Model::decide`].
+    pub fn holds(&self, limits: &Limits) -> Result<Holds> {
+        self.measured().map_or_else(|| self.verdict(Route::Cheapest, limits), |own| own.holds(limits))
+    }
+
+    /// The rational system that moves: of measured stiffnesses without rigid motions and held distances.
+    ///
+    /// # Errors
+    /// Where measured stiffnesses have another null space than that of rigid motions.
+    pub fn moving(&self) -> Result<Cow<'_, System>> {
+        match self {
+            Model::Measured(own) => own.moving(),
+            Model::NoGradient(_) | Model::Along(_) | Model::Sparse(_) => {
+                Err(self.refused("varying another number than outer"))
+            }
+            _ => Ok(Cow::Borrowed(self.system())),
+        }
+    }
+
+    /// The kind by exact arithmetic alone: by characteristic polynomials, part by part; of an oscillator with π by the four signs, of several
+    /// degrees of freedom with π that of [`Model::system`].
+    ///
+    /// # Errors
+    /// A budget error, before the work on the part that exceeds it.
+    pub fn exact_kind(&self, limits: &Limits) -> Result<Kind> {
+        match self {
+            Model::Oscillator(own) => own.exact_kind(limits),
+            Model::Rational(own) | Model::Pi(own) | Model::Elements(own, _) => exact_kind(own, limits),
+            Model::LocalSteps(own) => exact_kind(own.system(), limits),
+            Model::Implicit(own) => exact_kind(own.system(), limits),
+            Model::NoGradient(own) => own.exact(limits).map(|(kind, _)| kind),
+            Model::Along(own) => own.exact(limits).map(|(kind, _)| kind),
+            Model::Sparse(_) => Err(self.refused("exact arithmetic")),
+            Model::Measured(own) => exact_kind(own.moving()?.as_ref(), limits),
+        }
+    }
+
+    /// The effect of friction of a rate per unit time, O in the middle of every drift.
+    ///
+    /// # Errors
+    /// As [`damped_system`]; π in the stiffnesses of several degrees of freedom, irrational steps.
+    pub fn friction(&self, rate: &Rational, limits: &Limits) -> Result<Friction> {
+        match self {
+            Model::Rational(own) | Model::Elements(own, _) => damped_system(own, rate, limits),
+            Model::Pi(_) => {
+                let remedy = "with several degrees of freedom write stiffnesses without pi";
+                Err(Error::input("friction", rate, remedy))
+            }
+            Model::LocalSteps(_) => {
+                Err(Error::input("friction", rate, "has no place in a scheme of local steps: leave it out"))
+            }
+            Model::Implicit(_) => {
+                Err(Error::input("method", Method::ImplicitExplicit, "friction is for respa: leave it out"))
+            }
+            Model::NoGradient(_) => {
+                let remedy = "leave it out: the answer has the rate that masks what grows";
+                Err(Error::input("friction", rate, remedy))
+            }
+            Model::Along(_) | Model::Sparse(_) => Err(self.refused("friction")),
+            Model::Oscillator(own) => own.friction(rate, limits),
+            Model::Measured(own) => own.friction(rate, limits),
+        }
+    }
+
+    /// The error for questions without an answer: about forces that are no gradient, or about sparse stiffnesses.
+    fn refused(&self, what: &str) -> Error {
+        match self {
+            Model::Sparse(_) => {
+                Error::input("stiffness", "sparse", format!("{what} needs dense stiffnesses"))
+            }
+            Model::Pi(_) => Error::input(
+                "stiffness",
+                "with pi",
+                format!("{what} on several degrees of freedom needs rational numbers: write them without pi"),
+            ),
+            Model::Along(_) => {
+                let remedy =
+                    format!("{what} needs Hessians at one place: the orbit is that of these steps alone");
+                Error::input("along_orbit", "true", remedy)
+            }
+            _ => Error::input("symmetric", "false", format!("{what} needs forces that are gradients")),
+        }
+    }
+
+    /// This system under another integrator of two levels: measured ones as they are; rational ones exactly where the fast force is solved for, else
+    /// in doubles, their entries known within the rounding of these.
+    ///
+    /// # Errors
+    /// Where there are not two levels; π, irrational steps, and what is no gradient, sparse or of local steps.
+    pub fn with_method(self, method: Method) -> Result<Model> {
+        let refused = |remedy: &str| Err(Error::input("method", method, remedy));
+        match self {
+            Model::Measured(own) => Ok(Model::Measured(own.with_method(method)?)),
+            Model::Rational(_)
+            | Model::Pi(_)
+            | Model::Oscillator(_)
+            | Model::LocalSteps(_)
+            | Model::Elements(..)
+            | Model::Along(_)
+                if method == Method::Respa =>
+            {
+                Ok(self)
+            }
+            Model::Implicit(own) => Model::Rational(own.plain().clone()).with_method(method),
+            Model::Rational(own) if method == Method::ImplicitExplicit => {
+                Ok(Model::Implicit(Box::new(ImplicitExplicit::new(own)?)))
+            }
+            Model::Rational(own) => {
+                two_clocks(&own)?;
+                Ok(Model::Measured(MeasuredSystem::rounded(&own)?.with_method(method)?))
+            }
+            Model::Pi(_) => refused("is for rational stiffnesses: write them without pi"),
+            Model::Oscillator(_) => refused(
+                "is for rational numbers: of one mass with pi ask kickdrift word --method, or compare --methods",
+            ),
+            Model::LocalSteps(_) | Model::Elements(..) => {
+                refused("has no place in a scheme of local steps: leave it out")
+            }
+            Model::NoGradient(_) => refused("is for forces that are gradients: leave it out"),
+            Model::Sparse(_) => refused("is for dense stiffnesses: give these, or leave it out"),
+            Model::Along(_) => refused("is for Hessians at one place: leave it out"),
+        }
+    }
+
+    /// A sentence on how it differs from a system about its equilibrium under kicks of all its forces.
+    pub fn remark(&self) -> Option<&'static str> {
+        match self {
+            Model::Implicit(_) => Some(
+                "by implicit-explicit: Verlet's with masses M + h^2 F/4 and the stiffness F + S, F the fast one",
+            ),
+            Model::Along(_) => {
+                Some("about the integrator's own orbit: each kick has the Hessians where it falls")
+            }
+            _ => None,
+        }
+    }
+
+    /// The step of two rational levels whose fast force is solved for.
+    pub fn implicit(&self) -> Option<&ImplicitExplicit> {
+        if let Model::Implicit(own) = self { Some(own) } else { None }
+    }
+
+    /// Jacobians that are not symmetric, where it is made of such.
+    pub fn jacobians(&self) -> Option<&Jacobians> {
+        if let Model::NoGradient(own) = self { Some(own) } else { None }
+    }
+
+    /// Hessians along an orbit, where it is made of such.
+    pub fn along(&self) -> Option<&Along> {
+        if let Model::Along(own) = self { Some(own) } else { None }
+    }
+
+    /// The summary of local time steps, where some degrees of freedom take substeps: computed when it is asked for, for sparse systems by some
+    /// dozen factorizations.
+    pub fn local_steps_summary(&self) -> Option<SchemeSummary> {
+        match self {
+            Model::LocalSteps(own) => Some(own.summary()),
+            Model::Elements(_, own) => Some(own.summary()),
+            Model::Sparse(own) => own.summary(),
+            _ => None,
+        }
+    }
+
+    /// The scheme, where some degrees of freedom of a rational system take substeps.
+    pub fn local_steps(&self) -> Option<&LocalSteps> {
+        if let Model::LocalSteps(own) = self { Some(own) } else { None }
+    }
+
+    fn measured(&self) -> Option<&MeasuredSystem> {
+        if let Model::Measured(own) = self { Some(own) } else { None }
+    }
+
+    /// The measured stiffnesses whose kernel of two levels decides.
+    fn levels(&self) -> Option<&MeasuredSystem> {
+        self.measured().filter(|own| own.is_of_two_levels())
+    }
+
+    /// Both levels of a system of two measured ones.
+    ///
+    /// # Errors
+    /// Where the stiffnesses are not measured, and where the steps are others than an inner and an outer one.
+    pub fn two_levels(&self) -> Result<TwoLevels<'_>> {
+        self.of_two()?.two_levels()
+    }
+
+    /// The levels of measured stiffnesses that are not two of an inner and an outer step; `None` of two such.
+    ///
+    /// # Errors
+    /// Where the stiffnesses are not measured, and where another integrator than kicks and drifts has them.
+    pub fn many_levels(&self) -> Result<Option<ManyLevels<'_>>> {
+        self.of_two()?.nested()
+    }
+
+    /// The steps of measured stiffnesses, innermost first.
+    ///
+    /// # Errors
+    /// Where the stiffnesses are not measured.
+    pub fn measured_steps(&self) -> Result<Vec<Rational>> {
+        self.of_two()?.refuse_method("advice")?;
+        Ok(self.steps())
+    }
+
+    /// Their steps alone, the inner one first.
+    ///
+    /// # Errors
+    /// As [`Model::two_levels`].
+    pub fn two_steps(&self) -> Result<[Rational; 2]> {
+        self.of_two()?.two_steps()
+    }
+
+    fn of_two(&self) -> Result<&MeasuredSystem> {
+        let scheme = match self {
+            Model::NoGradient(_) | Model::Along(_) => return Err(self.refused("advice")),
+            Model::Sparse(_) => {
+                let remedy =
+                    "advice needs dense stiffnesses: `kickdrift system FILE` has the first unstable step";
+                return Err(Error::input("stiffness", "sparse", remedy));
+            }
+            Model::LocalSteps(_) => Some(Scheme::Lts),
+            Model::Elements(..) => Some(Scheme::Avi),
+            _ => None,
+        };
+        if let Some(scheme) = scheme {
+            let remedy = "advice is for molecules: `kickdrift system FILE --intervals outer=LO..HI` has the unstable steps";
+            return Err(Error::input("scheme", scheme.name(), remedy));
+        }
+        let remedy = "give stiffnesses by reference, as {\"npz\": \"water.npz\", \"array\": \"fast\"}; `kickdrift system` takes numbers in place";
+        self.measured().ok_or_else(|| Error::input("stiffness", "given in place", remedy))
+    }
+
+    /// The matrices of [`Model::two_levels`], rigid motions projected out.
+    ///
+    /// # Errors
+    /// As [`Model::two_levels`].
+    pub fn hessians(&self) -> Result<Hessians> {
+        self.two_steps()?;
+        self.of_two()?.hessians()
+    }
+
+    /// The largest ln |λ|/T of two levels of measured stiffnesses, or of Hessians along an orbit, by the dense full period, rounded; `None` of any
+    /// other system.
+    ///
+    /// # Errors
+    /// As [`Model::decide`]; a budget error before the work.
+    pub fn growth_of_period(&self, limits: &Limits) -> Result<Option<f64>> {
+        if let Some(own) = self.along() {
+            limits.allow_dense(own.cost(), || "the full period, kick by kick,".into())?;
+            return Ok(Some(own.growth_of_period()));
+        }
+        self.measured().map_or(Ok(None), |own| own.growth_of_period(limits))
+    }
+
+    /// The system as two clocks on one oscillator, where it is that, without phases.
+    pub fn two_clocks(&self) -> Option<propagator::Oscillator> {
+        let system = match self {
+            Model::Oscillator(own) => return own.as_two_clocks(),
+            Model::Rational(own) | Model::Elements(own, _) if own.size() == 1 => own,
+            _ => return None,
+        };
+        let [fast, slow] = system.clocks() else { return None };
+        if [fast, slow].iter().any(|clock| clock.phase != Rational::default()) {
+            return None;
+        }
+        let lambda =
+            |clock: &Potential| Laurent::from_rational(clock.stiffness.get(0, 0) / system.mass().get(0, 0));
+        let step = |clock: &Potential| Laurent::from_rational(clock.step.clone());
+        propagator::Oscillator::new(lambda(fast), lambda(slow), step(fast), step(slow)).ok()
+    }
+
+    /// All steps, those of potentials of one clock each for itself.
+    pub fn steps(&self) -> Vec<Rational> {
+        match self {
+            Model::Measured(own) => own.steps(),
+            _ => self.system().steps(),
+        }
+    }
+}

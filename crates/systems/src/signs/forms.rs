@@ -1,0 +1,113 @@
+//! The verdict from the inertias of the four forms.
+
+use faer::Mat;
+
+use crate::half::float::FloatBlocks;
+use crate::half::norm;
+use crate::signs::inertia::{self, Inertia};
+use clocks::verdict::Kind;
+use number::U;
+
+/// The inertias of P, R, W and Z, each computed when it is asked for.
+pub(crate) trait Inertias {
+    fn p(&mut self) -> Inertia;
+    fn r(&mut self) -> Inertia;
+    fn w(&mut self) -> Inertia;
+    fn z(&mut self) -> Inertia;
+}
+
+/// The kind that the signs of the forms prove, if any.
+pub(crate) fn judge(forms: &mut impl Inertias) -> Option<Kind> {
+    let (p, r) = (forms.p(), forms.r());
+    // The numbers of μ outside [−1, 0], on its ends, and undecided.
+    let outside = match (p.definite(), r.definite()) {
+        (sign, _) if sign != 0 => r.times(sign),
+        (_, sign) if sign != 0 => p.times(sign),
+        _ => {
+            let w = forms.w();
+            let z = (w.definite() == 0).then(|| forms.z());
+            let sign = z.as_ref().unwrap_or(&w).definite();
+            if sign == 0 {
+                return counts_differ([p, r], [Some(w), z]).then_some(Kind::Hyperbolic);
+            }
+            let (p, r) = (p.times(sign), r.times(sign));
+            let both = |f: fn(&Inertia) -> usize| f(&p) + f(&r);
+            Inertia {
+                positive: 0,
+                negative: both(|i| i.negative),
+                zero: both(|i| i.zero),
+                unknown: both(|i| i.unknown),
+            }
+        }
+    };
+    match outside {
+        Inertia { negative: 1.., .. } => Some(Kind::Hyperbolic),
+        Inertia { unknown: 1.., .. } => None,
+        Inertia { zero: 1.., .. } => Some(Kind::Parabolic),
+        _ => Some(Kind::Elliptic),
+    }
+}
+
+/// Whether the number of negative eigenvalues of P or R is known and differs from that of W or Z: as many μ are real and outside
+/// \[−1, 0\].
+fn counts_differ(ends: [Inertia; 2], others: [Option<Inertia>; 2]) -> bool {
+    let known = |own: Inertia| (own.unknown + own.zero == 0).then_some(own.negative);
+    let others: Vec<usize> = others.into_iter().flatten().filter_map(known).collect();
+    ends.into_iter().filter_map(known).any(|count| others.iter().any(|other| *other != count))
+}
+
+/// The kind, where a definite form of the half period in doubles proves it within their error.
+pub fn proven(blocks: &FloatBlocks) -> Option<Kind> {
+    judge(&mut Forms::new(blocks)?)
+}
+
+/// The forms of a half period in doubles, within the bound on its error.
+struct Forms<'a> {
+    a: Mat<f64>,
+    b: Mat<f64>,
+    c: Mat<f64>,
+    d: Mat<f64>,
+    /// The bound on the error of all blocks together, Frobenius.
+    error: f64,
+    blocks: &'a FloatBlocks,
+}
+
+impl<'a> Forms<'a> {
+    /// `None` where the error of the half period is not bounded.
+    pub fn new(blocks: &'a FloatBlocks) -> Option<Self> {
+        let (m, error) = (blocks.m, blocks.error?);
+        let block = |rows: &[Vec<f64>], first: usize| Mat::from_fn(m, m, |i, j| rows[i][first + j]);
+        let (a, b) = (block(&blocks.y, 0), block(&blocks.y, m));
+        let (c, d) = (block(&blocks.p, 0), block(&blocks.p, m));
+        Some(Forms { a, b, c, d, error, blocks })
+    }
+
+    /// The inertia of the symmetric matrix that `product` is but for rounding, `x` and `y` being its factors: each is off
+    /// by at most e, so the product by e (‖x‖ + ‖y‖ + e), and by (m + 2) u ‖x‖_F ‖y‖_F in being computed.
+    fn inertia(&self, product: Mat<f64>, (x, y): (&Mat<f64>, &Mat<f64>), sign: i8) -> Inertia {
+        let (m, e) = (self.blocks.m, self.error);
+        let (size_x, size_y) = (norm::frobenius(x), norm::frobenius(y));
+        let rounding = 1.01 * (m as f64 + 4.0) * U * size_x * size_y;
+        let slack = e * (size_x.min(self.blocks.norm) + size_y.min(self.blocks.norm) + e) + rounding;
+        let symmetric = Mat::from_fn(m, m, |i, j| (product[(i, j)] + product[(j, i)]) / 2.0);
+        inertia::proven(&symmetric, 1.01 * slack).times(sign)
+    }
+}
+
+impl Inertias for Forms<'_> {
+    fn p(&mut self) -> Inertia {
+        self.inertia(&self.a * self.b.transpose(), (&self.a, &self.b), 1)
+    }
+
+    fn r(&mut self) -> Inertia {
+        self.inertia(&self.c * self.d.transpose(), (&self.c, &self.d), -1)
+    }
+
+    fn w(&mut self) -> Inertia {
+        self.inertia(self.b.transpose() * &self.d, (&self.b, &self.d), 1)
+    }
+
+    fn z(&mut self) -> Inertia {
+        self.inertia(self.a.transpose() * &self.c, (&self.a, &self.c), -1)
+    }
+}

@@ -1,0 +1,175 @@
+//! The grammar of words: a text becomes letters, or one line that says where it is wrong.
+
+use std::str::FromStr;
+
+use super::coefficient::{Read, Reader, TWO_FIELDS};
+use super::filter::Filter;
+use super::letters::{Force, Item, Letter, Word};
+use num_traits::Zero;
+use number::Radical;
+use number::error::{Error, Result};
+use number::parse::arithmetic::Arithmetic;
+
+/// The longest text that is read, in characters.
+const MAX_CHARACTERS: usize = 20_000;
+
+/// The most powers of the force in one kick.
+const MAX_POWERS: usize = 8;
+
+impl FromStr for Word {
+    type Err = Error;
+
+    /// Reads a word; see the module's head for the grammar.
+    ///
+    /// # Errors
+    /// A text that is no word: the place, and what stands there.
+    fn from_str(text: &str) -> Result<Word> {
+        if text.chars().nth(MAX_CHARACTERS).is_some() {
+            return Err(Error::input(
+                "word",
+                text,
+                format!("write it in {MAX_CHARACTERS} characters at most"),
+            ));
+        }
+        let mut reader =
+            Reader { characters: text.chars().collect(), at: 0, depth: 0, known: Radical::zero() };
+        let items = reader.items().and_then(|items| match reader.peek() {
+            None if items.is_empty() => reader.wrong(0, "a word has letters, as K(1/2) D(1) K(1/2)"),
+            None => Ok(items),
+            Some(c) if c.is_ascii_lowercase() => reader
+                .wrong(reader.at, format!("unexpected {c:?}; {LETTERS}; a name is a method, not a word")),
+            Some(c) => reader.wrong(reader.at, format!("unexpected {c:?}; {LETTERS}")),
+        });
+        let items =
+            items.map_err(|(at, why)| Error::input("word", text, format!("character {}: {why}", at + 1)))?;
+        Word::new(items).ok_or_else(|| Error::input("word", text, TWO_FIELDS))
+    }
+}
+
+const LETTERS: &str = "the letters are K, K1, K2, D, C, C1, C2, R, R1, R2, O and n*(...)";
+
+const FILTERS: &str =
+    "a filter is made of sinc(x), sinc(x/2), cos(x/2), their powers, 1 and 0, as [sinc(x/2)^2]";
+
+/// The largest power of a filter's factor, and of all together.
+const MAX_FILTER: i32 = 16;
+
+impl Reader {
+    /// items = (letter | digits "*" "(" items ")")*
+    fn items(&mut self) -> Read<Vec<Item>> {
+        let mut items = Vec::new();
+        loop {
+            // White space and products between letters mean the same.
+            self.skip('\0');
+            match self.peek() {
+                Some(c) if c.is_ascii_digit() => items.push(self.repeated()?),
+                Some('K' | 'D' | 'C' | 'R' | 'O') => items.push(Item::Letter(self.letter()?)),
+                _ => return Ok(items),
+            }
+        }
+    }
+
+    fn repeated(&mut self) -> Read<Item> {
+        let at = self.at;
+        let digits = self.taken(|c| c.is_ascii_digit());
+        let Some(times) = digits.parse().ok().filter(|&times: &u64| times > 0 && digits.len() < 10) else {
+            return self.wrong(at, "repeat 1 to 999999999 times");
+        };
+        self.expect('*', "after the number of repetitions")?;
+        self.expect('(', "after *")?;
+        let inside = self.nested(Self::items)?;
+        if inside.is_empty() {
+            return self.wrong(self.at, format!("expected a letter; {LETTERS}"));
+        }
+        self.expect(')', "after the letters that are repeated")?;
+        Ok(Item::Repeat(times, inside))
+    }
+
+    fn letter(&mut self) -> Read<Letter> {
+        let at = self.at;
+        let name = self.taken(char::is_alphanumeric);
+        let force = match name.get(1..) {
+            Some("") => Force::All,
+            Some("1") => Force::First,
+            Some("2") => Force::Second,
+            _ => return self.wrong(at, format!("{name} is no letter; {LETTERS}")),
+        };
+        let filtered = self.at;
+        let filter = if self.skip('[') { Some(self.filter()?) } else { None };
+        if filter.is_some() && name != "K2" {
+            return self.wrong(filtered, "filters stand on K2: x is h sqrt(lambda1), the fast force's angle");
+        }
+        let filter = filter.unwrap_or_default();
+        self.expect('(', &format!("after {name}, as in {name}(1/2)"))?;
+        let mut powers = vec![self.coefficient()?];
+        while self.skip(',') {
+            powers.push(self.coefficient()?);
+        }
+        self.expect(')', &format!("after the coefficient of {name}"))?;
+        match (name.as_bytes()[0], powers.len()) {
+            (b'K', 1..=MAX_POWERS) => Ok(Letter::Kick { force, filter, powers }),
+            (b'K', _) => self.wrong(at, format!("a kick has {MAX_POWERS} powers of the force at most")),
+            (_, 2..) => self.wrong(at, format!("{name} has one coefficient")),
+            (b'D', _) if force == Force::All => Ok(Letter::Drift(powers.remove(0))),
+            (b'O', _) if force == Force::All => Ok(Letter::Friction(powers.remove(0))),
+            (b'C', _) => Ok(Letter::Midpoint { force, time: powers.remove(0) }),
+            (b'R', _) => Ok(Letter::Flow { force, time: powers.remove(0) }),
+            _ => self.wrong(at, format!("{name} is no letter; {LETTERS}")),
+        }
+    }
+
+    /// filter = factor (("*" | "/") factor)* "]"
+    fn filter(&mut self) -> Read<Filter> {
+        let mut all = self.factor()?;
+        loop {
+            let at = self.at;
+            let sign = if self.skip('*') { 1 } else { -i32::from(self.skip('/')) };
+            if sign == 0 {
+                return self.expect(']', "after a filter").map(|()| all);
+            }
+            let own = self.factor()?;
+            if own.zero && sign < 0 {
+                return self.wrong(at, "divides by zero");
+            }
+            all = Filter {
+                cos: all.cos + sign * own.cos,
+                sinc: all.sinc + sign * own.sinc,
+                zero: all.zero || own.zero,
+            };
+            if all.cos.abs().max(all.sinc.abs()) > MAX_FILTER {
+                return self.wrong(at, format!("choose powers up to {MAX_FILTER}"));
+            }
+            if all.zero {
+                all = Filter { zero: true, ..Filter::default() };
+            }
+        }
+    }
+
+    /// factor = "0" | "1" | ("sinc(x)" | "sinc(x/2)" | "cos(x/2)") ("^" digits)?
+    fn factor(&mut self) -> Read<Filter> {
+        self.skip('\0');
+        let at = self.at;
+        let mut name = self.taken(char::is_alphanumeric);
+        if self.skip('(') {
+            name += &format!("({})", self.taken(|c| c != ')' && c != ']'));
+            self.expect(')', "after the argument of a filter")?;
+        }
+        let mut power = 1;
+        if self.skip('^') {
+            let digits = self.taken(|c| c.is_ascii_digit());
+            let Some(own) = digits.parse().ok().filter(|own| (0..=MAX_FILTER).contains(own)) else {
+                return self.wrong(at, format!("the power of a filter is 0 to {MAX_FILTER}"));
+            };
+            power = own;
+        }
+        let (cos, sinc) = match name.as_str() {
+            "0" if power > 0 => return Ok(Filter { zero: true, ..Filter::default() }),
+            "0" | "1" => (0, 0),
+            "sinc(x)" => (power, power),
+            "sinc(x/2)" => (0, power),
+            "cos(x/2)" => (power, 0),
+            _ => return self.wrong(at, FILTERS),
+        };
+        Ok(Filter { cos, sinc, zero: false })
+    }
+}

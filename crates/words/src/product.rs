@@ -1,0 +1,208 @@
+//! The product of the letters, over any ring that holds the coefficients.
+
+use nalgebra::Matrix2;
+use num_traits::{One, Zero};
+
+use super::filter::Filter;
+use super::letters::{Force, Item, Letter, Word};
+use clocks::propagator::methods::respa::power;
+use clocks::propagator::{apply_drift, apply_kick};
+use number::{Polynomial, Radical, Rational, Ring};
+
+/// h² Λ1 and h² Λ2 in a ring, and how a coefficient is embedded there.
+pub struct Forces<S> {
+    pub of: [S; 2],
+    pub embed: fn(&Radical) -> S,
+}
+
+/// A product of letters in the coordinates (x, h v): the matrix divided by the denominator. The matrix's determinant is the
+/// square of the denominator times the damping; the denominator is 1 without midpoints.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Product<S> {
+    pub matrix: Matrix2<S>,
+    pub denominator: S,
+    /// The product of all exp(−γ c h): 1 without friction.
+    pub damping: S,
+}
+
+/// The entries as polynomials in s = h² Λ1.
+pub type Polynomials = Product<Polynomial<Radical>>;
+
+impl Forces<Polynomial<Radical>> {
+    /// Λ2 = 0: the whole force is s.
+    pub fn one() -> Self {
+        Forces::ratio(&Rational::zero())
+    }
+
+    /// Λ2 = ρ Λ1, as polynomials in s.
+    pub fn ratio(rho: &Rational) -> Self {
+        let s = Polynomial::variable();
+        let second = s.scale(&Radical::from_rational(rho));
+        Forces { of: [s, second], embed: |c| Polynomial::constant(c.clone()) }
+    }
+}
+
+/// The meaning of the letters in a ring.
+pub(super) trait Setting<S: Ring> {
+    /// F = h² Λ.
+    fn force(&self, force: Force) -> S;
+
+    fn embed(&self, c: &Radical) -> S;
+
+    /// cos c x and c sinc c x of the exact flow over c h, x² = F.
+    fn flow(&self, force: Force, c: &Radical) -> [S; 2];
+
+    /// g at x = h √Λ1.
+    fn filter(&self, filter: Filter) -> S;
+
+    /// exp(−γ c h).
+    fn damping(&self, c: &Radical) -> S;
+}
+
+/// Terms of the series of flows and filters in [`Forces`]: orders up to twice as many are found.
+pub(super) const TERMS: usize = 12;
+
+/// Σ f_k F^k by Horner's rule.
+fn series<S: Ring>(all: &[S], force: &S) -> S {
+    all.iter().rev().fold(S::zero(), |sum, f| S::product(&sum, force) + f.clone())
+}
+
+/// Exact where the word is algebraic; flows and filters by the first terms of their series in F. Friction is none.
+impl<S: Ring> Setting<S> for Forces<S> {
+    fn force(&self, force: Force) -> S {
+        match force {
+            Force::All => self.of[0].clone() + self.of[1].clone(),
+            Force::First => self.of[0].clone(),
+            Force::Second => self.of[1].clone(),
+        }
+    }
+
+    fn embed(&self, c: &Radical) -> S {
+        (self.embed)(c)
+    }
+
+    fn flow(&self, force: Force, c: &Radical) -> [S; 2] {
+        let (c, force) = (self.embed(c), self.force(force));
+        let x = S::product(&S::product(&c, &c), &force);
+        let terms = |from: u64| {
+            let next = |term: &mut Rational, k: u64| {
+                let own = S::from_rational(term);
+                *term /= Rational::from_integer(
+                    (-((2 * k + 1 + from) as i128 * (2 * k + 2 + from) as i128)).into(),
+                );
+                Some(own)
+            };
+            (0..TERMS as u64).scan(Rational::one(), next).collect::<Vec<_>>()
+        };
+        [series(&terms(0), &x), S::product(&c, &series(&terms(1), &x))]
+    }
+
+    fn filter(&self, filter: Filter) -> S {
+        let all: Vec<S> = filter.series(TERMS).iter().map(S::from_rational).collect();
+        series(&all, &self.of[0])
+    }
+
+    fn damping(&self, _: &Radical) -> S {
+        S::one()
+    }
+}
+
+impl<S: Ring> Product<S> {
+    fn identity() -> Self {
+        let unit = Matrix2::new(S::one(), S::zero(), S::zero(), S::one());
+        Product { matrix: unit, denominator: S::one(), damping: S::one() }
+    }
+
+    fn times(&mut self, letter: &Letter, setting: &impl Setting<S>) {
+        match letter {
+            Letter::Drift(time) => apply_drift(&mut self.matrix, &setting.embed(time)),
+            Letter::Friction(time) => {
+                let damping = setting.damping(time);
+                for column in 0..2 {
+                    self.matrix[(1, column)] *= damping.clone();
+                }
+                self.damping *= damping;
+            }
+            Letter::Kick { force, filter, powers } => {
+                let force = setting.force(*force);
+                // (c + d F + ...) F by Horner's rule.
+                let mut strength = powers
+                    .iter()
+                    .rev()
+                    .fold(S::zero(), |sum, c| S::product(&(sum + setting.embed(c)), &force));
+                if !filter.is_one() {
+                    strength *= setting.filter(*filter);
+                }
+                apply_kick(&mut self.matrix, &strength);
+            }
+            Letter::Flow { force, time } => {
+                let [cos, sinc] = setting.flow(*force, time);
+                let back = -S::product(&setting.force(*force), &sinc);
+                self.matrix = Matrix2::new(cos.clone(), sinc, back, cos) * &self.matrix;
+            }
+            Letter::Midpoint { force, time } => {
+                let (force, time) = (setting.force(*force), setting.embed(time));
+                let kick = S::product(&time, &force);
+                let quarter = S::from_rational(&Rational::new(1.into(), 4.into()));
+                let part = S::product(&S::product(&kick, &time), &quarter);
+                let (mut below, mut above) = (S::one(), S::one());
+                below += part.clone();
+                above -= part;
+                let cayley = Matrix2::new(above.clone(), time, -kick, above);
+                self.matrix = cayley * &self.matrix;
+                self.denominator *= below;
+            }
+        }
+    }
+
+    fn items(items: &[Item], setting: &impl Setting<S>) -> Self {
+        let mut product = Product::identity();
+        for item in items {
+            match item {
+                Item::Letter(letter) => product.times(letter, setting),
+                Item::Repeat(times, inside) => {
+                    let Product { matrix, denominator, damping } = Product::items(inside, setting);
+                    product.matrix = power(matrix, *times) * &product.matrix;
+                    let scalars = Matrix2::new(denominator, S::zero(), S::zero(), damping);
+                    let scalars = power(scalars, *times);
+                    product.denominator *= scalars[(0, 0)].clone();
+                    product.damping *= scalars[(1, 1)].clone();
+                }
+            }
+        }
+        product
+    }
+
+    /// The trace times the denominator.
+    pub fn trace(&self) -> S {
+        self.matrix[(0, 0)].clone() + self.matrix[(1, 1)].clone()
+    }
+}
+
+impl Word {
+    /// The product of all letters.
+    pub(super) fn product<S: Ring>(&self, setting: &impl Setting<S>) -> Product<S> {
+        Product::items(self.items(), setting)
+    }
+
+    /// The product with entries in ℚ(c^(1/n))\[s\]: exact where the word [is algebraic](Word::is_algebraic), else up to s^12.
+    pub fn polynomials(&self, forces: &Forces<Polynomial<Radical>>) -> Polynomials {
+        self.product(forces)
+    }
+
+    /// Kicks and midpoints when nothing is abbreviated, each counted by its powers of the force: the degree of the entries in s, and a
+    /// measure of what they cost.
+    pub fn degree(&self) -> u64 {
+        fn of(items: &[Item]) -> u64 {
+            let one = |item: &Item| match item {
+                Item::Letter(Letter::Drift(_) | Letter::Friction(_)) => 0,
+                Item::Letter(Letter::Flow { .. }) => TERMS as u64,
+                Item::Letter(Letter::Kick { powers, .. }) => powers.len() as u64,
+                Item::Letter(Letter::Midpoint { .. }) => 1,
+                Item::Repeat(times, inside) => of(inside).saturating_mul(*times),
+            };
+            items.iter().map(one).fold(0, u64::saturating_add)
+        }
+        of(self.items())
+    }
+}
