@@ -66,7 +66,7 @@
 //!
 //! | crate | here | what is there |
 //! |---|---|---|
-//! | `kickdrift-number` | [`number`], [`error`], [`parallel`], [`file`] | rationals, ℚ\[π\], cyclotomic fields, polynomials, balls; one error with a kind; threads |
+//! | `kickdrift-number` | [`number`], [`error`], [`parallel`], [`mod@file`] | rationals, ℚ\[π\], cyclotomic fields, polynomials, balls; one error with a kind; threads |
 //! | `kickdrift-clocks` | [`schedule`], [`propagator`], [`verdict`], [`resonance`], [`tongue`], [`map`], [`band`] | two clocks on one oscillator: the mission |
 //! | `kickdrift-words` | [`word`] | integrators as their authors write them: order, stable intervals, the catalogue |
 //! | `kickdrift-systems` | [`system`], [`avi`] | many clocks, many degrees of freedom; Algorithm 1 run as a simulation |

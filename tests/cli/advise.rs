@@ -490,5 +490,5 @@ fn a_friction_that_masks_is_no_bound_unless_all_larger_ones_do() {
     let text = stdout(&words(line, &["3/ps"]));
     assert!(text.contains("(frictions of ") && text.contains("mask it, the one given does not"), "{text}");
     assert!(!text.contains("friction above"), "{text}");
-    assert!(stdout(&words(line, &["1/20/ps"])).contains("masked by the friction given"));
+    assert!(stdout(&words(line, &["8/5/ps"])).contains("masked by the friction given"));
 }

@@ -31,7 +31,7 @@
 
 pub mod band;
 pub mod map;
-pub mod orbit;
+mod orbit;
 pub mod propagator;
 pub mod resonance;
 pub mod schedule;

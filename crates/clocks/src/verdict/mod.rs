@@ -27,6 +27,8 @@ mod ladder;
 mod lone;
 mod tier;
 
+pub use crate::orbit::refine::kicks as refine_kicks;
+pub use crate::orbit::returns::is_worth as takes_return_maps;
 pub use crate::propagator::{HalfSigns, PartialSigns};
 pub use answer::{Answer, Decision};
 pub use exact::{Decidable, exact_trace};

@@ -8,7 +8,6 @@ use crate::report::document::Document;
 use crate::report::friction;
 use crate::report::record::Record;
 use crate::report::table::{Cell, Column};
-use clocks::orbit::refine;
 use clocks::propagator::Oscillator;
 use clocks::resonance::dominant_family;
 use clocks::verdict::{
@@ -235,7 +234,7 @@ impl Decided {
 
     /// Why a pair that grows has no label.
     fn not_counted(&self) -> String {
-        let kicks = self.oscillator.clocks().ok().map(|clocks| refine::kicks(clocks.ratio()));
+        let kicks = self.oscillator.clocks().ok().map(|clocks| clocks::verdict::refine_kicks(clocks.ratio()));
         let remedy = kicks.map_or("no budget allows to count so many".into(), |kicks| {
             format!("to count them kick by kick allow {kicks} kicks (--budget)")
         });

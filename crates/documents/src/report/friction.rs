@@ -71,7 +71,7 @@ pub(crate) fn masking(own: &Masked, unit: f64, name: &str) -> String {
     format!("frictions {} mask", own.ranges.iter().map(range).collect::<Vec<_>>().join(" and "))
 }
 
-/// What is told of other frictions than those that [`masking`] names.
+/// What is told of other frictions than those that `masking` names.
 pub fn others(own: &Masked) -> &'static str {
     if own.stays() { ", and so does any larger one" } else { "; of others that is not proven" }
 }

@@ -6,7 +6,6 @@ use super::context::{Checked, Context, Outcome, holds, same};
 use super::exact::{FullPeriod, affordable, again, full_period, ln_multiplier};
 use super::written::{Ends, Whole, Written};
 use crate::question;
-use clocks::orbit::returns;
 use clocks::propagator::Oscillator;
 use clocks::resonance::dominant_family;
 use clocks::verdict::{Growth, Kind, Limits, Tier, Verdict, decide_anew, exact_trace, growth};
@@ -62,7 +61,8 @@ impl Recheck for Claim {
     fn check(&self, answer: question::Decided, context: &Context) -> Result<Outcome> {
         let row = std::slice::from_ref(self);
         let oscillator = &answer.oscillator;
-        let is_long = oscillator.clocks().map_or(true, |clocks| returns::is_worth(clocks.ratio(), 53));
+        let is_long =
+            oscillator.clocks().map_or(true, |clocks| clocks::verdict::takes_return_maps(clocks.ratio(), 53));
         let truth = match self.truth(oscillator, is_long, &context.limits()) {
             // Kicks that nobody can follow.
             Err(error) if error.kind() == ErrorKind::Budget && is_long => None,
