@@ -62,7 +62,7 @@ fn by_matrices(own: &LocalSteps) -> DMatrix<f64> {
     2.0 * (one - u)
 }
 
-/// Two masses of THEORY section 18: A = [[1, −1], [−1, 9]], the second one takes two substeps.
+/// Two masses: A = [[1, −1], [−1, 9]], the second one takes two substeps.
 fn two_masses(step: &str) -> SystemScene {
     SystemScene::read(
         &json!({

@@ -1,4 +1,4 @@
-//! Two levels of several modes under every method of THEORY section 16, against dense eigenvalues of the step itself.
+//! Two levels of several modes under every method of proofs/REGION.md, section 8, against dense eigenvalues of the step itself.
 
 use kickdrift::number::Rational;
 use kickdrift::number::rational::{ratio, to_f64};
@@ -306,7 +306,7 @@ fn no_perturbation_within_a_margin_flips_a_verdict() {
     }
 }
 
-/// Periods 10 and 40: the intervals of THEORY section 16, from the kernel of one mode.
+/// Periods 10 and 40: the intervals of each method, from the kernel of one mode.
 #[test]
 fn one_mode_has_the_intervals_of_scalars() {
     let square = |period: f64| DMatrix::from_element(1, 1, (std::f64::consts::TAU / period).powi(2));

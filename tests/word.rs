@@ -426,7 +426,7 @@ fn periods_10_and_40() -> [Laurent; 2] {
     [ratio(1, 25), ratio(1, 400)].map(|c| Laurent::monomial(c, 2))
 }
 
-/// Unstable steps below 16 of periods 10 and 40, to four places, the enclosures being narrower (THEORY section 16).
+/// Unstable steps below 16 of periods 10 and 40, to four places, the enclosures being narrower.
 #[test]
 fn trigonometric_integrators_are_unstable_where_they_are_known_to_be() {
     let known: [(Trigonometric, &[(f64, f64)]); 6] = [
@@ -508,7 +508,7 @@ fn top_ring_mode(beads: i64) -> Laurent {
     Laurent::monomial(&c * &c, 2)
 }
 
-/// THEORY section 16: an external period of 10 fs beside the fastest mode of 16 and of 32 beads.
+/// An external period of 10 fs beside the fastest mode of 16 and of 32 beads.
 #[test]
 fn ring_polymers_are_unstable_where_they_are_known_to_be() {
     use kickdrift::word::{Enclosed, Shape};
@@ -634,7 +634,7 @@ fn orders_of_words_with_flows() {
     }
 }
 
-/// What every name of the catalogue answers at periods 10 and 40 (THEORY section 16), from the word itself in balls, and by its factors.
+/// What every name of the catalogue answers at periods 10 and 40, from the word itself in balls, and by its factors.
 #[test]
 fn words_with_flows_are_unstable_where_they_are_known_to_be() {
     use kickdrift::word::{Enclosed, Piece, Shape};

@@ -97,7 +97,7 @@ def run(
     return np.log(np.array(sizes))
 
 
-# fs; THEORY 14: unstable from 4.45 fs on, with islands of stability.
+# fs: unstable from 4.45 fs on, with islands of stability.
 OUTER = ["2", "3", "4", "4.40", "4.45", "4.50", "4.55", "4.60", "5", "5.5", "7", "8", "8.5", "8.7"]
 
 
@@ -253,7 +253,7 @@ def test_about_the_minimum_is_nearly_the_same_and_says_so() -> None:
     orbit = ko.oscillations(system, positions, steps=steps, minimize=False)
     minimum = ko.oscillations(system, positions, steps=steps, about="minimum", minimize=False)
     assert not orbit.stable and not minimum.stable and 1e-3 < orbit.away < 1e-2
-    # THEORY 14: rates about the minimum are good to 10 %.
+    # Rates about the minimum are good to 10 %.
     assert minimum.growth_rate == pytest.approx(orbit.growth_rate, rel=0.15)
     assert minimum.growth_rate != pytest.approx(orbit.growth_rate, rel=0.05)
     verdict = ko.system(system, positions, steps=steps).decide()

@@ -17,7 +17,7 @@ fn named<'a>(levers: &'a Levers, name: &str) -> &'a Lever {
     levers.rows.iter().find(|own| own.name == name).unwrap_or_else(|| panic!("no row {name}"))
 }
 
-/// THEORY section 16: periods 10 and 40.
+/// Periods 10 and 40.
 #[test]
 fn what_lets_the_step_grow_of_periods_of_10_and_40_fs() {
     let all = of(&TWO, "1/2,4", |own| own);

@@ -201,7 +201,7 @@ fn friction_masks_a_resonance_from_where_it_is_told() {
     };
     let mask = ask(ratio(1, 1000)).masking.unwrap();
     let (lo, hi) = (mask.grows, mask.least());
-    // Between 38 and 39/ps (THEORY), bisected to 10^-10.
+    // Between 38 and 39/ps, bisected to 10^-10.
     assert!(mask.stays() && 0.038 < lo && hi < 0.039 && hi - lo < 1e-11, "{mask:?}");
     let at = |x: f64| ask(from_f64_exact(x).unwrap()).is_damped;
     assert_eq!([at(0.999 * lo), at(1.001 * hi)], [Some(false), Some(true)]);

@@ -81,7 +81,7 @@ fn the_resonances_of_one_clock_stand_at_the_turns_of_the_method() {
     }
 }
 
-/// O-H of q-TIP4P/F (THEORY section 19): the quartic bond, from 48 phases of an energy in kT at 298 K, under velocity Verlet. Whether one leaves in 20,000
+/// O-H of q-TIP4P/F: the quartic bond, from 48 phases of an energy in kT at 298 K, under velocity Verlet. Whether one leaves in 20,000
 /// steps.
 fn loses(step: f64, energy: f64) -> bool {
     // kJ/mol, 1/nm, amu, ps.
@@ -191,7 +191,7 @@ fn the_advice_on_ring_polymers_is_of_their_centroids_alone() {
     let (one, many) = (of(1), of(16));
     assert_eq!([one.schemes[0].status, many.schemes[0].status], [Status::Safe, Status::NotTold]);
     assert!(many.schemes[0].safe.is_none() && many.beads.is_some());
-    // THEORY section 16: 16 beads at 300 K are unstable up to 2.4996 fs, half the period of the top ring mode.
+    // 16 beads at 300 K are unstable up to 2.4996 fs, half the period of the top ring mode.
     assert_eq!(format!("{:.4}", beads.ends().unwrap()[0] / 2.0), "2.4996");
 }
 

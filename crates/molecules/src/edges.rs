@@ -10,7 +10,7 @@
 //! ```
 //!
 //! (of C without the eigenvalue 0). Counts only grow with t. Interval m = 2 k − 1 lies between the k-th edges of A and D, interval 2 k between
-//! those of B and C, so bisection finds every one, and none is missed. Source: Gantmacher, Krein; THEORY section 6.
+//! those of B and C, so bisection finds every one, and none is missed. Source: Gantmacher, Krein; docs/theory/tongues.md.
 
 use num_traits::Zero;
 

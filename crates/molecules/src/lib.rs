@@ -5,7 +5,7 @@
 //!
 //! * **proven** (linear): the verdict at each scheme of steps, the unstable intervals about it, and the first stable region with a band of
 //!   periods: below its end no molecule whose periods are at least as long is unstable, however its modes are coupled (module `levels`,
-//!   proofs/REGION.md, THEORY section 11);
+//!   proofs/REGION.md);
 //! * **published** (nonlinear): the outer one of several steps near T/3 and T/4, a clock's own step beyond T/6.28, with their source
 //!   ([`published`]);
 //! * **unknown**: whether the periods given are the fastest, how anharmonic they are, what another temperature does.

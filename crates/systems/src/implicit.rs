@@ -1,6 +1,6 @@
 //! The fast stiffness by the midpoint rule over the whole step, the slow one by kicks: Verlet with other masses.
 //!
-//! Successive positions of the step have (theorem `twice` in proofs/ImplicitExplicitModes.v; THEORY section 16)
+//! Successive positions of the step have (theorem `twice` in proofs/ImplicitExplicitModes.v)
 //!
 //! ```text
 //!     (M + h² F/4) (x₊ − 2 x + x₋) = −h² (F + S) x

@@ -98,7 +98,7 @@ impl Trigonometric {
 
     /// The end of the steps at which **any number of coupled modes** is stable, with 0 ≤ F ≤ Λ1 and 0 ≤ S ≤ Λ2: proven stable below its lower end.
     ///
-    /// There P and R of THEORY section 16 are definite as long as h w < π and ρ y² c^(i−1) (s/y)^k < c for every w² ≤ Λ1. Of this,
+    /// There P and R of proofs/REGION.md, section 8, are definite as long as h w < π and ρ y² c^(i−1) (s/y)^k < c for every w² ≤ Λ1. Of this,
     /// (s/y)^k c^(i−1)/c times h² Λ2/4 is the left side over the right one. Its logarithm has the derivative Σ a_n (4^n − 1 − k) y^(2n−1) for
     /// i = 1, all a_n > 0: it increases for k ≤ 3, and for k = 5 decreases first and then increases. So the ends of 0 ≤ w² ≤ Λ1 decide: at w = 0
     /// it is h² Λ2 < 4, at w² = Λ1 the first edge. For i = 3 it is at most h² Λ2/4, and h w < π. `None` for what is no filtered impulse.

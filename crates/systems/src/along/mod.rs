@@ -1,4 +1,4 @@
-//! About a periodic orbit of the integrator's own: every kick with the Hessian at its own position (THEORY section 14).
+//! About a periodic orbit of the integrator's own: every kick with the Hessian at its own position (docs/theory/many.md, proofs/FRICTION.md section 3).
 //!
 //! An orbit that starts at rest in the middle of a kick of every clock is its own mirror image in time. So the Hessians of the kicks form a
 //! palindrome, and the tangent map H of half the period decides as for one Hessian a clock: every kick is by a symmetric matrix, H is symplectic,

@@ -1,4 +1,4 @@
-//! Forces that are no gradient, as learned ones that are predicted directly: their Jacobians are not symmetric (THEORY section 17).
+//! Forces that are no gradient, as learned ones that are predicted directly: their Jacobians are not symmetric (proofs/NO_GRADIENT.md).
 //!
 //! M x'' = −Σ J_k x, A_k = M⁻¹ J_k. The kicks are a palindrome of shears whatever the matrices, so with R = diag(I, −I) the period is
 //! Q = R H⁻¹ R H, H the half period, and H⁻¹ H = 1 gives

@@ -11,7 +11,7 @@
 //! | midpoint rule: implicit-explicit | 1, 1/2, −(x²/2)/(1 + y²), 1/(1 + y²) | 1 |
 //! | x₊ − 2 cos(x) x + x₋ = −H² ψ S φ x | cos² y, 1/2, −2 sin² y, 1 | γ, γ² = ψ φ: sinc y (Gautschi), sinc x (Hairer, Lubich) |
 //!
-//! The last is similar to −H² γ S γ where ψ φ is a square, whose trace is 2 + 4 b (c − d M) as that of any method is. Source: THEORY section 16.
+//! The last is similar to −H² γ S γ where ψ φ is a square, whose trace is 2 + 4 b (c − d M) as that of any method is. Source: proofs/REGION.md, section 8.
 //! `proofs/REGION.md`, section 8, has these as functions of matrices, and bounds on how they move with F.
 
 use super::half::Half;

@@ -27,7 +27,7 @@
 //! * J is linear in h² at a fixed ratio: where J > 0 at an outer step and F + S > 0, every smaller outer step is stable too.
 //!
 //! Beyond it W is indefinite, modes may collide, and the eigenvalues of Bᵀ C with their discs and clusters decide
-//! (file `beyond`). Source: THEORY section 11.
+//! (file `beyond`). Source: proofs/REGION.md.
 //!
 //! | file | what |
 //! |---|---|

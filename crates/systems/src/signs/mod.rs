@@ -23,7 +23,7 @@
 //! * None definite: #{μ < −1} ≥ |neg P − neg W|, |neg R − neg Z| and #{μ > 0} ≥ |neg R − neg W|, |neg P − neg Z| for regular forms
 //!   (neg: the number of negative eigenvalues). Where these agree two modes may have collided, and other means decide.
 //!
-//! Source: THEORY sections 10 and 11.
+//! Source: proofs/SIGNS.md and proofs/REGION.md.
 //!
 //! | file | what |
 //! |---|---|

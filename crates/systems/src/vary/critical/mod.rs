@@ -17,7 +17,7 @@
 //! ```
 //!
 //! (where both are, g(S) (S + 1) stands in the first pair and g(S) S in the second). Are these 0 for all s, then Q is diagonalizable wherever no
-//! other μ meet, and the verdict at one point is that of the whole interval between two roots (THEORY sections 10 and 11). Are they not,
+//! other μ meet, and the verdict at one point is that of the whole interval between two roots (proofs/SIGNS.md, section 1). Are they not,
 //! then Q is not diagonalizable where one of their entries is not 0, also where μ meet, whose squarefree polynomial is a divisor: unstable
 //! everywhere but at common roots of all entries.
 //!
