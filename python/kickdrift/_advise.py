@@ -468,12 +468,8 @@ def asked(
     """The question about what is given, and what all advice is asked with: the band, the length of the run, friction,
     constraints, the mass of hydrogens."""
     band, length, friction, constraints, hmr = scales
-    alone = engine is None or isinstance(engine, str | PathLike)
-    engines = [own for own in (engine,) if own] if alone else items("engine", engine, _INPUTS)
-    for own in engines:
-        if not isinstance(own, str | PathLike):
-            raise KickdriftError("engine", shown(own), _INPUTS)
-    texts = [_text(own) for own in engines]
+    engines = _inputs(engine)
+    texts = [_text(given) for given in engines]
     rest = {
         "steps": _schemes(steps),
         "engine": texts,
@@ -493,6 +489,17 @@ def asked(
     ]
     every = {name: value for name, value in {**given, **rest}.items() if value}
     return Asked("advise", every, None, place, {"engine": names} if names else {})
+
+
+def _inputs(engine: Engine | None) -> list[str | PathLike[str]]:
+    """An engine's inputs: none, one or several."""
+    if engine is None or isinstance(engine, str | PathLike):
+        return [engine] if engine else []
+    several = items("engine", engine, _INPUTS)
+    for given in several:
+        if not isinstance(given, str | PathLike):
+            raise KickdriftError("engine", shown(given), _INPUTS)
+    return several
 
 
 def _text(engine: str | PathLike[str]) -> str:

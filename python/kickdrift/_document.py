@@ -86,8 +86,10 @@ class Asked(Frozen):
 
     def _given(self) -> tuple[dict[str, str | list[str]], int | None, str | dict[str, npt.NDArray[np.float64]]]:
         place = self.place if isinstance(self.place, str) else dict(self.place)
-        fields = {name: written(name, own) if isinstance(own, str) else [written(name, part) for part in own]
-                  for name, own in self.fields.items()}
+        fields = {
+            name: written(name, own) if isinstance(own, str) else [written(name, part) for part in own]
+            for name, own in self.fields.items()
+        }
         return fields, self.budget, place
 
     def render(self, form: str) -> str:

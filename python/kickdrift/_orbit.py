@@ -240,10 +240,12 @@ def monodromy(
             masses = root = np.ones(half.first.shape[1])
         potentials, accuracy = along(struck, dict(zip(forces, steps, strict=True)), root, ahead)
         if is_boxed and not keep and not held.distances:
-            weight, notes = np.outer(root, root), []
+            weight = np.outer(root, root)
+            # The system of the minimum says it once; a note for every kick would repeat that.
+            unread: list[str] = []
             for name, (step, kicks) in potentials.items():
-                free = [off_the_mesh(own / weight, moved, name, accuracy, notes) * weight for own in kicks]
-                potentials[name] = (step, np.array(free))
+                cleaned = [off_the_mesh(kick / weight, moved, name, accuracy, unread) * weight for kick in kicks]
+                potentials[name] = (step, np.array(cleaned))
     except KickdriftError as refused:
         return Monodromy(*measured, None, str(refused), time_unit, found.drift)
     made = System.along_orbit(masses, potentials, accuracy=accuracy, time_unit=time_unit, keep_rigid=keep, **sides)

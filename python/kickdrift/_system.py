@@ -659,9 +659,9 @@ def _compressed(place: int, name: str, hessian: Any, accuracy: float) -> tuple[d
         raise KickdriftError(f"{name}[{i}, {j}]", repr(own), remedy)
     rows = ((rows + rows.T) / 2).tocsr()
     rows.sum_duplicates()
-    own = f"hessian{place}"
+    stem = f"hessian{place}"
     parts = {"data": rows.data, "indices": rows.indices, "indptr": rows.indptr}
-    return {"npz": _ARRAYS, "csr": own}, {f"{own}.{part}": doubles(name, array) for part, array in parts.items()}
+    return {"npz": _ARRAYS, "csr": stem}, {f"{stem}.{part}": doubles(name, array) for part, array in parts.items()}
 
 
 def _at(name: str) -> dict[str, str]:
