@@ -124,7 +124,7 @@ class Answer:
 def ask(
     name: str,
     fields: Mapping[str, str | list[str]],
-    budget: int | None = None,
+    budget: int | None = ...,
     place: str | Mapping[str, npt.NDArray[np.float64]] | None = None,
 ) -> Answer: ...
 def draw(
