@@ -124,7 +124,7 @@ LONG = {
     "map": "kd.map(lambda1='pi^2', lambda2='pi^2/25', step='1/9000', h1=('1/9000', '2/pi'), h2=('1/9000', '7/2'))",
     "tongues": "kd.tongues(max_sum=400, rho='1/25')",
     "closings": "kd.closings(max_sum=60)",
-    "compare": "kd.compare(max_sum=900, rho='1/25', samples=900)",
+    "compare": "kd.compare(max_sum=900, rho='1/25', samples=900, budget=10**12)",
     "verdicts": "kd.verdicts(lambda1=1, lambda2='1/25', h1='1/1000003', h2=[f'{n}/1000033' for n in range(1, 60000)])",
 }
 
