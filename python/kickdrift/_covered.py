@@ -15,15 +15,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from kickdrift._errors import KickdriftError, needs
+from kickdrift._errors import KickdriftError
 from kickdrift._held import Held
 from kickdrift._rigid import Doubles
-
-try:
-    from scipy import sparse
-    from scipy.sparse import csgraph
-except ImportError:
-    raise needs("scipy") from None
+from kickdrift._scipy import csgraph, sparse
 
 _Indices = npt.NDArray[np.int64]
 

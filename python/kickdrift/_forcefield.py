@@ -15,20 +15,14 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-import openmm as mm
 
 from kickdrift import _terms as _terms_of
-from kickdrift._errors import KickdriftError, needs
+from kickdrift._errors import KickdriftError
 from kickdrift._hessians import Force
+from kickdrift._openmm import mm
 from kickdrift._progress import Progress
 from kickdrift._rigid import Doubles
-
-try:
-    import scipy.sparse as sparse
-    from scipy.spatial import cKDTree
-    from scipy.special import erfc
-except ImportError:
-    raise needs("scipy") from None
+from kickdrift._scipy import sparse, spatial, special
 
 _Indices = npt.NDArray[np.int64]
 _Mask = npt.NDArray[np.bool_]
@@ -315,7 +309,7 @@ class Cut:
             taken = 4 * np.sqrt(self.epsilon[i] * self.epsilon[j]) * (self.sigma[i] * self.sigma[j]) ** 3
             part = 1 - np.exp(-y) * (1 + y + y**2 / 2)
             found = found + taken * (np.exp(-y) * y**3 - 6 * part) / r**7
-        return np.asarray(found + scale * (2 * self.field * r - (erfc(self.ewald * r) + gauss) / r**2))
+        return np.asarray(found + scale * (2 * self.field * r - (special.erfc(self.ewald * r) + gauss) / r**2))
 
     def kept(self, positions: Doubles, reach: float) -> Kept | None:
         """What keeps each pair on its side of the cutoff while its distance changes by less than ``reach``. None where
@@ -460,7 +454,7 @@ def _shell(positions: Doubles, box: Doubles | None, least: float, most: float) -
         names = np.concatenate(kept)
         parts = np.concatenate([own[each] for own, each in zip(images, kept, strict=True)])
         places, inside = parts @ box, np.asarray(((parts >= 0) & (parts < 1)).all(axis=1))
-    pairs = cKDTree(places).query_pairs(most, output_type="ndarray")
+    pairs = spatial.cKDTree(places).query_pairs(most, output_type="ndarray")
     pairs = pairs[inside[pairs].any(axis=1)]
     pairs = pairs[np.linalg.norm(places[pairs[:, 0]] - places[pairs[:, 1]], axis=1) > least]
     pairs = np.sort(names[pairs], axis=1).astype(np.int64)
@@ -488,7 +482,7 @@ def _pairs(force: Any, positions: Doubles, box: Doubles | None, beyond: float = 
     if force.getNonbondedMethod() == force.NoCutoff:
         return np.column_stack(np.triu_indices(len(positions), 1)).astype(np.int64)
     places = positions if box is None else np.mod(positions, box)
-    tree = cKDTree(places, boxsize=box)
+    tree = spatial.cKDTree(places, boxsize=box)
     return np.asarray(
         tree.query_pairs(force.getCutoffDistance()._value + beyond, output_type="ndarray"), dtype=np.int64
     )

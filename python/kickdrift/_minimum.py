@@ -10,6 +10,7 @@ import numpy.typing as npt
 from kickdrift._errors import KickdriftError
 from kickdrift._held import Held
 from kickdrift._hessians import Force, hessian, smooth
+from kickdrift._lanczos import by_differences, top
 from kickdrift._progress import Progress
 from kickdrift._rigid import Doubles, norm, rigid_motions
 
@@ -142,10 +143,8 @@ def cooled(force: Force, where: Doubles, held: Held, difference: float) -> Doubl
     minimum a step of Newton's method costs as much as a thousand of these, and is kept as short. It ends where its
     steps get short, at a jump of the forces, or after ``_COOLED`` of them.
     """
-    from kickdrift import _bands
-
-    product = _bands.by_differences(force, where, held.root, difference)
-    longest = 1.0 / float(np.sqrt(max(_bands.top(product, where.size, _ROUGH).found, 1e-300)))
+    product = by_differences(force, where, held.root, difference)
+    longest = 1.0 / float(np.sqrt(max(top(product, where.size, _ROUGH).found, 1e-300)))
     # The numbers are those of the paper.
     step, share, uphill, speed = longest, 0.1, 0, np.zeros(where.size)
     best = (np.inf, where)

@@ -118,6 +118,11 @@ def text(field: str, value: Exact) -> str:
     return str(_native.number(field, value))
 
 
+def optional_text(field: str, value: Exact | None) -> str | None:
+    """As :func:`text`, where something is given."""
+    return None if value is None else text(field, value)
+
+
 def range_text(field: str, value: Range) -> str:
     """A closed range as the library reads it."""
     if isinstance(value, str):
@@ -127,6 +132,11 @@ def range_text(field: str, value: Range) -> str:
     except (TypeError, ValueError):
         raise KickdriftError(field, shown(value), "give a pair (lo, hi), or a text as '1/100..7/2'") from None
     return f"{text(field, lo)}..{text(field, hi)}"
+
+
+def optional_range(field: str, value: Range | None) -> str | None:
+    """As :func:`range_text`, where something is given."""
+    return None if value is None else range_text(field, value)
 
 
 def written(field: str, value: Any) -> str:

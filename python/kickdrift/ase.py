@@ -17,6 +17,7 @@ from kickdrift._groups import Groups
 from kickdrift._hessians import Force
 from kickdrift._monodromy import Monodromy
 from kickdrift._numbers import Exact, doubles, duration, positive
+from kickdrift._periods import listed
 from kickdrift._progress import Progress
 from kickdrift._rigid import Doubles
 from kickdrift._system import System
@@ -89,6 +90,13 @@ def system(
     """
     width = positive("difference", difference)
     return _groups(atoms, groups).system(minimize, width, progress, symmetric, longest)
+
+
+def given(atoms: Any, steps: Any, made: Mapping[str, Any]) -> tuple[System, Any]:
+    """The system that advice is asked for, and the schemes asked about beside its own."""
+    if "groups" not in made:
+        raise KickdriftError("groups", None, "of ASE give groups={'fast': (calculator, '0.5fs'), ...}")
+    return system(atoms, **made), listed(steps)
 
 
 def oscillations(

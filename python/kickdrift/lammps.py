@@ -7,7 +7,7 @@ their own, ``"4fs"``. An instance is all that is needed: this module imports no 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from fractions import Fraction
@@ -23,6 +23,7 @@ from kickdrift._errors import KickdriftError
 from kickdrift._groups import Groups
 from kickdrift._monodromy import Monodromy
 from kickdrift._numbers import Exact, duration, positive, simplest
+from kickdrift._periods import listed
 from kickdrift._progress import Progress
 from kickdrift._rigid import Doubles
 from kickdrift._system import System
@@ -119,6 +120,13 @@ def system(
     """
     groups, notes, width = _groups(lmp, respa, timestep, difference)
     return groups.system(minimize, width, progress, True, longest, notes)
+
+
+def given(lmp: Any, steps: Any, made: Mapping[str, Any]) -> tuple[System, Any]:
+    """The system that advice is asked for, and the schemes asked about beside its own."""
+    if "respa" not in made:
+        raise KickdriftError("respa", None, "of LAMMPS give respa='run_style respa ...', the line with its levels")
+    return system(lmp, **made), listed(steps)
 
 
 def oscillations(

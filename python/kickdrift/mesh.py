@@ -21,7 +21,8 @@ import numpy.typing as npt
 
 from kickdrift._errors import KickdriftError, needs, shown
 from kickdrift._numbers import Exact, doubles, frozen, number, text
-from kickdrift._system import System, SystemVerdict, _at, _compressed
+from kickdrift._system import System, SystemVerdict
+from kickdrift._system_hessians import compressed, reference
 
 __all__ = ["Waves", "waves"]
 
@@ -211,13 +212,13 @@ def waves(
     place[nodes] = np.arange(len(nodes))
     masses = np.bincount(cells.ravel(), np.repeat(rho * volume / count, count), len(points))[nodes]
     document: dict[str, Any] = {"title": title} if title else {}
-    document["masses"] = _at("masses")
+    document["masses"] = reference("masses")
     arrays = {"masses": doubles("masses", masses)}
     dt = text("step", step) if step is not None else text("courant", _share(courant, cfl))
     potentials = []
     for k, (few, factor) in enumerate([(own > 1, factors[0]), (own == 1, 1)] if scheme == "avi" else [(own > 0, 1)]):
         matrix = _assembled(place[cells[few]], stiffness[few], len(nodes))
-        at, matrices = _compressed(k, "stiffness", matrix, 1e-12) or ({}, {})
+        at, matrices = compressed(k, "stiffness", matrix, 1e-12) or ({}, {})
         arrays |= matrices
         potentials.append({"step": text("step", Fraction(dt) / factor), "stiffness": at})
     if scheme != "avi":
@@ -225,7 +226,7 @@ def waves(
         for level, (fine, factor) in enumerate(levels):
             moving = place[np.unique(cells[fine])]
             arrays[f"fine{level}"] = doubles("fine", moving[moving >= 0].astype(np.float64))
-            document["levels"].append({"fine": _at(f"fine{level}"), "substeps": factor})
+            document["levels"].append({"fine": reference(f"fine{level}"), "substeps": factor})
     document["potentials"] = potentials
     system = System(MappingProxyType(document), arrays)
     return Waves(system, frozen(limits), frozen(own), cfl, frozen(nodes), frozen(points), frozen(cells))

@@ -18,12 +18,13 @@ from typing import Any
 
 import numpy as np
 
-from kickdrift._advise import Advice
-from kickdrift._bands import Atoms, Band, Bands
+from kickdrift import _covered, _forcefield, _lanczos, _sparse_held
+from kickdrift._advice import Advice
 from kickdrift._cost import LARGEST, LONGEST, SOUGHT, Work, seconds_of
 from kickdrift._errors import KickdriftError
 from kickdrift._held import Held
 from kickdrift._hessians import hessian, seen, usable
+from kickdrift._levels import Atoms, Band, Bands, groups_of
 from kickdrift._minimum import free
 from kickdrift._monodromy import FOLLOWED, Followed, Monodromy, unbalanced
 from kickdrift._numbers import Exact, positive
@@ -252,8 +253,6 @@ def _sparse(
     integrator: Any,
 ) -> System:
     """Two levels with sparse Hessians, at the place where OpenMM's minimizer ends."""
-    from kickdrift import _forcefield
-
     if minimize:
         where = led_downhill(engine, where, tolerance=_REST)
     potentials: dict[str, tuple[Exact, Any]] = {}
@@ -345,8 +344,6 @@ def _is_held_fast(own: Any, asked: Mapping[str, Any]) -> bool:
 
 def _terms_of(own: Any, groups: Sequence[int]) -> int:
     """How many terms the forces of some groups have; a force that is not counted has some."""
-    from kickdrift import _forcefield
-
     forces = [force for force in own.getForces() if force.getForceGroup() in groups and not is_bath(force)]
     return sum(len(_forcefield._terms(force)) if _forcefield.are_bonded([force]) else 1 for force in forces)
 
@@ -614,18 +611,16 @@ def _band(
     difference: float,
 ) -> Band:
     """The shortest period of the groups of one step."""
-    from kickdrift import _bands, _covered, _forcefield
-
     step, groups = level
     name = " + ".join(f"group {group}" for group in groups)
     force = engine.force(mask_of(groups))
     own = [each for each in system.getForces() if each.getForceGroup() in groups and not moves_nothing(each)]
     pairs = (each for each in system.getForces() if isinstance(each, mm.NonbondedForce))
     reciprocal = (each.getReciprocalSpaceForceGroup() for each in pairs)
-    bent, error = _bands.curvature(held, where, force(where)), 0.0
+    bent, error = _sparse_held.curvature(held, where, force(where)), 0.0
     if known := _forcefield.are_bonded(own) and not any(group in groups for group in reciprocal):
         matrix, error = _forcefield.hessian(system, groups, where, DIFFERENCE / 10)
-        matrix, error = _bands.weighted(matrix, held.root) + bent, error / float(engine.masses.min())
+        matrix, error = _sparse_held.weighted(matrix, held.root) + bent, error / float(engine.masses.min())
         free = _covered.projected(matrix, held, where)
         modes = None if free is None else _covered.modes(free, atoms.kinds())
         if modes is not None:
@@ -637,10 +632,10 @@ def _band(
             row = int(np.diff(free.indptr).max(initial=0))
             error += _covered.ROUNDED * row * float(np.abs(matrix.data).max(initial=0.0)) if held.distances else 0.0
             most = modes.largest + modes.beyond + error if modes.molecules else 0.0
-            told = _bands.groups_of(modes, atoms)
+            told = groups_of(modes, atoms)
             return Band(name, step, modes.largest, most, "", 0, looked, told[0].name if told else "", told)
-    onto = _bands.projection(held, where)
-    product, steps, forces = _bands.by_differences(force, where, held.root, difference), _ASKED, 2
+    onto = _sparse_held.projection(held, where)
+    product, steps, forces = _lanczos.by_differences(force, where, held.root, difference), _ASKED, 2
     if known:
         product, steps, forces = (lambda vector: np.asarray((matrix - bent) @ vector)), _STORED, 0
 
@@ -648,9 +643,9 @@ def _band(
         vector = onto(vector)
         return onto(product(vector) + bent @ vector)
 
-    found = _bands.top(apply, where.size, steps)
+    found = _lanczos.top(apply, where.size, steps)
     if forces:
-        wide = _bands.by_differences(force, where, held.root, 2 * difference)
+        wide = _lanczos.by_differences(force, where, held.root, 2 * difference)
         error = float(np.linalg.norm(onto(wide(found.vector) - product(found.vector))))
     moving = np.linalg.norm(found.vector.reshape(-1, 3), axis=1)
     who = ", ".join(atoms.labels[n] for n in np.argsort(-moving)[:2] if moving[n] > moving.max() / 10)

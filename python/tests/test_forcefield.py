@@ -13,7 +13,7 @@ from openmm import app
 
 import kickdrift as kd
 import kickdrift.openmm as ko
-from kickdrift import _bands, _covered, _forcefield
+from kickdrift import _covered, _forcefield, _lanczos, _sparse_held
 from kickdrift._held import Held
 from kickdrift._hessians import hessian
 from kickdrift._openmm.forces import engine_of
@@ -157,7 +157,7 @@ def strand(count: int) -> tuple[Any, Held, np.ndarray]:
     for n in range(count):
         bonds.addBond(n, count + n, 0.1, 3e5)
     held = Held(masses, [(n, count + n, float(np.linalg.norm(where[n] - where[count + n]))) for n in range(count)])
-    return _bands.weighted(_forcefield.by_formulas([bonds, angles], where), held.root), held, where
+    return _sparse_held.weighted(_forcefield.by_formulas([bonds, angles], where), held.root), held, where
 
 
 @pytest.mark.parametrize("whole", [400, 60, 30])
@@ -193,7 +193,7 @@ def test_all_modes_of_all_molecules_are_those_of_the_dense_matrix() -> None:
     system, positions = waters(3, "NoCutoff")
     positions = positions + 1e-3 * np.random.default_rng(1).normal(size=positions.shape)
     matrix, _ = _forcefield.hessian(system, [0], positions, 1e-5)
-    weighted = _bands.weighted(matrix, np.sqrt(np.repeat([15.99943, 1.007947, 1.007947] * 27, 3)))
+    weighted = _sparse_held.weighted(matrix, np.sqrt(np.repeat([15.99943, 1.007947, 1.007947] * 27, 3)))
     found = _covered.modes(weighted, ["O", "H", "H"] * 27)
     exact = np.linalg.eigvalsh(weighted.toarray())
     assert found is not None and found.molecules == 27
@@ -308,9 +308,9 @@ def test_a_product_with_all_atoms_moved_sees_no_cutoff_either() -> None:
     engine = engine_of(system)
     force, held = engine.force(1 << SLOW), Held(engine.masses)
     vector = np.random.default_rng(2).normal(size=positions.size)
-    exact = _bands.weighted(_forcefield.hessian(system, [SLOW], positions, 1e-5)[0], held.root) @ vector
+    exact = _sparse_held.weighted(_forcefield.hessian(system, [SLOW], positions, 1e-5)[0], held.root) @ vector
     off = [
-        np.linalg.norm(_bands.by_differences(own, positions, held.root, ko.WIDE)(vector) - exact)
+        np.linalg.norm(_lanczos.by_differences(own, positions, held.root, ko.WIDE)(vector) - exact)
         for own in (force, lambda at: force(at))
     ]
     # Second-order differences of 0.001 nm leave 1e-4 of a stiffness that turns within 0.1 nm.

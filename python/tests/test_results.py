@@ -169,6 +169,19 @@ def test_advice_is_asked_of_a_system_and_carries_its_warnings(tmp_path: Path) ->
     assert bent.advise().warnings == bent.decide().warnings and "positive definite" in str(bent.advise())
 
 
+@pytest.mark.parametrize("levers", [True, False])
+def test_warnings_stand_between_what_is_advised_and_why(levers: bool) -> None:
+    cheap, correction = [[0.5, 0], [0, 0.5]], [[0.02, 1e-4], [-1e-4, 0.02]]
+    levels = {"cheap": ("1/2", cheap), "correction": (4, correction)}
+    learned = kd.System.from_hessians([1, 1], levels, time_unit="fs", symmetric=False, notes=["a note"])
+    for system in (molecule(), learned):
+        lines = str(system.advise(levers=levers)).splitlines()
+        place = lines.index("warning: a note")
+        words = [line.partition(":")[0] for line in lines[:place]]
+        assert words[0] == "advice" and set(words) <= {"advice", "limit", "longer"}
+        assert lines[place + 1].startswith("4 fs ")
+
+
 def test_steps_with_units_are_taken_in_the_systems_unit() -> None:
     given = {"fs": ("0.5fs", "0.004 ps"), "ps": ("0.5fs", "4000as"), "ns": (Fraction(1, 2 * 10**6), "4fs")}
     for unit, steps in given.items():

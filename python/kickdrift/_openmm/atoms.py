@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from kickdrift._bands import Atoms
 from kickdrift._errors import KickdriftError, shown
+from kickdrift._levels import Atoms
 from kickdrift._numbers import Exact, doubles, rational
 from kickdrift._openmm import app, mm, unit
 from kickdrift._openmm.forces import masses_of, moving_of

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from kickdrift import _forcefield
 from kickdrift._errors import KickdriftError
 from kickdrift._hessians import Force
 from kickdrift._journal import Journal
@@ -135,8 +136,6 @@ class Engine:
     @cached_property
     def cuts(self) -> dict[int, list[Any]]:
         """What is cut off of each group: pairs whose forces are known."""
-        from kickdrift import _forcefield
-
         found: dict[int, list[Any]] = {}
         for force in self.context.getSystem().getForces():
             if isinstance(force, _CUT) and (own := _forcefield.cut(force, self.context)) is not None:
