@@ -5,8 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+import numpy.typing as npt
+
 from kickdrift import _plot
 from kickdrift._document import Answer
+from kickdrift._numbers import frozen
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -28,6 +32,11 @@ class Intervals(Answer):
     (['stable', 'the data do not tell', 'unstable', 'the data do not tell', 'stable'], 'outer step')
     """
 
+    @property
+    def edges(self) -> npt.NDArray[np.float64]:
+        """Where each stretch begins and ends, shape (n, 2)."""
+        return frozen(np.stack([self.column("lo"), self.column("hi")], axis=1))
+
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the stretches over the outer step.
 
@@ -43,7 +52,7 @@ class Intervals(Answer):
         >>> system.intervals(("1/20", "1/5")).plot().get_xlabel()
         'outer step'
         """
-        return _plot.intervals(self.rows, ax)
+        return _plot.intervals(self.edges, self.column("verdict"), ax)
 
     def _given(self) -> list[str]:
         given = self.data["input"]

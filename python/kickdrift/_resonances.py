@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
 
 from kickdrift import _plot
 from kickdrift._document import Answer, answered, frame
-from kickdrift._numbers import Exact, Range, range_text, text
+from kickdrift._numbers import Exact, Range, frozen, range_text, text
 
 if TYPE_CHECKING:
     import pandas
@@ -22,6 +27,15 @@ class Curves(Answer):
     >>> [(curve["a"], curve["b"]) for curve in kd.curves(a="0..1", b="0..1", samples=50)]
     [(0, 1)]
     """
+
+    @property
+    def points(self) -> Mapping[tuple[int, int], npt.NDArray[np.float64]]:
+        """The points (h1, h2) of each family (a, b), shape (n, 2)."""
+        found: dict[tuple[int, int], list[tuple[float, float]]] = {}
+        for row in self.rows:
+            family = found.setdefault((row["a"], row["b"]), [])
+            family += [(point["h1"], point["h2"]) for point in row["points"]]
+        return MappingProxyType({family: frozen(np.array(points).reshape(-1, 2)) for family, points in found.items()})
 
     def to_pandas(self) -> pandas.DataFrame:
         """One row a point: a, b, h1, h2 and so on.
@@ -49,7 +63,7 @@ class Curves(Answer):
         >>> kd.curves(a="0..1", b="0..1").plot().get_ylabel()
         '$h_2$'
         """
-        return _plot.curves(self.rows, ax)
+        return _plot.curves(self.points, ax)
 
 
 def curves(

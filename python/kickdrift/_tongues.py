@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Literal
 
+import numpy as np
+import numpy.typing as npt
+
 from kickdrift import _plot
 from kickdrift._document import Answer, Table, answered, ask, given
 from kickdrift._numbers import Exact, Labels, Range, labels_text, names_text, optional_range, optional_text
@@ -23,6 +26,16 @@ class Tongues(Table):
     >>> [row["m"] for row in found]
     [3, 4, 5]
     """
+
+    @property
+    def lower(self) -> npt.NDArray[np.float64]:
+        """The lower edges in s, enclosed: shape (n, 2)."""
+        return self.column("lower").reshape(-1, 2)
+
+    @property
+    def upper(self) -> npt.NDArray[np.float64]:
+        """The upper edges, as the lower ones; NaN where a tongue has none."""
+        return self.column("upper").reshape(-1, 2)
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the tongues as bars from edge to edge in s, one line a tongue, coloured by the family's a.
@@ -135,6 +148,16 @@ class Closings(Answer):
     >>> closed["m"], closed["s"]["exact"], closed["rho"]["exact"]
     (4, '11/4', '114/55')
     """
+
+    @property
+    def s(self) -> npt.NDArray[np.float64]:
+        """s of each closing, enclosed: shape (n, 2)."""
+        return self.column("s").reshape(-1, 2)
+
+    @property
+    def rho(self) -> npt.NDArray[np.float64]:
+        """lambda2/lambda1 of each, as s."""
+        return self.column("rho").reshape(-1, 2)
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the closings in the (rho, s) plane.
