@@ -38,11 +38,13 @@ class Advised(Document):
 
     @property
     def status(self) -> str:
-        """The first scheme: ``safe``, ``caution`` (proven stable, beyond a published limit), ``near`` (an unstable
-        interval is within the band), ``island`` (stable above an unstable interval), ``unstable``, or of Hessians ``not
-        told`` within their accuracy; of periods ``not told`` without the fastest one. Of forces that are no gradient
-        what the steps add to their growth: ``little``,
-        ``much``, ``not told``."""
+        """The first scheme's status.
+
+        ``safe``; ``caution``: proven stable, beyond a published limit; ``near``: an unstable interval is within the
+        band; ``island``: stable above an unstable interval; ``unstable``; ``not told``: not decided within the accuracy
+        of the Hessians, or the fastest period is not given. For forces that are no gradient the status says how much
+        the steps add to their growth: ``little``, ``much`` or ``not told``.
+        """
         return str(self.schemes[0]["status"])
 
     @property
@@ -196,8 +198,10 @@ class SystemAdvice(Advised):
 
     @cached_property
     def ladder(self) -> tuple[Row, ...]:
-        """Of forces that are no gradient the multiples of the step before the outermost one that were looked at:
-        ``outer``, the enclosed ``growth_rate``, per ps, and what the steps add, ``status``; none of others.
+        """For forces that are no gradient, the multiples of the step before the outermost one that were looked at.
+
+        One row each: ``outer``, the enclosed ``growth_rate`` per ps, and how much the steps add, ``status``. Empty for
+        other forces.
 
         Examples
         --------

@@ -93,14 +93,13 @@ def advise(
     periods : what vibrates
         A mapping of str to Time, or a sequence of Time: the periods of the forces, fs, wavenumbers as ``"3700/cm"``, or
         ``"water"``, ``"protein"`` (in water), ``"peptide"`` (in vacuum) for what nonbonded forces have there; the last
-        ones are on the slower clocks. Of ``"fast"`` a typical one by name, as ``"protein,h-bonds"`` or
-        ``"water,rigid"``.
-        Without the fastest period nothing is called safe. Texts without a unit are plain numbers, where all
-        times are. Or a molecule: a :class:`System`, the path of a system file, OpenMM's
-        ``Simulation`` or ``System``, ASE's ``Atoms``, an instance of LAMMPS, which is asked for :meth:`System.advise`.
+        ones are on the slower clocks. A typical ``"fast"`` one has a name, as ``"protein,h-bonds"`` or
+        ``"water,rigid"``. Without the fastest period nothing is called safe. Texts without a unit are plain numbers,
+        where all times are. Or a molecule: a :class:`System`, the path of a system file, OpenMM's ``Simulation`` or
+        ``System``, ASE's ``Atoms``, an instance of LAMMPS, which is asked for :meth:`System.advise`.
     steps : sequence of Time, or a sequence of such
-        A scheme, from the innermost to the outermost step, fs; or several schemes. Of OpenMM's ``System`` also a
-        mapping of force groups to steps.
+        A scheme, from the innermost to the outermost step, fs; or several schemes. For OpenMM's ``System`` also
+        a mapping of force groups to steps.
     bonds : mapping of str to str, optional
         ``"k=1106kcal/mol/A^2,15.999,1.008"``: the force constant (k of E = k x²/2, K of E = K x²), two masses in amu,
         and behind them the heavy atom's hydrogens if not 1.
@@ -128,7 +127,7 @@ def advise(
         What else makes the system of OpenMM's, ASE's or LAMMPS's: the keywords of :func:`kickdrift.openmm.system`
         (``positions``, ``topology``, ``integrator`` and so on), :func:`kickdrift.ase.system` (``groups``) or
         :func:`kickdrift.lammps.system` (``respa``).
-        Of OpenMM's with more than 1,200 degrees of freedom the answer is that of :func:`kickdrift.openmm.bands`, which
+        With more than 1,200 degrees of freedom in OpenMM the answer is that of :func:`kickdrift.openmm.bands`, which
         takes seconds, unless ``longest`` gives the seconds that Hessians may take.
 
     Raises

@@ -1,10 +1,9 @@
-"""The stiffest motions of each level of forces, of any number of atoms: of bonded terms all of them, molecule by
-molecule, of other forces the stiffest by Lanczos' method, without a Hessian.
+"""The stiffest motion by Lanczos' method, without a Hessian, for any number of atoms.
 
-Mass-weighted. Of a symmetric matrix with eigenvalues from a to b, k steps from a random direction find a largest Ritz
-value t with b - t <= e (b - a), but for a probability of at most 1.648 sqrt(n) exp(-(2 k - 1) sqrt(e)) (Kuczynski and
-Wozniakowski, SIAM J. Matrix Anal. Appl. 13, 1992, theorem 4.2, whose matrices are definite; adding a multiple of 1
-changes no step). The same holds at the lower end.
+Coordinates are mass-weighted. A symmetric matrix has eigenvalues from a to b; k steps from a random direction find a
+largest Ritz value t with b - t <= e (b - a), but for a probability of at most 1.648 sqrt(n) exp(-(2 k - 1) sqrt(e))
+(Kuczynski and Wozniakowski, SIAM J. Matrix Anal. Appl. 13, 1992, theorem 4.2, whose matrices are definite; adding a
+multiple of 1 changes no step). The same holds at the lower end.
 """
 
 from __future__ import annotations

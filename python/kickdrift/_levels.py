@@ -63,7 +63,10 @@ class Atoms:
         which."""
         place = {int(atom): k for k, atom in enumerate(kept)}
         bonds = [[place[i], place[j]] for i, j in self.bonds if i in place and j in place]
-        labels = [self.labels[n] if own else _kind(self.labels[n]) for n, own in zip(kept, numbered, strict=True)]
+        labels = [
+            self.labels[n] if is_numbered else _kind(self.labels[n])
+            for n, is_numbered in zip(kept, numbered, strict=True)
+        ]
         elements = [self.elements[n] for n in kept] if self.elements else []
         return motions(labels, elements, bonds, self.where[list(kept)], self.masses[list(kept)], list(groups))
 
@@ -81,17 +84,17 @@ def groups_of(modes: Modes, atoms: Atoms) -> tuple[Group, ...]:
     values = values[values > _NO_MODE**2 * modes.largest]
     periods = 2000 * np.pi / np.sqrt(values)
     ends = [*np.flatnonzero(periods[1:] > _NEIGHBOUR * periods[:-1]) + 1, len(periods)][:_MOST_GROUPS]
-    kept = sorted({int(atom) for own in modes.shown.values() for atom in own.atoms})
-    alone = {int(atom) for own in modes.shown.values() if own.count == 1 for atom in own.atoms}
+    kept = sorted({int(atom) for molecule in modes.shown.values() for atom in molecule.atoms})
+    alone = {int(atom) for molecule in modes.shown.values() if molecule.count == 1 for atom in molecule.atoms}
     places = {atom: 3 * k for k, atom in enumerate(kept)}
     stacks, begin = [], 0
     for end in ends:
         rows = []
-        for own in modes.shown.values():
-            chosen = (own.values <= values[begin]) & (own.values >= values[end - 1])
-            columns = np.array([places[int(atom)] for atom in own.atoms])[:, None] + np.arange(3)
+        for molecule in modes.shown.values():
+            chosen = (molecule.values <= values[begin]) & (molecule.values >= values[end - 1])
+            columns = np.array([places[int(atom)] for atom in molecule.atoms])[:, None] + np.arange(3)
             stack = np.zeros((int(chosen.sum()), 3 * len(kept)))
-            stack[:, columns.ravel()] = own.vectors[:, chosen].T
+            stack[:, columns.ravel()] = molecule.vectors[:, chosen].T
             rows.append(stack)
         stacks.append(np.concatenate(rows)[:_NAMED])
         begin = end
@@ -156,7 +159,7 @@ class Band:
         how = f"{self.forces} forces on all atoms" if self.forces else self.looked
         period = f"T >= {self.period:.5g} fs by {how}, the stiffness known to {known:.2g} %"
         begin = f"{self.name}, every {1000 * float(self.step):g} fs: {period}"
-        if named := [str(own) for own in self.groups if own.name]:
+        if named := [str(group) for group in self.groups if group.name]:
             return f"{begin}: {'; '.join(named[:_TOLD])}"
         told = [self.motion, f"{self.atoms} moving most" if self.atoms else ""]
         return "; ".join([begin, *filter(None, told)])

@@ -23,7 +23,7 @@ def projection(held: Held, where: Doubles) -> Product:
 
 def _gradients(held: Held, where: Doubles) -> tuple[Any, Product]:
     """The gradients of held distances, one a row, and what solves with them times their transpose."""
-    i, j = (np.array([own[k] for own in held.distances]) for k in (0, 1))
+    i, j = (np.array([distance[k] for distance in held.distances]) for k in (0, 1))
     apart, axes, rows = where[i] - where[j], np.tile(np.arange(3), len(i)), np.repeat(np.arange(len(i)), 3)
     places = np.concatenate([3 * i.repeat(3) + axes, 3 * j.repeat(3) + axes])
     values = np.concatenate([apart.ravel(), -apart.ravel()]) / held.root[places]
@@ -40,9 +40,9 @@ def curvature(held: Held, where: Doubles, force: Doubles) -> Any:
         return sparse.csr_matrix((where.size, where.size))
     gradients, solve = _gradients(held, where)
     factors = solve(gradients @ (force.ravel() / held.root))
-    i, j = (np.array([own[k] for own in held.distances]) for k in (0, 1))
+    i, j = (np.array([distance[k] for distance in held.distances]) for k in (0, 1))
     values, places = [factors, factors, -factors, -factors], ([i, j, i, j], [i, j, j, i])
-    rows, columns = (np.concatenate(own) for own in places)
+    rows, columns = (np.concatenate(parts) for parts in places)
     blocks = sparse.csr_matrix((np.concatenate(values), (rows, columns)), shape=(len(where), len(where)))
     weights = sparse.diags(1 / held.root)
     return (weights @ sparse.kron(blocks, sparse.identity(3)) @ weights).tocsr()

@@ -211,8 +211,8 @@ class System(HessianSystem):
     ) -> Intervals:
         """All stable and unstable intervals of the outer step, at the ratios of steps that there are.
 
-        Of measured Hessians a stretch is proven for all within their accuracy. ``the data do not tell`` where these
-        share no verdict, or nothing is proven.
+        For measured Hessians a stretch is proven for all within their accuracy. ``the data do not tell`` if these share
+        no verdict, or nothing is proven.
 
         Parameters
         ----------
@@ -259,8 +259,8 @@ class System(HessianSystem):
     ) -> SystemAdvice:
         """Say which steps are safe for these Hessians, with a unit of time, for how long, and why.
 
-        Of one level, two, or more. The first unstable step, a band of periods below which all steps are stable, and the
-        verdict at each scheme are proven for all Hessians within their accuracy.
+        There may be one level, two, or more. The first unstable step, a band of periods below which all steps are
+        stable, and the verdict at each scheme are proven for all Hessians within their accuracy.
 
         Parameters
         ----------

@@ -70,7 +70,7 @@ class DecidedSystem(Document):
 
     @property
     def measured(self) -> Mapping[str, Any] | None:
-        """Of measured Hessians: ``accuracy``, ``holds`` within it, ``margin``, ``first_unstable`` outer step."""
+        """For measured Hessians: ``accuracy``, ``holds`` within it, ``margin``, ``first_unstable`` outer step."""
         return self._beside("measured")
 
     @property
@@ -82,7 +82,7 @@ class DecidedSystem(Document):
 
     @property
     def no_gradient(self) -> Mapping[str, Any] | None:
-        """Of forces that are no gradient: ``asymmetries``, growth ``without_steps``, ``added_by_steps`` and
+        """For forces that are no gradient: ``asymmetries``, growth ``without_steps``, ``added_by_steps`` and
         ``within_accuracy``, and the ``masking_friction``."""
         return self._beside("no_gradient")
 
@@ -94,9 +94,9 @@ class DecidedSystem(Document):
 
     @property
     def local_steps(self) -> Mapping[str, Any] | None:
-        """Of a scheme of local time steps: its ``levels``, and the ``plain_limit`` of leapfrog without them.
+        """For a scheme of local time steps: its ``levels``, and the ``plain_limit`` of leapfrog without them.
 
-        Of a sparse one also its ``first_unstable`` step, under ``lts`` where it has a single level.
+        A sparse one also has its ``first_unstable`` step, under ``lts`` if it has a single level.
         """
         return self._beside("local_steps")
 

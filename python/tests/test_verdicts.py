@@ -62,7 +62,7 @@ def test_many_verdicts_are_those_of_one_at_a_time() -> None:
     h1 = [Fraction(rng.randint(1, 300), 100) for _ in range(60)]
     h2 = [Fraction(rng.randint(1, 300), 100) for _ in range(60)]
     lambdas = ["pi^2", "11/4"]
-    found = kd.verdicts(lambda1=[[own] for own in lambdas], lambda2="1/25", h1=h1, h2=h2)
+    found = kd.verdicts(lambda1=[[stiffness] for stiffness in lambdas], lambda2="1/25", h1=h1, h2=h2)
     assert found.code.shape == (2, 60) == found.stable.shape and len(found) == 2
     for (row, lambda1), (column, steps) in itertools.product(enumerate(lambdas), enumerate(zip(h1, h2, strict=True))):
         one = kd.decide(lambda1=lambda1, lambda2="1/25", h1=steps[0], h2=steps[1])
