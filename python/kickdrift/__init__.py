@@ -12,37 +12,26 @@ unstable: hyperbolic, Tr Q < -2; exponential growth
 
 from importlib.metadata import version as _version
 
-from kickdrift._advise import Advice, SystemAdvice, advise
+from kickdrift._advice import Advice, SystemAdvice
+from kickdrift._advise import advise
+from kickdrift._bands import Bands, bands
+from kickdrift._compare import Comparison, compare
 from kickdrift._document import Document, Row, Table
+from kickdrift._entries import Half, half
 from kickdrift._errors import BudgetError, KickdriftError
 from kickdrift._explore import explore
+from kickdrift._intervals import Intervals
 from kickdrift._map import Map, map
 from kickdrift._native import Number
 from kickdrift._numbers import Exact, Labels, Range, exact, number, simplest
 from kickdrift._program import main
 from kickdrift._recheck import Recheck, recheck
-from kickdrift._system import Intervals, Run, System, SystemVerdict, simulate
-from kickdrift._tables import (
-    Bands,
-    Closings,
-    Comparison,
-    Curves,
-    Half,
-    Methods,
-    Proposition,
-    Tongues,
-    Word,
-    bands,
-    closings,
-    compare,
-    curves,
-    half,
-    methods,
-    proposition,
-    tongues,
-    word,
-)
+from kickdrift._resonances import Curves, Proposition, curves, proposition
+from kickdrift._simulate import Run, simulate
+from kickdrift._system import System, SystemVerdict
+from kickdrift._tongues import Closings, Tongues, closings, tongues
 from kickdrift._verdict import Verdict, Verdicts, decide, verdicts
+from kickdrift._word import Methods, Word, methods, word
 
 #: The version of the package, and of the program in it.
 __version__ = _version("kickdrift")

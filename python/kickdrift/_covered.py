@@ -1,7 +1,7 @@
 """All modes of a sparse stiffness, molecule by molecule: what nothing joins has modes of its own.
 
-A molecule too large for dense matrices is looked at through windows J_w with sum of J_w² = 1 along its bonds. Of any
-symmetric A, x.A x = sum of (J_w x).A (J_w x) + x.E x/2, where E_ij = A_ij times the sum of (J_w(i) - J_w(j))²
+A molecule too large for dense matrices is looked at through windows J_w with sum of J_w² = 1 along its bonds. For
+any symmetric A, x.A x = sum of (J_w x).A (J_w x) + x.E x/2, where E_ij = A_ij times the sum of (J_w(i) - J_w(j))²
 (localization, after Ismagilov, Morgan and Simon). So the largest eigenvalue is at most that of the largest window plus
 half the largest row of |E|, and at least that of the largest window, whose matrix is a part of A (Cauchy).
 """
@@ -15,15 +15,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from kickdrift._errors import KickdriftError, needs
+from kickdrift._errors import KickdriftError
 from kickdrift._held import Held
 from kickdrift._rigid import Doubles
-
-try:
-    from scipy import sparse
-    from scipy.sparse import csgraph
-except ImportError:
-    raise needs("scipy") from None
+from kickdrift._scipy import csgraph, sparse
 
 _Indices = npt.NDArray[np.int64]
 
@@ -85,27 +80,27 @@ class Modes:
     @property
     def values(self) -> Doubles:
         """The eigenvalues, those of windows where most of a mode is in one."""
-        return np.concatenate([np.zeros(0), *self.whole, *(own[part >= _MOST] for own, part in self.seen)])
+        return np.concatenate([np.zeros(0), *self.whole, *(values[part >= _MOST] for values, part in self.seen)])
 
     @property
     def largest(self) -> float:
-        every = [*self.whole, *(own for own, _ in self.seen)]
-        return max((float(own.max(initial=0.0)) for own in every), default=0.0)
+        every = [*self.whole, *(values for values, _ in self.seen)]
+        return max((float(values.max(initial=0.0)) for values in every), default=0.0)
 
     def count(self, least: float, most: float) -> int:
         """How many there are from one eigenvalue to another, of modes in windows about."""
-        whole = sum(int(((own >= least) & (own <= most)).sum()) for own in self.whole)
-        parts = sum(float(part[(own >= least) & (own <= most)].sum()) for own, part in self.seen)
+        whole = sum(int(((values >= least) & (values <= most)).sum()) for values in self.whole)
+        parts = sum(float(part[(values >= least) & (values <= most)].sum()) for values, part in self.seen)
         return whole + round(parts)
 
-    def show(self, kind: Any, own: Shown) -> None:
+    def show(self, kind: Any, modes: Shown) -> None:
         """Keep these modes if their kind has no stiffer ones, and count its molecules."""
         before = self.shown.get(kind)
         if before is None:
-            self.shown[kind] = own
+            self.shown[kind] = modes
             return
-        stiffer = max(before, own, key=lambda each: each.values.max(initial=0.0))
-        self.shown[kind] = replace(stiffer, count=before.count + own.count)
+        stiffer = max(before, modes, key=lambda each: each.values.max(initial=0.0))
+        self.shown[kind] = replace(stiffer, count=before.count + modes.count)
 
 
 def projected(matrix: Any, held: Held, where: Doubles) -> Any:
@@ -116,7 +111,7 @@ def projected(matrix: Any, held: Held, where: Doubles) -> Any:
     if not held.distances:
         return matrix
     count = len(held.distances)
-    i, j = (np.array([own[k] for own in held.distances]) for k in (0, 1))
+    i, j = (np.array([distance[k] for distance in held.distances]) for k in (0, 1))
     apart = where[i] - where[j]
     places = np.stack([3 * i[:, None] + np.arange(3), 3 * j[:, None] + np.arange(3)], axis=1).reshape(count, 6)
     values = np.hstack([apart, -apart]) / held.root[places]
@@ -132,7 +127,7 @@ def projected(matrix: Any, held: Held, where: Doubles) -> Any:
         except np.linalg.LinAlgError as cause:
             raise KickdriftError("system", f"{count} constraints", "depend on each other: leave those out") from cause
         shape = (*members.shape, members.shape[1])
-        down, across = (np.broadcast_to(own, shape).ravel() for own in (members[:, :, None], members[:, None, :]))
+        down, across = (np.broadcast_to(places, shape).ravel() for places in (members[:, :, None], members[:, None, :]))
         parts.append(sparse.csr_matrix((inverse.ravel(), (down, across)), shape=gram.shape))
     free = sparse.identity(where.size, format="csr") - gradients.T @ sum(parts) @ gradients
     found = (free @ matrix @ free).tocsr()
@@ -157,7 +152,7 @@ def modes(matrix: Any, kinds: Sequence[Any]) -> Modes | None:
             each = max(1, _TOGETHER // (9 * size**2))
             for start in range(0, len(members), each):
                 _whole(matrix, members[start : start + each], kinds, found)
-        elif not all(_in_windows(matrix, near, own, found) for own in members):
+        elif not all(_in_windows(matrix, near, atoms, found) for atoms in members):
             return None
     # The eigenvalues of a symmetric matrix as LAPACK finds them are off by some units in the last place of its norm,
     # times its size at most.
@@ -174,8 +169,8 @@ def _alike(label: npt.NDArray[np.int32]) -> list[_Indices]:
 
 
 def _coordinates(members: _Indices) -> _Indices:
-    own: _Indices = (3 * members[..., None] + np.arange(3)).reshape(*members.shape[:-1], -1)
-    return own
+    coordinates: _Indices = (3 * members[..., None] + np.arange(3)).reshape(*members.shape[:-1], -1)
+    return coordinates
 
 
 def _dense(matrix: Any, members: _Indices) -> Doubles:
@@ -184,9 +179,9 @@ def _dense(matrix: Any, members: _Indices) -> Doubles:
     rows = matrix[members.ravel()].tocoo()
     place = np.zeros(matrix.shape[0], dtype=np.int64)
     place[members.ravel()] = np.tile(np.arange(size), count)
-    own = np.zeros((count, size, size))
-    own[rows.row // size, rows.row % size, place[rows.col]] = rows.data
-    return own
+    blocks = np.zeros((count, size, size))
+    blocks[rows.row // size, rows.row % size, place[rows.col]] = rows.data
+    return blocks
 
 
 def _whole(matrix: Any, members: _Indices, kinds: Sequence[Any], found: Modes) -> None:
@@ -201,10 +196,10 @@ def _whole(matrix: Any, members: _Indices, kinds: Sequence[Any], found: Modes) -
 
 def _in_windows(matrix: Any, near: Any, atoms: _Indices, found: Modes) -> bool:
     """All modes of one molecule through windows along its bonds; whether these are thick enough."""
-    own = near[atoms][:, atoms]
+    neighbours = near[atoms][:, atoms]
     # From the atom farthest from any, so that layers are thin.
-    root = csgraph.breadth_first_order(own, 0, directed=False)[0][-1]
-    layer = csgraph.shortest_path(own, unweighted=True, indices=root).astype(np.int64)
+    root = csgraph.breadth_first_order(neighbours, 0, directed=False)[0][-1]
+    layer = csgraph.shortest_path(neighbours, unweighted=True, indices=root).astype(np.int64)
     depth = int(layer.max())
     before = np.concatenate([[0], np.cumsum(np.bincount(layer))])
 

@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from kickdrift import _native
-from kickdrift._errors import required
+from kickdrift._errors import KickdriftError, required
 from kickdrift._numbers import frozen, written
 
 if TYPE_CHECKING:
@@ -50,8 +50,8 @@ class Frozen:
         return self
 
     def __getstate__(self) -> dict[str, Any]:
-        own = {part.name: getattr(self, part.name) for part in parts(cast(Any, self))}
-        return {name: dict(value) if isinstance(value, MappingProxyType) else value for name, value in own.items()}
+        state = {part.name: getattr(self, part.name) for part in parts(cast(Any, self))}
+        return {name: dict(value) if isinstance(value, MappingProxyType) else value for name, value in state.items()}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         for name, value in state.items():
@@ -60,9 +60,9 @@ class Frozen:
 
 def _held(value: Any) -> Any:
     if isinstance(value, dict):
-        for own in value.values():
-            if isinstance(own, np.ndarray):
-                frozen(own)
+        for item in value.values():
+            if isinstance(item, np.ndarray):
+                frozen(item)
         return MappingProxyType(value)
     return frozen(value) if isinstance(value, np.ndarray) else value
 
@@ -86,8 +86,10 @@ class Asked(Frozen):
 
     def _given(self) -> tuple[dict[str, str | list[str]], int | None, str | dict[str, npt.NDArray[np.float64]]]:
         place = self.place if isinstance(self.place, str) else dict(self.place)
-        fields = {name: written(name, own) if isinstance(own, str) else [written(name, part) for part in own]
-                  for name, own in self.fields.items()}
+        fields = {
+            name: written(name, given) if isinstance(given, str) else [written(name, part) for part in given]
+            for name, given in self.fields.items()
+        }
         return fields, self.budget, place
 
     def render(self, form: str) -> str:
@@ -103,7 +105,7 @@ class Asked(Frozen):
             if name == "file":
                 words += several
             elif name != "system":
-                words += [word for own in several for word in ([flag] if own == "true" else [flag, own])]
+                words += [word for text in several for word in ([flag] if text == "true" else [flag, text])]
         return _native.draw(self.name, *self._given(), shlex.join(words))
 
 
@@ -188,6 +190,34 @@ class Table(Document, Sequence[Row]):
     def __iter__(self) -> Iterator[Row]:
         return iter(self.rows)
 
+    def column(self, name: str) -> npt.NDArray[Any]:
+        """A field of all rows as an array, read only.
+
+        Parameters
+        ----------
+        name : str
+            A field, or a part of one as ``"lower.h1"``.
+
+        Returns
+        -------
+        array
+            Enclosures have shape (n, 2), ``lo`` beside ``hi``; all else has shape (n,). Where a row has no such number
+            it is NaN, and None where others have texts.
+
+        Raises
+        ------
+        KickdriftError
+            A field that no row has.
+
+        Examples
+        --------
+        >>> import kickdrift as kd
+        >>> found = kd.tongues("5/3", rho="1/25")
+        >>> found.column("m").tolist(), found.column("lower").shape
+        ([1, 2, 3, 4, 5, 6, 7], (7, 2))
+        """
+        return column(self.rows, name)
+
     def to_csv(self) -> str:
         """The rows as CSV, all columns.
 
@@ -265,6 +295,24 @@ def answered(kind: type[_Kind], name: str, rows: str, budget: int | None = None,
     """The answer to a question; fields that are None are not given."""
     asked = question(name, budget, **fields)
     return kind(asked.render("json"), (), rows, asked)
+
+
+def column(rows: Sequence[Row], name: str) -> npt.NDArray[Any]:
+    """A field of all rows as an array, as :meth:`Table.column` has it."""
+    values: list[Any] = list(rows)
+    for part in name.split("."):
+        if values and not any(isinstance(value, Mapping) and part in value for value in values):
+            names = dict.fromkeys(field for value in values if isinstance(value, Mapping) for field in value)
+            raise KickdriftError("name", name, f"there are {', '.join(names)}")
+        values = [value.get(part) if isinstance(value, Mapping) else None for value in values]
+    if any(isinstance(value, Mapping) for value in values):
+        ends = ([None, None] if value is None else [value.get("lo"), value.get("hi")] for value in values)
+        return frozen(np.array(list(ends), dtype=np.float64).reshape(-1, 2))
+    if any(isinstance(value, str | list) for value in values):
+        texts = np.empty(len(values), dtype=object)
+        texts[:] = values
+        return frozen(texts)
+    return frozen(np.array(values, dtype=np.float64 if None in values else None))
 
 
 def frame(rows: Iterable[Mapping[str, Any]]) -> pandas.DataFrame:

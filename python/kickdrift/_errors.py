@@ -82,8 +82,8 @@ def known(given: Mapping[str, object], *functions: Callable[..., object], elsewh
     KickdriftError
         One that none takes, with the nearest that there is, else with where it belongs, or with all of them.
     """
-    every = (own for function in functions for own in signature(function).parameters.values())
-    names = dict.fromkeys(own.name for own in every if own.kind in _NAMED)
+    every = (parameter for function in functions for parameter in signature(function).parameters.values())
+    names = dict.fromkeys(parameter.name for parameter in every if parameter.kind in _NAMED)
     for name, value in given.items():
         if name in names:
             continue

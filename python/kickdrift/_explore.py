@@ -81,7 +81,7 @@ def _page(system: System) -> _native.Page:
     path = a_system(system)._path
     if path is not None:
         return _native.Page.of_system(path.read_text(), {}, str(path.parent))
-    arrays = {name: np.asarray(own, dtype=np.float64) for name, own in system.arrays.items()}
+    arrays = {name: np.asarray(array, dtype=np.float64) for name, array in system.arrays.items()}
     return _native.Page.of_system(system._text(), arrays, None)
 
 

@@ -15,20 +15,14 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-import openmm as mm
 
 from kickdrift import _terms as _terms_of
-from kickdrift._errors import KickdriftError, needs
+from kickdrift._errors import KickdriftError
 from kickdrift._hessians import Force
+from kickdrift._openmm import mm
 from kickdrift._progress import Progress
 from kickdrift._rigid import Doubles
-
-try:
-    import scipy.sparse as sparse
-    from scipy.spatial import cKDTree
-    from scipy.special import erfc
-except ImportError:
-    raise needs("scipy") from None
+from kickdrift._scipy import sparse, spatial, special
 
 _Indices = npt.NDArray[np.int64]
 _Mask = npt.NDArray[np.bool_]
@@ -65,10 +59,10 @@ def hessian(
         A force whose terms are not known here: Ewald sums, custom pairs, bonds of many bodies; pairs of virtual sites
         that are no averages of their atoms.
     """
-    own = [force for force in system.getForces() if force.getForceGroup() in groups]
-    bonded = [force for force in own if type(force).__name__ in _BONDED]
-    pairs = [force for force in own if isinstance(force, mm.NonbondedForce)]
-    others = [force for force in own if force not in bonded + pairs and not isinstance(force, mm.CMMotionRemover)]
+    forces = [force for force in system.getForces() if force.getForceGroup() in groups]
+    bonded = [force for force in forces if type(force).__name__ in _BONDED]
+    pairs = [force for force in forces if isinstance(force, mm.NonbondedForce)]
+    others = [force for force in forces if force not in bonded + pairs and not isinstance(force, mm.CMMotionRemover)]
     if others:
         name = type(others[0]).__name__
         remedy = "has no sparse Hessian here: leave sparse=True out, or give Hessians to System.from_hessians"
@@ -151,8 +145,8 @@ def by_formulas(forces: Sequence[Any], positions: Doubles) -> Any:
         terms = [getattr(force, read)(n) for n in range(getattr(force, count)())]
         if not terms:
             continue
-        numbers = np.array([[float(getattr(x, "_value", x)) for x in own[atoms.stop :]] for own in terms])
-        places, bends = _terms_of.blocks(kind, [own[atoms] for own in terms], numbers, positions)
+        numbers = np.array([[float(getattr(x, "_value", x)) for x in term[atoms.stop :]] for term in terms])
+        places, bends = _terms_of.blocks(kind, [term[atoms] for term in terms], numbers, positions)
         rows, columns = np.broadcast_arrays(places[:, :, None], places[:, None, :])
         entries.append(np.array([rows.ravel(), columns.ravel(), bends.ravel()]))
     rows, columns, values = np.concatenate(entries, axis=1)
@@ -169,11 +163,11 @@ def _alone(system: Any, forces: Sequence[Any]) -> Force:
         copy.addForce(deepcopy(force))
     context = mm.Context(copy, mm.VerletIntegrator(0.001), mm.Platform.getPlatformByName("Reference"))
 
-    def of(positions: Doubles) -> Doubles:
+    def alone(positions: Doubles) -> Doubles:
         context.setPositions(positions)
         return np.asarray(context.getState(getForces=True).getForces(asNumpy=True)._value, dtype=np.float64)
 
-    return of
+    return alone
 
 
 def _neighbours(terms: Sequence[Sequence[int]], count: int) -> Any:
@@ -204,8 +198,8 @@ def coloured(
     colours = _colours(neighbours)
     entries: list[tuple[_Indices, _Indices, Doubles, Doubles]] = []
     for done, atoms in enumerate(colours):
-        own = neighbours[atoms].tocoo()
-        reached, moved = own.col, atoms[own.row]
+        joined = neighbours[atoms].tocoo()
+        reached, moved = joined.col, atoms[joined.row]
         for axis in range(3):
             near, far = (_difference(force, positions, atoms, axis, width) for width in (difference, 2 * difference))
             for to in range(3):
@@ -254,8 +248,8 @@ def nonbonded(force: Any, system: Any, positions: Doubles) -> tuple[Any, _Mask]:
     count = len(positions)
     charge, sigma, epsilon = np.array([_plain(force.getParticleParameters(n)) for n in range(count)]).T
     given = [force.getExceptionParameters(n) for n in range(force.getNumExceptions())]
-    held = np.array([own[:2] for own in given], dtype=np.int64).reshape(-1, 2)
-    special = np.array([_plain(own[2:]) for own in given]).reshape(-1, 3)
+    held = np.array([exception[:2] for exception in given], dtype=np.int64).reshape(-1, 2)
+    special = np.array([_plain(exception[2:]) for exception in given]).reshape(-1, 3)
     box = _box(system) if method == force.CutoffPeriodic else None
     pairs = _pairs(force, positions, box)
     pairs = pairs[~np.isin(_key(pairs, count), _key(held, count))]
@@ -315,7 +309,7 @@ class Cut:
             taken = 4 * np.sqrt(self.epsilon[i] * self.epsilon[j]) * (self.sigma[i] * self.sigma[j]) ** 3
             part = 1 - np.exp(-y) * (1 + y + y**2 / 2)
             found = found + taken * (np.exp(-y) * y**3 - 6 * part) / r**7
-        return np.asarray(found + scale * (2 * self.field * r - (erfc(self.ewald * r) + gauss) / r**2))
+        return np.asarray(found + scale * (2 * self.field * r - (special.erfc(self.ewald * r) + gauss) / r**2))
 
     def kept(self, positions: Doubles, reach: float) -> Kept | None:
         """What keeps each pair on its side of the cutoff while its distance changes by less than ``reach``. None where
@@ -389,11 +383,11 @@ class _ByFormulas(Kept):
     def __call__(self, at: Doubles) -> Doubles:
         apart, r = _nearest(at, self.pairs, self.box)
         crossed = (r < self.end) != self.was
-        own, r = self.pairs[crossed], r[crossed]
-        size = np.where(self.was[crossed], 1.0, -1.0) * self.cut.slope(own, r) / r
+        pairs, r = self.pairs[crossed], r[crossed]
+        size = np.where(self.was[crossed], 1.0, -1.0) * self.cut.slope(pairs, r) / r
         added = np.zeros_like(at)
-        np.add.at(added, own[:, 0], -size[:, None] * apart[crossed])
-        np.add.at(added, own[:, 1], size[:, None] * apart[crossed])
+        np.add.at(added, pairs[:, 0], -size[:, None] * apart[crossed])
+        np.add.at(added, pairs[:, 1], size[:, None] * apart[crossed])
         return added
 
 
@@ -416,10 +410,10 @@ def _nearest(positions: Doubles, pairs: _Indices, box: Doubles | None) -> tuple[
 
 
 def cut(force: Any, context: Any) -> Cut | CustomCut | None:
-    """Of a NonbondedForce or CustomNonbondedForce with a cutoff; None of one without, of one that goes to 0 smoothly,
-    or where its pairs are not known here: offsets of parameters."""
+    """The cutoff of a NonbondedForce or CustomNonbondedForce. None if it has none, if it goes to 0 smoothly, or if its
+    pairs are not known here, as with offsets of parameters."""
     system, method = context.getSystem(), force.getNonbondedMethod()
-    vectors = np.array([list(own._value) for own in context.getState().getPeriodicBoxVectors()])
+    vectors = np.array([list(vector._value) for vector in context.getState().getPeriodicBoxVectors()])
     is_periodic = method != force.CutoffNonPeriodic
     if method == force.NoCutoff:
         return None
@@ -456,11 +450,11 @@ def _shell(positions: Doubles, box: Doubles | None, least: float, most: float) -
         part -= np.floor(part)
         margin = most * np.linalg.norm(np.linalg.inv(box), axis=0)
         images = [part + shift for shift in np.indices((3, 3, 3)).reshape(3, -1).T - 1]
-        kept = [np.flatnonzero(((own > -margin) & (own < 1 + margin)).all(axis=1)) for own in images]
+        kept = [np.flatnonzero(((image > -margin) & (image < 1 + margin)).all(axis=1)) for image in images]
         names = np.concatenate(kept)
-        parts = np.concatenate([own[each] for own, each in zip(images, kept, strict=True)])
+        parts = np.concatenate([image[each] for image, each in zip(images, kept, strict=True)])
         places, inside = parts @ box, np.asarray(((parts >= 0) & (parts < 1)).all(axis=1))
-    pairs = cKDTree(places).query_pairs(most, output_type="ndarray")
+    pairs = spatial.cKDTree(places).query_pairs(most, output_type="ndarray")
     pairs = pairs[inside[pairs].any(axis=1)]
     pairs = pairs[np.linalg.norm(places[pairs[:, 0]] - places[pairs[:, 1]], axis=1) > least]
     pairs = np.sort(names[pairs], axis=1).astype(np.int64)
@@ -468,12 +462,12 @@ def _shell(positions: Doubles, box: Doubles | None, least: float, most: float) -
 
 
 def _plain(quantities: Sequence[Any]) -> list[float]:
-    return [float(own._value) for own in quantities]
+    return [float(quantity._value) for quantity in quantities]
 
 
 def _box(system: Any) -> Doubles:
     """The edges of a rectangular box, nm."""
-    vectors = np.array([list(own._value) for own in system.getDefaultPeriodicBoxVectors()])
+    vectors = np.array([list(vector._value) for vector in system.getDefaultPeriodicBoxVectors()])
     if np.any(vectors != np.diag(np.diag(vectors))):
         raise KickdriftError("system", "a triclinic box", "has no sparse Hessian here: choose a rectangular one")
     return np.diag(vectors).copy()
@@ -488,7 +482,7 @@ def _pairs(force: Any, positions: Doubles, box: Doubles | None, beyond: float = 
     if force.getNonbondedMethod() == force.NoCutoff:
         return np.column_stack(np.triu_indices(len(positions), 1)).astype(np.int64)
     places = positions if box is None else np.mod(positions, box)
-    tree = cKDTree(places, boxsize=box)
+    tree = spatial.cKDTree(places, boxsize=box)
     return np.asarray(
         tree.query_pairs(force.getCutoffDistance()._value + beyond, output_type="ndarray"), dtype=np.int64
     )
@@ -525,8 +519,8 @@ def _lennard_jones(sigma: Doubles, epsilon: Doubles, r: Doubles, switch: _Switch
     second = 4 * epsilon * sixth * (156 * sixth - 42) / r**2
     if switch is None:
         return first, second
-    own, slope, bend = switch
-    return own * first + slope * energy, own * second + 2 * slope * first + bend * energy
+    value, slope, bend = switch
+    return value * first + slope * energy, value * second + 2 * slope * first + bend * energy
 
 
 def _assembled(pairs: _Indices, apart: Doubles, r: Doubles, first: Doubles, second: Doubles, count: int) -> Any:
@@ -543,11 +537,11 @@ def _assembled(pairs: _Indices, apart: Doubles, r: Doubles, first: Doubles, seco
     )
     places.sort_indices()
     beside = sparse.bsr_matrix((-blocks[places.data - 1], places.indices, places.indptr), shape=(3 * count, 3 * count))
-    own = np.empty((count, 3, 3))
+    corners = np.empty((count, 3, 3))
     for a in range(3):
         for b in range(3):
-            own[:, a, b] = sum(np.bincount(side, weights=blocks[:, a, b], minlength=count) for side in (i, j))
-    diagonal = sparse.bsr_matrix((own, np.arange(count), np.arange(count + 1)), shape=(3 * count, 3 * count))
+            corners[:, a, b] = sum(np.bincount(side, weights=blocks[:, a, b], minlength=count) for side in (i, j))
+    diagonal = sparse.bsr_matrix((corners, np.arange(count), np.arange(count + 1)), shape=(3 * count, 3 * count))
     return (beside + diagonal).tocsr()
 
 
@@ -574,7 +568,7 @@ def _seen(matrix: Any, force: Force, positions: Doubles, smooth: _Mask) -> float
             (force(positions - part * _LOOK * signs) - force(positions + part * _LOOK * signs)) / (2 * part)
             for part in (1, 2)
         )
-        own = (matrix @ signs.ravel()).reshape(positions.shape)
+        product = (matrix @ signs.ravel()).reshape(positions.shape)
         measured = (4 * near - far) / (3 * _LOOK)
-        worst = max(worst, float(np.linalg.norm((measured - own)[smooth], axis=1).max(initial=0.0)))
+        worst = max(worst, float(np.linalg.norm((measured - product)[smooth], axis=1).max(initial=0.0)))
     return worst

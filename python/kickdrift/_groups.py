@@ -38,7 +38,7 @@ class Groups:
     force : (str, float)
         The unit of forces, and how many of it a mass·length/time² is.
     labels : sequence of str
-        Of the particles.
+        One for each particle.
     is_boxed : bool
         Whether the cell is periodic.
     has_mesh : bool
@@ -81,7 +81,7 @@ class Groups:
             }
             forces = {name: force(where) for name, force in self.forces.items()}
         width = f"{difference:g} {self.length}"
-        accuracy = max(seen(*own, name, width) for name, own in measured.items())
+        accuracy = max(seen(*pair, name, width) for name, pair in measured.items())
         unit, scale = self.force
         pulls = {name: force * scale for name, force in forces.items()}
         total = np.sum([matrix for matrix, _ in measured.values()], axis=0)
@@ -93,10 +93,10 @@ class Groups:
         root = np.sqrt(np.repeat(self.masses, 3))
         potentials, beside = {}, list(beside)
         for (name, (matrix, _)), step in zip(measured.items(), self.steps, strict=True):
-            own = (matrix + matrix.T) / 2 if symmetric else matrix
+            kept = (matrix + matrix.T) / 2 if symmetric else matrix
             if self.has_mesh:
-                own = off_the_mesh(own, moved, name, accuracy, beside)
-            potentials[name] = (step, own * np.outer(root, root))
+                kept = off_the_mesh(kept, moved, name, accuracy, beside)
+            potentials[name] = (step, kept * np.outer(root, root))
         made = System.from_hessians(
             self.masses,
             potentials,

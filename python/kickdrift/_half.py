@@ -38,8 +38,8 @@ def eigenvalues(half: Doubles, struck: Sequence[Struck], residual: float) -> tup
     """The eigenvalues mu of B^T C, and how far each is off, to first order, where each kick's Hessian is by its error.
 
     A kick changed by dK changes the half period by S (0, -h dK X), X the rows at the kick and S what comes after it,
-    which a symplectic matrix's own entries tell: from velocities S = half (-B_k^T, A_k^T). Of mu with the eigenvectors
-    y and x the change is y* (dB^T C + B^T dC) x over y* x.
+    which a symplectic matrix's own entries tell: from velocities S = half (-B_k^T, A_k^T). The change of mu
+    with the eigenvectors y and x is y* (dB^T C + B^T dC) x over y* x.
     """
     n = len(half) // 2
     b, c = half[:n, n:], half[n:, :n]
@@ -113,11 +113,11 @@ def compose(
             if not (still and group in known):
                 known[group] = differences(forces[group], position, held.masses, difference)
             stiffness, correction, asymmetry = known[group]
-            own = norm(stiffness)
-            # Of smooth forces the fourth order leaves of the second order's error what that is of the whole.
-            error = correction**2 / max(own, 1e-300) + asymmetry
+            size = norm(stiffness)
+            # For smooth forces the fourth order leaves the square of the second order's error, relative to the whole.
+            error = correction**2 / max(size, 1e-300) + asymmetry
             made = (group, position, stiffness)
-            struck.append(Struck(float(duration), allowed.T @ at, error, own, *made))
+            struck.append(Struck(float(duration), allowed.T @ at, error, size, *made))
             if progress is not None:
                 progress(len(struck), strikes)
             if still:
@@ -173,13 +173,13 @@ def plain(
     # Half a period that ends between two kicks ends at rest where the last one was: no kick is made there.
     kicks = [kick for kick in schedule(steps) if kick.groups]
     made = [[next(strikes) for _ in kick.groups] for kick in kicks]
-    if any(fastest not in [strike.group for strike in own] for own in made):
+    if any(fastest not in [strike.group for strike in kicks] for kicks in made):
         raise KickdriftError("steps", "no multiples of the fastest", "choose such, for a proof along held bonds")
-    frames = [held.frame(own[0].positions) for own in made]
+    frames = [held.frame(kicks[0].positions) for kicks in made]
     for k in reversed(range(len(frames) - 1)):
         frames[k] = frames[k] @ np.linalg.inv(frames[k + 1].T @ frames[k])
     struck, nearest = [], min(distance for _, _, distance in held.distances)
-    for place, (frame, own) in enumerate(zip(frames, made, strict=True)):
+    for place, (frame, together) in enumerate(zip(frames, made, strict=True)):
         apart = np.eye(frame.shape[1]) - frame.T @ frame
         times = [half.drifts[k][0] for k in (place - 1, place) if 0 <= k < len(half.drifts)]
         shape = np.asarray(sum(apart / time for time in times))
@@ -189,11 +189,11 @@ def plain(
         else:
             # Where it turns, the velocity does not vanish along the gradients, which deviations turn.
             shape = shape + frame.T @ held.bent(half.taken) @ frame
-        for strike in own:
+        for strike in together:
             added: Doubles | float = 0.0
             stiffness, error = frame.T @ strike.stiffness @ frame, strike.error * norm(frame) ** 2
             if strike.group == fastest:
-                pulls = sum(other.duration * other.size for other in own)
+                pulls = sum(other.duration * other.size for other in together)
                 off = _SHAPED * sum(1 / time for time in times) + (norm(shape) + pulls) * ahead / nearest
                 added, error = (shape + shape.T) / 2 / strike.duration, error + off / strike.duration
             struck.append(replace(strike, stiffness=stiffness, error=error, shape=added))
@@ -204,9 +204,9 @@ def plain(
 _SHAPED = 1e-13
 
 
-#: What is proven is so for Hessians ten times farther from those measured than these are seen to be off. Of a power law
-#: x^-n differences of fourth order leave 1.2 (n + 4) (n + 5)/(n + 2)/(n + 3) of what is seen: 3 of Coulomb's, less of
-#: others; and rounding leaves of the symmetric part some times more or less than of the other, which is seen.
+#: What is proven holds for Hessians ten times farther from those measured than these are seen to be off. For a power
+#: law x^-n differences of fourth order leave 1.2 (n + 4) (n + 5)/(n + 2)/(n + 3) of what is seen: 3 for Coulomb's law,
+#: less for others; rounding leaves some times more or less in the symmetric part than in the other, which is seen.
 _FARTHER = 10.0
 
 
@@ -228,13 +228,13 @@ def along(
     potentials, worst = {}, 1e-12
     for step in sorted(set(steps.values())):
         groups = [place for place, name in enumerate(kinds) if steps[name] == step]
-        own = [[kick for kick in struck if kick.group == place] for place in groups]
-        matrices = [np.sum([kick.stiffness for kick in kicks], axis=0) for kicks in zip(*own, strict=True)]
-        errors = [sum(kick.error for kick in kicks) for kicks in zip(*own, strict=True)]
-        added = [sum(kick.shape for kick in kicks) for kicks in zip(*own, strict=True)]
+        by_group = [[kick for kick in struck if kick.group == place] for place in groups]
+        matrices = [np.sum([kick.stiffness for kick in kicks], axis=0) for kicks in zip(*by_group, strict=True)]
+        errors = [sum(kick.error for kick in kicks) for kicks in zip(*by_group, strict=True)]
+        added = [sum(kick.shape for kick in kicks) for kicks in zip(*by_group, strict=True)]
         whole = [matrix + shape for matrix, shape in zip(matrices, added, strict=True)]
         size = max(1e-300, *(norm(matrix) for matrix in whole))
-        where = [kick.positions for kick in own[0]]
+        where = [kick.positions for kick in by_group[0]]
         changes = 0.0
         for k in range(len(where) - 1):
             way = float(np.abs(where[k + 1] - where[k]).max())

@@ -23,14 +23,14 @@ Force: TypeAlias = Callable[[Doubles], Doubles]
 def smooth(force: Force, positions: Doubles, reach: float) -> Force:
     """The force as it is about these positions, while no distance changes by more than ``reach``: engines' forces that
     jump within that, as where pairs cross a cutoff, have a ``smooth`` of their own."""
-    own = getattr(force, "smooth", None)
-    return force if own is None else own(positions, _MARGIN * reach)
+    smoother = getattr(force, "smooth", None)
+    return force if smoother is None else smoother(positions, _MARGIN * reach)
 
 
 def journal_of(force: Force) -> Journal | None:
     """Where differences of this force are kept, if they are: forces that are known by a name have a ``journal``."""
-    own: Journal | None = getattr(force, "journal", None)
-    return own
+    journal: Journal | None = getattr(force, "journal", None)
+    return journal
 
 
 def hessian(
@@ -64,8 +64,8 @@ def hessian(
     -------
     (array, float)
         The symmetric part, and the error as a 2-norm: the correction from second to fourth order, of which what is left
-        is a small part, plus the antisymmetric part. Of a force that is no gradient the whole, whose asymmetry is no
-        error.
+        is a small part, plus the antisymmetric part. For a force that is no gradient it is the whole matrix, whose
+        asymmetry is no error.
     """
     matrix, correction, asymmetry = differences(force, positions, masses, difference, columns, progress, symmetric)
     if rounding:
@@ -94,15 +94,15 @@ def differences(
     second, fourth = np.empty((len(kept), len(kept))), np.empty((len(kept), len(kept)))
     force = smooth(force, positions, 2 * difference)
 
-    def of(column: int) -> Doubles:
+    def beside(column: int) -> Doubles:
         return np.array([_difference(force, positions, column, width)[kept] for width in (difference, 2 * difference)])
 
     journal = journal_of(force)
     for place, column in enumerate(kept):
         if journal is None:
-            near, far = of(column)
+            near, far = beside(column)
         else:
-            near, far = journal.kept(partial(of, column), "column", positions, kept, float(column), difference)
+            near, far = journal.kept(partial(beside, column), "column", positions, kept, float(column), difference)
         second[:, place], fourth[:, place] = near, (4 * near - far) / 3
         if progress is not None:
             progress(place + 1, len(kept))

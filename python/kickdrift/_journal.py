@@ -32,9 +32,9 @@ _DIGEST, _HEAD = 32, 32 + 8 + 4
 def _digest(parts: tuple[Part, ...]) -> bytes:
     whole = blake2b(digest_size=_DIGEST)
     for part in parts:
-        own = part.encode() if isinstance(part, str) else np.asarray(part).tobytes()
+        encoded = part.encode() if isinstance(part, str) else np.asarray(part).tobytes()
         # With its length, so that no two lists of parts are one text.
-        whole.update(len(own).to_bytes(8, "little") + own)
+        whole.update(len(encoded).to_bytes(8, "little") + encoded)
     return whole.digest()
 
 
@@ -48,7 +48,7 @@ class Journal:
 
     @staticmethod
     def at(path: str | PathLike[str] | None, *about: Part) -> Journal | None:
-        """Of the file about this, which is made where there is none; None without a path.
+        """The journal in the file about this, which is made if there is none; None without a path.
 
         Raises
         ------
@@ -73,11 +73,11 @@ class Journal:
         except OSError as error:
             raise _failed(name, error.strerror) from error
 
-    def of(self, *names: Part) -> Journal:
+    def under(self, *names: Part) -> Journal:
         """The same file, asked about something narrower."""
         return replace(self, names=(*self.names, *names))
 
-    def kept(self, compute: Callable[[], Doubles], *of: Part) -> Doubles:
+    def kept(self, compute: Callable[[], Doubles], *about: Part) -> Doubles:
         """What was computed of this, in the shape that it has; computed now and kept where it is not there yet.
 
         Raises
@@ -85,14 +85,14 @@ class Journal:
         KickdriftError
             Where the file cannot be read or written any more.
         """
-        key = _digest((*self.names, *of))
+        key = _digest((*self.names, *about))
         try:
             if key in self.places:
                 place, count = self.places[key]
                 with self.path.open("rb") as file:
                     file.seek(place)
                     shape, values = np.split(np.frombuffer(file.read(8 * count)), [_AXES])
-                return values.reshape([int(own) for own in shape if own >= 0]).copy()
+                return values.reshape([int(length) for length in shape if length >= 0]).copy()
             found = np.array(compute(), dtype=np.float64, order="C")
             shape = np.full(_AXES, -1.0)
             shape[: found.ndim] = found.shape
@@ -116,8 +116,8 @@ def _failed(path: Path, why: str | None) -> KickdriftError:
     return KickdriftError("resume", str(path), f"cannot be read and written: {why}")
 
 
-def _checksum(of: bytes) -> bytes:
-    return zlib.crc32(of).to_bytes(4, "little")
+def _checksum(content: bytes) -> bytes:
+    return zlib.crc32(content).to_bytes(4, "little")
 
 
 def _records(file: FileIO, begin: int) -> dict[bytes, tuple[int, int]]:

@@ -48,7 +48,7 @@ class Map(Frozen):
     """All arrays by name, as in the program's ``map.npz``, read only."""
 
     _map: _native.Map | None = None
-    """What draws them again at once; left out where the map is pickled."""
+    """What writes and draws them at once; left out where the map is pickled."""
 
     names = VERDICTS
     tier_names = TIERS
@@ -115,7 +115,7 @@ class Map(Frozen):
         return self.document.to_json()
 
     def to_csv(self) -> str:
-        """A row for each pair that is unstable or on an edge; computed again in that form.
+        """A row for each pair that is unstable or on an edge; a map from another process is computed again.
 
         Examples
         --------
@@ -124,7 +124,7 @@ class Map(Frozen):
         >>> len(small.to_csv().splitlines()) == 1 + int((~small.stable).sum())
         True
         """
-        return ask(self._arguments, "csv")
+        return ask(self._arguments, "csv") if self._map is None else self._map.csv(self.verdict, self.tier)
 
     def to_xarray(self) -> xarray.Dataset:
         """The arrays over the coordinates h1 and h2, none of them copied.
@@ -268,9 +268,9 @@ def map(
     >>> bool((found.growth_rate[~found.stable] > 0).any())
     True
     """
-    steps = [step if own is None else own for own in (step1, step2)]
-    for name, own in zip(("step", "step2"), steps, strict=True):
-        if own is None:
+    steps = [step if spacing is None else spacing for spacing in (step1, step2)]
+    for name, spacing in zip(("step", "step2"), steps, strict=True):
+        if spacing is None:
             remedy = "a grid needs a spacing, as step='1/100'; verdicts(h1=xs[:, None], h2=ys) takes axes of any steps"
             raise KickdriftError(name, None, remedy)
     ends = [_ends("h1", h1), _ends("h2", h2)]
@@ -286,8 +286,8 @@ def map(
         budget=budget,
     )
     arguments += [flag for flag, asked in (("--label", label), ("--growth", growth)) if asked]
-    own = {name: frozen(array) for name, array in arrays.items()}
-    return Map(tuple(arguments), (made.render("json"), made.render("text")), MappingProxyType(own), made)
+    kept = MappingProxyType({name: frozen(array) for name, array in arrays.items()})
+    return Map(tuple(arguments), (made.render("json"), made.render("text")), kept, made)
 
 
 def _ends(field: str, value: Range) -> list[Exact]:

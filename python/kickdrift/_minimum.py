@@ -10,6 +10,7 @@ import numpy.typing as npt
 from kickdrift._errors import KickdriftError
 from kickdrift._held import Held
 from kickdrift._hessians import Force, hessian, smooth
+from kickdrift._lanczos import by_differences, top
 from kickdrift._progress import Progress
 from kickdrift._rigid import Doubles, norm, rigid_motions
 
@@ -55,46 +56,46 @@ def minimum(
         Where Newton's method does not arrive, or at a saddle: the positions are not near a minimum.
     """
     kept = np.arange(positions.size) if columns is None else np.asarray(columns)
-    root, own = held.root[kept], held.back(positions, columns)
+    root, place = held.root[kept], held.back(positions, columns)
     bend = np.empty((0, 0))
-    descent, best, hessians, is_far = _descent(bend), (np.inf, own, force, np.inf), 0, True
+    descent, best, hessians, is_far = _descent(bend), (np.inf, place, force, np.inf), 0, True
     vain = 0
     for _ in range(_ROUNDS):
-        begun, here, smallest, size, idle = own, smooth(force, own, reach), np.inf, np.inf, 0
+        begun, here, smallest, size, idle = place, smooth(force, place, reach), np.inf, np.inf, 0
         while hessians < _HESSIANS:
-            frame = free(held, own, columns, is_boxed)
-            pulled = frame.T @ (here(own).ravel()[kept] / root)
+            frame = free(held, place, columns, is_boxed)
+            pulled = frame.T @ (here(place).ravel()[kept] / root)
             size = float(np.linalg.norm(pulled))
             # Rounding ends the fall of the force: two steps without a tenth less are the end.
             idle = idle + 1 if not size < 0.9 * smallest else 0
-            if idle == 2 or np.abs(own - begun).max() > reach / 8:
+            if idle == 2 or np.abs(place - begun).max() > reach / 8:
                 break
             is_new = is_far or (size > 0.1 * smallest and size > rounding_of(bend, held.masses))
             smallest, is_far = min(smallest, size), False
             if is_new:
-                bend, _ = hessian(here, own, held.masses, difference, columns, progress)
-                bend, hessians = bend + held.curvature(here(own), own, columns), hessians + 1
+                bend, _ = hessian(here, place, held.masses, difference, columns, progress)
+                bend, hessians = bend + held.curvature(here(place), place, columns), hessians + 1
             if is_new or held.distances:
                 descent = _descent(frame.T @ bend @ frame)
             along = frame @ descent(pulled)
-            own = _moved(here, held, own, kept, along, reach / 7)
-            if max(np.abs(along / root).max(initial=0.0), np.abs(own - positions).max()) > far:
+            place = _moved(here, held, place, kept, along, reach / 7)
+            if max(np.abs(along / root).max(initial=0.0), np.abs(place - positions).max()) > far:
                 raise KickdriftError("positions", f"moved by {far:g}", "are not near a minimum: minimize them first")
-        is_far = bool(np.abs(own - begun).max() > reach / 8)
+        is_far = bool(np.abs(place - begun).max() > reach / 8)
         if is_far:
             continue
-        left = float(np.linalg.norm(frame.T @ (force(own).ravel()[kept] / root)))
+        left = float(np.linalg.norm(frame.T @ (force(place).ravel()[kept] / root)))
         vain = 0 if left < 0.9 * best[0] else vain + 1
         if left < best[0]:
-            best = (left, own, here, min(smallest, left))
+            best = (left, place, here, min(smallest, left))
         if here is force or left < rounding_of(bend, held.masses) or hessians >= _HESSIANS or vain == _VAIN:
             break
     if best[0] < np.inf:
-        _, own, here, size = best
-    bend, _ = hessian(here, own, held.masses, difference, columns, progress)
-    frame = free(held, own, columns, is_boxed)
-    arrived(size, frame.T @ (bend + held.curvature(here(own), own, columns)) @ frame, held.masses)
-    return own, here
+        _, place, here, size = best
+    bend, _ = hessian(here, place, held.masses, difference, columns, progress)
+    frame = free(held, place, columns, is_boxed)
+    arrived(size, frame.T @ (bend + held.curvature(here(place), place, columns)) @ frame, held.masses)
+    return place, here
 
 
 #: Hessians that a minimum may take, how often what jumps is looked at anew, and how often in vain: pairs that jump to
@@ -119,15 +120,17 @@ def _descent(matrix: Doubles) -> Callable[[Doubles], Doubles]:
     return lambda right: np.asarray(vectors @ ((vectors.T @ right) / values))
 
 
-def _moved(force: Force, held: Held, own: Doubles, kept: npt.NDArray[np.intp], along: Doubles, most: float) -> Doubles:
+def _moved(
+    force: Force, held: Held, place: Doubles, kept: npt.NDArray[np.intp], along: Doubles, most: float
+) -> Doubles:
     """Positions after a step, as much of it as moves no coordinate by more than ``most`` and leaves less than half of
     what pulls along it pulling back."""
     root = held.root[kept]
     part = min(1.0, most / max(float(np.abs(along / root).max(initial=0.0)), 1e-300))
-    columns = None if len(kept) == own.size else list(kept)
-    least = -0.5 * float(along @ (force(own).ravel()[kept] / root))
+    columns = None if len(kept) == place.size else list(kept)
+    least = -0.5 * float(along @ (force(place).ravel()[kept] / root))
     while True:
-        moved = own.copy()
+        moved = place.copy()
         moved.flat[kept] += part * along / root
         moved = held.back(moved, columns)
         if part < SMALLEST_PART or float(along @ (force(moved).ravel()[kept] / root)) > least:
@@ -142,10 +145,8 @@ def cooled(force: Force, where: Doubles, held: Held, difference: float) -> Doubl
     minimum a step of Newton's method costs as much as a thousand of these, and is kept as short. It ends where its
     steps get short, at a jump of the forces, or after ``_COOLED`` of them.
     """
-    from kickdrift import _bands
-
-    product = _bands.by_differences(force, where, held.root, difference)
-    longest = 1.0 / float(np.sqrt(max(_bands.top(product, where.size, _ROUGH).found, 1e-300)))
+    product = by_differences(force, where, held.root, difference)
+    longest = 1.0 / float(np.sqrt(max(top(product, where.size, _ROUGH).found, 1e-300)))
     # The numbers are those of the paper.
     step, share, uphill, speed = longest, 0.1, 0, np.zeros(where.size)
     best = (np.inf, where)
@@ -153,7 +154,7 @@ def cooled(force: Force, where: Doubles, held: Held, difference: float) -> Doubl
         pull = force(where).ravel() / held.root
         pull -= held.gradients(where).T @ held.along(pull, where)
         size = float(np.linalg.norm(pull))
-        best = min(best, (size, where), key=lambda own: own[0])
+        best = min(best, (size, where), key=lambda candidate: candidate[0])
         if step < longest / 1000 or size == 0.0:
             break
         if pull @ speed > 0:

@@ -34,9 +34,9 @@ def unbalanced(forces: Mapping[str, Doubles], size: float, masses: Doubles, unit
     notes = []
     if np.linalg.norm(np.sum(list(forces.values()), axis=0) / root) > rounding:
         notes.append("the positions are no minimum of all forces together: nothing stays about them")
-    pulled = {name: own for name, own in forces.items() if np.linalg.norm(own / root) > rounding}
+    pulled = {name: pull for name, pull in forces.items() if np.linalg.norm(pull / root) > rounding}
     if pulled and len(forces) > 1:
-        most = max(float(np.linalg.norm(own, axis=1).max()) for own in pulled.values())
+        most = max(float(np.linalg.norm(pull, axis=1).max()) for pull in pulled.values())
         notes.append(
             f"the forces of {' and of '.join(pulled)} do not vanish at the positions (up to {most:.3g} {unit}): a run "
             f"{SWINGS} of its own, where the Hessians are others; verdicts hold for those at the positions "
@@ -69,7 +69,7 @@ class Monodromy(Frozen):
     residual : float
         The step that Newton's method would take next, relative to the extent of the atoms; 0 about a minimum.
     mu : array, shape (n',)
-        Of the half period: lambda + 1/lambda = 2 + 4 mu for the multipliers lambda of the period.
+        The eigenvalues of the half period: lambda + 1/lambda = 2 + 4 mu for the multipliers lambda of the period.
     doubts : array, shape (n',)
         How far each mu may be off, to first order in the errors of the Hessians: what the differences leave, and what
         the residual moves.

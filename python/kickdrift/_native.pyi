@@ -66,6 +66,7 @@ class Pair:
 @final
 class Map:
     def render(self, format: str) -> str: ...
+    def csv(self, verdict: npt.NDArray[np.uint8], tier: npt.NDArray[np.uint8]) -> str: ...
     def svg(self, verdict: npt.NDArray[np.uint8], tier: npt.NDArray[np.uint8]) -> str: ...
 
 @final
@@ -124,7 +125,7 @@ class Answer:
 def ask(
     name: str,
     fields: Mapping[str, str | list[str]],
-    budget: int | None = None,
+    budget: int | None = ...,
     place: str | Mapping[str, npt.NDArray[np.float64]] | None = None,
 ) -> Answer: ...
 def draw(

@@ -118,6 +118,11 @@ def text(field: str, value: Exact) -> str:
     return str(_native.number(field, value))
 
 
+def optional_text(field: str, value: Exact | None) -> str | None:
+    """As :func:`text`, where something is given."""
+    return None if value is None else text(field, value)
+
+
 def range_text(field: str, value: Range) -> str:
     """A closed range as the library reads it."""
     if isinstance(value, str):
@@ -129,6 +134,11 @@ def range_text(field: str, value: Range) -> str:
     return f"{text(field, lo)}..{text(field, hi)}"
 
 
+def optional_range(field: str, value: Range | None) -> str | None:
+    """As :func:`range_text`, where something is given."""
+    return None if value is None else range_text(field, value)
+
+
 def written(field: str, value: Any) -> str:
     """A value as the text that it prints, which the library can read.
 
@@ -138,15 +148,15 @@ def written(field: str, value: Any) -> str:
         Halves of surrogate pairs, which no text has, and integers of more digits than Python writes.
     """
     try:
-        own = str(value)
-        own.encode()
+        printed = str(value)
+        printed.encode()
     except ValueError:
         raise KickdriftError(
             field,
             ascii(value) if isinstance(value, str) else shown(value),
             "write a number or a text of some hundred characters",
         ) from None
-    return own
+    return printed
 
 
 def items(field: str, value: Any, remedy: str) -> list[Any]:
@@ -224,7 +234,7 @@ def duration(field: str, value: Exact, unit: str, molecular: bool = True) -> Fra
     """
     words = value.rstrip() if isinstance(value, str) else ""
     named = words[-2:] in _UNITS
-    own = words[-2:] if named else unit
+    named_unit = words[-2:] if named else unit
     if named and unit not in _UNITS:
         raise KickdriftError(field, words, f"the system's steps are in {unit or 'no unit'}: give time_unit='fs' or so")
     step = rational(field, words[:-2] if named else value)
@@ -233,7 +243,7 @@ def duration(field: str, value: Exact, unit: str, molecular: bool = True) -> Fra
     if molecular and not named and step * _UNITS[unit] > _BELIEVED:
         remedy = f"is {_decimal(step)} {unit}, which no molecule bears: name the unit, as '{_decimal(step)}fs'"
         raise KickdriftError(field, str(value), remedy)
-    return step if own == unit else step * _UNITS[own] / _UNITS[unit]
+    return step if named_unit == unit else step * _UNITS[named_unit] / _UNITS[unit]
 
 
 def rational(field: str, value: Exact) -> Fraction:
@@ -319,18 +329,18 @@ def doubles(field: str, value: npt.ArrayLike) -> npt.NDArray[np.float64]:
     if _is_frozen(value):
         return value
     try:
-        own = np.asarray(value)
-        if own.dtype.kind == "c" or (own.dtype.kind == "O" and any(isinstance(x, complex) for x in own.flat)):
+        array = np.asarray(value)
+        if array.dtype.kind == "c" or (array.dtype.kind == "O" and any(isinstance(x, complex) for x in array.flat)):
             raise KickdriftError(field, "complex entries", "give real numbers")
-        own = np.array(own, dtype=np.float64, order="C")
+        array = np.array(array, dtype=np.float64, order="C")
     except (TypeError, ValueError, OverflowError) as cause:
         if isinstance(cause, KickdriftError):
             raise
         raise _no_doubles(field, value) from None
-    if not np.isfinite(own).all():
-        where = ", ".join(str(int(n)) for n in np.argwhere(~np.isfinite(own))[0])
+    if not np.isfinite(array).all():
+        where = ", ".join(str(int(n)) for n in np.argwhere(~np.isfinite(array))[0])
         raise KickdriftError(field, f"an entry that is not finite, at [{where}]", "give finite numbers")
-    return frozen(own)
+    return frozen(array)
 
 
 def _no_doubles(field: str, value: Any) -> KickdriftError:

@@ -49,10 +49,12 @@ class _Sum:
     @property
     def journal(self) -> Journal | None:
         """That of all of them."""
-        own = [each for force in self.forces if (each := journal_of(force)) is not None]
-        if not own or len(own) < len(self.forces):
+        journals = [each for force in self.forces if (each := journal_of(force)) is not None]
+        if not journals or len(journals) < len(self.forces):
             return None
-        return replace(own[0], names=("sum", np.asarray(self.less), *(name for each in own for name in each.names)))
+        return replace(
+            journals[0], names=("sum", np.asarray(self.less), *(name for each in journals for name in each.names))
+        )
 
     def smooth(self, positions: Doubles, reach: float) -> Force:
         """Where one of them jumps, so does the sum: each as it is about these positions."""
@@ -180,28 +182,28 @@ def monodromy(
     KickdriftError
         An unknown ``about``, or no orbit found.
     """
-    own = list(forces.values())
+    pulls = list(forces.values())
     period = common_tick(steps)
     if about == "minimum":
-        half = compose(own, steps, at, held, difference, still=True, progress=progress)
+        half = compose(pulls, steps, at, held, difference, still=True, progress=progress)
         values = eigenvalues(half.matrix, half.struck, 0.0)
         why = "about the minimum a system of its Hessians is proven"
         return Monodromy(about, frozen(at.copy()), 0.0, period, frozen(half.matrix), 0.0, *values, None, why, time_unit)
     if about != "orbit":
         raise KickdriftError("about", about, "choose orbit or minimum")
     free = held.frame(at)
-    balances = [((free @ (free.T @ (force(at).ravel() / held.root))) * held.root).reshape(at.shape) for force in own]
-    every = _Sum(own)
+    balances = [((free @ (free.T @ (force(at).ravel() / held.root))) * held.root).reshape(at.shape) for force in pulls]
+    every = _Sum(pulls)
     total, error = hessian(every, at, held.masses, difference)
     stiffness = total + held.curvature(every(at), at)
     firm = free @ firmed(free.T @ stiffness @ free)
 
     def lent(share: float) -> tuple[Sequence[Force], Sequence[Fraction]]:
-        pairs = zip(own, balances, strict=True)
+        pairs = zip(pulls, balances, strict=True)
         return [_Sum([force], (1 - share) * balance) for force, balance in pairs], steps
 
     def shorter(share: float) -> tuple[Sequence[Force], Sequence[Fraction]]:
-        return own, [Fraction(share) * step for step in steps]
+        return pulls, [Fraction(share) * step for step in steps]
 
     found, part, _ = _followed(_Family(lent, held, difference, firm, progress), at, 0, 1.0)
     if found is None:
@@ -235,15 +237,19 @@ def monodromy(
         if held.distances:
             struck, frames = plain(half, steps, held, ahead)
             motions = [rigid_motions(sides[end], masses, rotations=not is_boxed) for end in ("positions", "turned")]
-            rigid = [np.linalg.lstsq(own, motion, rcond=None)[0] for own, motion in zip(frames, motions, strict=True)]
+            rigid = [
+                np.linalg.lstsq(frame, motion, rcond=None)[0] for frame, motion in zip(frames, motions, strict=True)
+            ]
             sides = {} if keep else {"rigid": np.array(rigid)}
             masses = root = np.ones(half.first.shape[1])
         potentials, accuracy = along(struck, dict(zip(forces, steps, strict=True)), root, ahead)
         if is_boxed and not keep and not held.distances:
-            weight, notes = np.outer(root, root), []
+            weight = np.outer(root, root)
+            # The system of the minimum says it once; a note for every kick would repeat that.
+            unread: list[str] = []
             for name, (step, kicks) in potentials.items():
-                free = [off_the_mesh(own / weight, moved, name, accuracy, notes) * weight for own in kicks]
-                potentials[name] = (step, np.array(free))
+                cleaned = [off_the_mesh(kick / weight, moved, name, accuracy, unread) * weight for kick in kicks]
+                potentials[name] = (step, np.array(cleaned))
     except KickdriftError as refused:
         return Monodromy(*measured, None, str(refused), time_unit, found.drift)
     made = System.along_orbit(masses, potentials, accuracy=accuracy, time_unit=time_unit, keep_rigid=keep, **sides)
@@ -297,7 +303,7 @@ def _followed(family: _Family, at: Doubles, halvings: int, near: float) -> tuple
         return ways[-1], np.polyfit(lengths, np.array(three), len(ways))
 
     first = (_newton(family, 0.5**k, at) for k in range(halvings, 8))
-    found = next((own for own in first if own.residual <= _ARRIVED), None)
+    found = next((orbit for orbit in first if orbit.residual <= _ARRIVED), None)
     if found is None or found.share == 1:
         return found, float(found is not None), np.inf
     known = [np.append(0.0, at), np.append(found.share, found.positions)]
@@ -317,14 +323,14 @@ def _followed(family: _Family, at: Doubles, halvings: int, near: float) -> tuple
         there[1:] = held.drift(last[1:].reshape(at.shape), held.root * (there - last)[1:], 1.0)[0].ravel()
         there[0] = 1.0 if is_last else there[0]
         found = found_from(there, None if is_last else moved(there - last, weight**2))
-        own = last if found is None else np.append(found.share, found.positions)
-        off = size(own - there, weight) / size(there - last, weight)
+        reached = last if found is None else np.append(found.share, found.positions)
+        off = size(reached - there, weight) / size(there - last, weight)
         if found is None or off > 1:
             stretch, is_refused = ahead / length if is_last else ahead / length / 3, is_refused or is_last
         elif is_last:
             return found, 1.0, np.inf
         else:
-            known.append(own)
+            known.append(reached)
             # Off by the square of how far ahead.
             stretch, is_refused = min(2.0, (_OFF / max(off, 1e-300)) ** 0.5), False
     fold = np.inf
@@ -342,4 +348,4 @@ def _followed(family: _Family, at: Doubles, halvings: int, near: float) -> tuple
         if found is None:
             break
         known.insert(place + (top > -length), np.append(found.share, found.positions))
-    return None, max(float(own[0]) for own in known), fold
+    return None, max(float(orbit[0]) for orbit in known), fold

@@ -36,56 +36,56 @@ def axes(ax: Axes | None) -> Axes:
 
 def tongues(rows: Sequence[Mapping[str, Any]], ax: Axes | None) -> Axes:
     """Bars from edge to edge in s, up to 4 unless all begin beyond."""
-    own = axes(ax)
+    canvas = axes(ax)
     end = 1.15 * max(row["lower"]["hi"] for row in rows) if rows else 4.0
     for place, row in enumerate(rows):
         lo = row["lower"]["lo"]
         hi = end if row["upper"] is None else row["upper"]["hi"]
         # A line about each bar: a tongue thinner than a pixel shows all the same.
         colour = FAMILIES[(row["a"] or 0) % len(FAMILIES)]
-        own.barh(place, hi - lo, left=lo, color=colour, edgecolor=colour, linewidth=1.2)
+        canvas.barh(place, hi - lo, left=lo, color=colour, edgecolor=colour, linewidth=1.2)
     # Beyond s = 4 the fast clock alone is unstable.
     if any(row["lower"]["lo"] < 4 for row in rows):
-        own.set_xlim(0, 4.2)
-    own.set_yticks(range(len(rows)), [f"{row['p']}/{row['q']}, m = {row['m']}" for row in rows])
-    own.set_xlabel(r"$s = h_1^2 \lambda_1$")
-    return own
+        canvas.set_xlim(0, 4.2)
+    canvas.set_yticks(range(len(rows)), [f"{row['p']}/{row['q']}, m = {row['m']}" for row in rows])
+    canvas.set_xlabel(r"$s = h_1^2 \lambda_1$")
+    return canvas
 
 
 def closings(rows: Sequence[Mapping[str, Any]], ax: Axes | None) -> Axes:
     """A point a closing, with its ratio and label."""
-    own = axes(ax)
+    canvas = axes(ax)
     from matplotlib.ticker import LogLocator, NullFormatter
 
     for row in rows:
         at = tuple((row[name]["lo"] + row[name]["hi"]) / 2 for name in ("rho", "s"))
-        own.plot(*at, "o", markersize=4, color=COLOURS["coexistence"])
+        canvas.plot(*at, "o", markersize=4, color=COLOURS["coexistence"])
         words = f"{row['p']}/{row['q']}, m = {row['m']}"
-        own.annotate(words, at, xytext=(4, 3), textcoords="offset points", fontsize=7)
-    own.set_xscale("log")
-    own.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-    own.xaxis.set_major_formatter("{x:g}")
-    own.xaxis.set_minor_formatter(NullFormatter())
-    own.set_xlabel(r"$\rho = \lambda_2/\lambda_1$")
-    own.set_ylabel(r"$s = h_1^2 \lambda_1$")
-    return own
+        canvas.annotate(words, at, xytext=(4, 3), textcoords="offset points", fontsize=7)
+    canvas.set_xscale("log")
+    canvas.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    canvas.xaxis.set_major_formatter("{x:g}")
+    canvas.xaxis.set_minor_formatter(NullFormatter())
+    canvas.set_xlabel(r"$\rho = \lambda_2/\lambda_1$")
+    canvas.set_ylabel(r"$s = h_1^2 \lambda_1$")
+    return canvas
 
 
 def comparison(rows: Sequence[Mapping[str, Any]], ax: Axes | None) -> Axes:
     """A point a disagreement, a colour each kind of it."""
-    own = axes(ax)
+    canvas = axes(ax)
     on_grid = any("h1" in row for row in rows)
     points: dict[str, list[tuple[float, float]]] = {}
     for row in rows:
         at = (row["h1"], row["h2"]) if on_grid else (row["s"], f"{row['p']}/{row['q']}")
         points.setdefault(row["offence"] or "tan criterion", []).append((rounded(at[0]), rounded(at[1])))
     for colour, (offence, where) in zip(cycle(FAMILIES), sorted(points.items()), strict=False):
-        own.plot(*zip(*where, strict=True), ".", markersize=4, color=colour, label=offence)
+        canvas.plot(*zip(*where, strict=True), ".", markersize=4, color=colour, label=offence)
     if points:
-        own.legend()
-    own.set_xlabel("$h_1$" if on_grid else r"$s = h_1^2 \lambda_1$")
-    own.set_ylabel("$h_2$" if on_grid else "$h_2/h_1$")
-    return own
+        canvas.legend()
+    canvas.set_xlabel("$h_1$" if on_grid else r"$s = h_1^2 \lambda_1$")
+    canvas.set_ylabel("$h_2$" if on_grid else "$h_2/h_1$")
+    return canvas
 
 
 def rounded(exact: str) -> float:
@@ -93,54 +93,45 @@ def rounded(exact: str) -> float:
     return float(Number(exact))
 
 
-def intervals(rows: Sequence[Mapping[str, Any]], ax: Axes | None) -> Axes:
+def intervals(edges: npt.NDArray[np.float64], verdicts: npt.NDArray[np.object_], ax: Axes | None) -> Axes:
     """Stretches of the outer step: stable, unstable, not told."""
-    own = axes(ax)
+    canvas = axes(ax)
     colours = {"stable": COLOURS["safe"], "unstable": COLOURS["unstable"]}
-    for verdict in dict.fromkeys(row["verdict"] for row in rows):
-        parts = [(row["lo"], row["hi"] - row["lo"]) for row in rows if row["verdict"] == verdict]
-        own.broken_barh(parts, (0, 1), color=colours.get(verdict, COLOURS["grey"]), label=verdict)
-    own.set_yticks([])
-    own.set_xlabel("outer step")
-    own.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, frameon=False)
-    return own
+    for verdict in dict.fromkeys(verdicts):
+        lo, hi = edges[verdicts == verdict].T
+        parts = list(zip(lo, hi - lo, strict=True))
+        canvas.broken_barh(parts, (0, 1), color=colours.get(verdict, COLOURS["grey"]), label=verdict)
+    canvas.set_yticks([])
+    canvas.set_xlabel("outer step")
+    canvas.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, frameon=False)
+    return canvas
 
 
 def run(document: Mapping[str, Any], ax: Axes | None) -> Axes:
     """The amplitude over time, and the growth that was predicted."""
-    own, series = axes(ax), document["series"]
+    canvas, series = axes(ax), document["series"]
     time = np.array([sample["time"] for sample in series])
     amplitude = np.array([sample["amplitude"] for sample in series])
-    own.plot(time, amplitude, color=FAMILIES[0], linewidth=0.8, label="amplitude")
+    canvas.plot(time, amplitude, color=FAMILIES[0], linewidth=0.8, label="amplitude")
     rate = document["growth_rate_predicted"]
     if rate:
         predicted = amplitude[-1] * np.exp(rate * (time - time[-1]))
-        own.plot(time, predicted, "--", color=COLOURS["grey"], linewidth=1.2, label="predicted growth")
-        own.set_yscale("log")
-        own.legend()
-    own.set_xlabel("time")
-    own.set_ylabel("amplitude")
-    return own
+        canvas.plot(time, predicted, "--", color=COLOURS["grey"], linewidth=1.2, label="predicted growth")
+        canvas.set_yscale("log")
+        canvas.legend()
+    canvas.set_xlabel("time")
+    canvas.set_ylabel("amplitude")
+    return canvas
 
 
-def curves(rows: Sequence[Mapping[str, Any]], ax: Axes | None) -> Axes:
+def curves(points: Mapping[tuple[int, int], npt.NDArray[np.float64]], ax: Axes | None) -> Axes:
     """One line a family."""
-    own = axes(ax)
-    for (a, _), (h1, h2) in _families(rows).items():
-        own.plot(h1, h2, color=FAMILIES[a % len(FAMILIES)], linewidth=0.8)
-    own.set_xlabel("$h_1$")
-    own.set_ylabel("$h_2$")
-    return own
-
-
-def _families(rows: Sequence[Mapping[str, Any]]) -> dict[tuple[int, int], tuple[list[float], list[float]]]:
-    found: dict[tuple[int, int], tuple[list[float], list[float]]] = {}
-    for row in rows:
-        own = found.setdefault((row["a"], row["b"]), ([], []))
-        for point in row["points"]:
-            own[0].append(point["h1"])
-            own[1].append(point["h2"])
-    return found
+    canvas = axes(ax)
+    for (a, _), family in points.items():
+        canvas.plot(*family.T, color=FAMILIES[a % len(FAMILIES)], linewidth=0.8)
+    canvas.set_xlabel("$h_1$")
+    canvas.set_ylabel("$h_2$")
+    return canvas
 
 
 def verdicts(
@@ -151,7 +142,7 @@ def verdicts(
     ax: Axes | None,
 ) -> Axes:
     """An image of verdicts over the (h1, h2) plane: what grows, edges and closings in their colours on white."""
-    own = axes(ax)
+    canvas = axes(ax)
     from matplotlib.colors import ListedColormap
     from matplotlib.patches import Patch
 
@@ -159,48 +150,48 @@ def verdicts(
     kinds = ["elliptic", *shown]
     kind = np.array([kinds.index(name.rstrip("+-")) for name in names])[codes]
     colours = ListedColormap(["white", *(COLOURS[name] for name in shown)])
-    _image(own, h1, h2, kind, cmap=colours, vmin=-0.5, vmax=3.5)
+    _image(canvas, h1, h2, kind, cmap=colours, vmin=-0.5, vmax=3.5)
     there = {name for number, name in enumerate(kinds) if (kind == number).any()}
     found = [Patch(color=COLOURS[name], label=words) for name, words in shown.items() if name in there]
     if found:
-        own.legend(handles=found, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=len(found), frameon=False)
-    return own
+        canvas.legend(handles=found, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=len(found), frameon=False)
+    return canvas
 
 
 def growth(
     h1: npt.NDArray[np.float64], h2: npt.NDArray[np.float64], rates: npt.NDArray[np.float64], ax: Axes | None
 ) -> Axes:
     """An image of growth rates over the (h1, h2) plane, with a bar of colours."""
-    own = axes(ax)
+    canvas = axes(ax)
     from matplotlib.colors import ListedColormap
 
-    image = _image(own, h1, h2, rates, cmap=ListedColormap(GROWTH), norm="log")
-    if own.figure is not None:
-        own.figure.colorbar(image, ax=own, label="growth rate")
-    return own
+    image = _image(canvas, h1, h2, rates, cmap=ListedColormap(GROWTH), norm="log")
+    if canvas.figure is not None:
+        canvas.figure.colorbar(image, ax=canvas, label="growth rate")
+    return canvas
 
 
 def _image(
-    own: Axes, h1: npt.NDArray[np.float64], h2: npt.NDArray[np.float64], values: npt.NDArray[Any], **how: Any
+    canvas: Axes, h1: npt.NDArray[np.float64], h2: npt.NDArray[np.float64], values: npt.NDArray[Any], **how: Any
 ) -> Any:
     halves = [(x[-1] - x[0]) / max(len(x) - 1, 1) / 2 or 0.5 for x in (h1, h2)]
     extent = (h1[0] - halves[0], h1[-1] + halves[0], h2[0] - halves[1], h2[-1] + halves[1])
-    own.set_xlabel("$h_1$")
-    own.set_ylabel("$h_2$")
-    return own.imshow(values.T, origin="lower", extent=extent, aspect="auto", interpolation="nearest", **how)
+    canvas.set_xlabel("$h_1$")
+    canvas.set_ylabel("$h_2$")
+    return canvas.imshow(values.T, origin="lower", extent=extent, aspect="auto", interpolation="nearest", **how)
 
 
 _PUBLISHED, _NOT, _PROVEN = "the same, beyond what is published", "not to be recommended", "unstable, proven"
 
 
-def _bars(own: Axes, place: int, parts: Sequence[tuple[float, float, str]]) -> None:
+def _bars(canvas: Axes, place: int, parts: Sequence[tuple[float, float, str]]) -> None:
     """A row of bars, each kind once in the legend."""
     colours = {_PUBLISHED: COLOURS["caution"], _NOT: _BEYOND, _PROVEN: COLOURS["unstable"]}
     for lo, hi, kind in parts:
         if lo < hi:
-            seen = kind in own.get_legend_handles_labels()[1]
+            seen = kind in canvas.get_legend_handles_labels()[1]
             colour = colours.get(kind, COLOURS["safe"])
-            own.barh(place, hi - lo, left=lo, color=colour, height=0.68, label="" if seen else kind)
+            canvas.barh(place, hi - lo, left=lo, color=colour, height=0.68, label="" if seen else kind)
 
 
 def advice(document: Mapping[str, Any], ax: Axes | None) -> Axes:
@@ -208,7 +199,7 @@ def advice(document: Mapping[str, Any], ax: Axes | None) -> Axes:
 
     Proven for the band, the same beyond what is published, not advised, unstable.
     """
-    own = axes(ax)
+    canvas = axes(ax)
     schemes = document["schemes"]
     rows = [row for row in document["rows"] if row["scheme"] == 1]
     published = _published(document)
@@ -224,17 +215,17 @@ def advice(document: Mapping[str, Any], ax: Axes | None) -> Axes:
         unstable = {(row[f"{which}_lower"]["lo"], (row[f"{which}_upper"] or {"hi": right})["hi"])
                     for which in _INTERVALS if row[f"{which}_lower"] and (alone or row[f"{which}_upper"])}  # fmt: skip
         parts = [(0.0, least, "proven stable, all periods in the band"), (least, edge, _PUBLISHED), (edge, right, _NOT)]
-        _bars(own, place, parts + [(*ends, _PROVEN) for ends in sorted(unstable)])
+        _bars(canvas, place, parts + [(*ends, _PROVEN) for ends in sorted(unstable)])
     for number, step in enumerate(outer):
-        own.axvline(step, color=COLOURS["ink"], linewidth=0.9, label="" if number else "the schemes' steps")
+        canvas.axvline(step, color=COLOURS["ink"], linewidth=0.9, label="" if number else "the schemes' steps")
     if schemes[0]["safe"] is not None:
         safe = float(Fraction(schemes[0]["safe"]))
-        own.axvline(safe, color=COLOURS["ink"], linestyle="--", linewidth=0.9, label="recommended")
-    own.set_yticks(range(len(rows)), [row["mode"] for row in rows])
-    own.set_xlim(0, right)
-    own.set_xlabel("outer step" if "plain_time" in document["input"] else "outer step (fs)")
-    own.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, frameon=False)
-    return own
+        canvas.axvline(safe, color=COLOURS["ink"], linestyle="--", linewidth=0.9, label="recommended")
+    canvas.set_yticks(range(len(rows)), [row["mode"] for row in rows])
+    canvas.set_xlim(0, right)
+    canvas.set_xlabel("outer step" if "plain_time" in document["input"] else "outer step (fs)")
+    canvas.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, frameon=False)
+    return canvas
 
 
 def _published(document: Mapping[str, Any]) -> float:
@@ -249,38 +240,38 @@ def _published(document: Mapping[str, Any]) -> float:
 
 def system_advice(document: Mapping[str, Any], ax: Axes | None) -> Axes:
     """Bars over the outer step, a row a scheme: proven, the first unstable interval; the scheme's own step."""
-    own, rows = axes(ax), document["rows"]
+    canvas, rows = axes(ax), document["rows"]
     right = 1.12 * max(max(float(Fraction(row["outer"])), row["first_upper"] or 0.0) for row in rows)
     for place, row in enumerate(rows):
         edge = row["band_edge"] or 0.0
         parts = [(0.0, edge, "proven stable, all periods in the band"), (edge, right, _NOT)]
         parts += [] if row["first"] is None else [(row["first"]["lo"], row["first_upper"] or right, _PROVEN)]
-        _bars(own, place, parts)
+        _bars(canvas, place, parts)
         step = float(Fraction(row["outer"]))
         name = "" if place else "the schemes' steps"
-        own.plot([step, step], [place - 0.4, place + 0.4], color=COLOURS["ink"], linewidth=1.2, label=name)
-    own.set_yticks(range(len(rows)), [f"{float(Fraction(row['outer'])):g} fs, {row['status']}" for row in rows])
-    own.set_xlim(0, right)
-    own.set_xlabel("outer step (fs)")
-    own.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, frameon=False)
-    return own
+        canvas.plot([step, step], [place - 0.4, place + 0.4], color=COLOURS["ink"], linewidth=1.2, label=name)
+    canvas.set_yticks(range(len(rows)), [f"{float(Fraction(row['outer'])):g} fs, {row['status']}" for row in rows])
+    canvas.set_xlim(0, right)
+    canvas.set_xlabel("outer step (fs)")
+    canvas.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, frameon=False)
+    return canvas
 
 
 def ladder(document: Mapping[str, Any], ax: Axes | None) -> Axes:
     """Growth over the multiples of the first scheme, and twice that without steps: where the steps add little."""
-    own, without = axes(ax), document["growth_without_steps"]
+    canvas, without = axes(ax), document["growth_without_steps"]
     rungs = [rung for rung in document["ladder"] if rung["scheme"] == 1 and rung["growth_rate"] is not None]
     outer = [float(Fraction(rung["outer"])) for rung in rungs]
     middle = [(rung["growth_rate"]["lo"] + rung["growth_rate"]["hi"]) / 2 for rung in rungs]
-    own.plot(outer, middle, "o-", color=COLOURS["ink"], linewidth=0.8, markersize=3, label="with the steps")
+    canvas.plot(outer, middle, "o-", color=COLOURS["ink"], linewidth=0.8, markersize=3, label="with the steps")
     if without is not None:
         most = document["times"] * without["lo"]
-        own.axhspan(0, most, color=COLOURS["safe"], linewidth=0, label="at most twice the forces' own growth")
-    own.set_xlabel("outer step (fs)")
-    own.set_ylabel("growth (1/ps)")
-    own.set_ylim(bottom=0)
-    own.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, frameon=False)
-    return own
+        canvas.axhspan(0, most, color=COLOURS["safe"], linewidth=0, label="at most twice the forces' own growth")
+    canvas.set_xlabel("outer step (fs)")
+    canvas.set_ylabel("growth (1/ps)")
+    canvas.set_ylim(bottom=0)
+    canvas.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, frameon=False)
+    return canvas
 
 
 _INTERVALS = ("first", "inside", "below", "above")
@@ -288,13 +279,13 @@ _INTERVALS = ("first", "inside", "below", "above")
 
 def multipliers(values: npt.NDArray[np.complex128], ax: Axes | None) -> Axes:
     """Multipliers in the complex plane with the unit circle."""
-    own = axes(ax)
+    canvas = axes(ax)
     turn = np.linspace(0, 2 * np.pi, 361)
-    own.plot(np.cos(turn), np.sin(turn), color=COLOURS["grey"], linewidth=0.8)
+    canvas.plot(np.cos(turn), np.sin(turn), color=COLOURS["grey"], linewidth=0.8)
     outside = np.abs(values) > 1 + 1e-9
-    own.plot(values.real[~outside], values.imag[~outside], "o", markersize=3, color=COLOURS["ink"])
-    own.plot(values.real[outside], values.imag[outside], "o", markersize=4, color=FAMILIES[3])
-    own.set_aspect("equal")
-    own.set_xlabel("Re")
-    own.set_ylabel("Im")
-    return own
+    canvas.plot(values.real[~outside], values.imag[~outside], "o", markersize=3, color=COLOURS["ink"])
+    canvas.plot(values.real[outside], values.imag[outside], "o", markersize=4, color=FAMILIES[3])
+    canvas.set_aspect("equal")
+    canvas.set_xlabel("Re")
+    canvas.set_ylabel("Im")
+    return canvas

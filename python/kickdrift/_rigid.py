@@ -31,7 +31,7 @@ def rigid_motions(positions: Doubles, masses: Doubles, rotations: bool = True) -
 def is_held(matrices: Sequence[Doubles], translations: Doubles, error: float) -> bool:
     """Whether a field holds the atoms, be it that of one potential that another one balances: of a translation, forces
     that know no place leave what differences leave."""
-    return any(norm(own @ translations) > max(10 * error, 1e-9 * norm(own)) for own in matrices)
+    return any(norm(matrix @ translations) > max(10 * error, 1e-9 * norm(matrix)) for matrix in matrices)
 
 
 #: A mesh holds less of a stiffness along translations:

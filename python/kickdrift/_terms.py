@@ -42,8 +42,8 @@ class Jet:
         return Jet(value, first[:, None] * self.slope, bend)
 
     def root(self) -> Jet:
-        own = np.sqrt(self.value)
-        return self.through(own, 0.5 / own, -0.25 / own**3)
+        root = np.sqrt(self.value)
+        return self.through(root, 0.5 / root, -0.25 / root**3)
 
 
 def angle(up: Jet, along: Jet) -> Jet:
@@ -74,12 +74,12 @@ def _apart(where: Doubles, start: int, end: int) -> _Vector:
     """From one atom of each term to another, of positions (t, atoms, 3)."""
     count, size = len(where), where[0].size
 
-    def of(axis: int) -> Jet:
+    def component(axis: int) -> Jet:
         slope = np.zeros((count, size))
         slope[:, 3 * end + axis], slope[:, 3 * start + axis] = 1.0, -1.0
         return Jet(where[:, end, axis] - where[:, start, axis], slope, np.zeros((count, size, size)))
 
-    return of(0), of(1), of(2)
+    return component(0), component(1), component(2)
 
 
 def _length(where: Doubles) -> Jet:
@@ -110,14 +110,14 @@ def _periodic(q: Doubles, n: Doubles, phase: Doubles, k: Doubles) -> tuple[Doubl
 def _ryckaert(q: Doubles, *c: Doubles) -> tuple[Doubles, Doubles]:
     """A sum of c_n cosⁿ(q - π)."""
     x, y = -np.cos(q), -np.sin(q)
-    first = sum(n * own * x ** (n - 1) for n, own in enumerate(c) if n > 0)
-    second = sum(n * (n - 1) * own * x ** (n - 2) for n, own in enumerate(c) if n > 1)
+    first = sum(n * coefficient * x ** (n - 1) for n, coefficient in enumerate(c) if n > 0)
+    second = sum(n * (n - 1) * coefficient * x ** (n - 2) for n, coefficient in enumerate(c) if n > 1)
     return np.asarray(-first * y), np.asarray(second * y**2 - first * x)
 
 
 _Law = Callable[..., tuple[Doubles, Doubles]]
 
-#: Of each force its internal coordinate, and E' and E'' of that with the parameters behind its atoms.
+#: Each force's internal coordinate, and E' and E'' of that with the parameters behind its atoms.
 LAWS: dict[str, tuple[Callable[[Doubles], Jet], _Law]] = {
     "HarmonicBondForce": (_length, _harmonic),
     "HarmonicAngleForce": (_bend, _harmonic),
@@ -133,11 +133,11 @@ def blocks(kind: str, atoms: Sequence[Sequence[int]], parameters: Doubles, posit
     """The coordinates (t, c) of a force's terms and their second derivatives (t, c, c); not finite where a term has
     none, as a straight angle."""
     coordinate, law = LAWS[kind]
-    own, found = np.array(atoms, dtype=np.int64), []
+    places, found = np.array(atoms, dtype=np.int64), []
     with np.errstate(divide="ignore", invalid="ignore"):
-        for start in range(0, len(own), _TOGETHER):
+        for start in range(0, len(places), _TOGETHER):
             part = slice(start, start + _TOGETHER)
-            q = coordinate(positions[own[part]])
+            q = coordinate(positions[places[part]])
             first, second = law(q.value, *parameters[part].T)
             found.append(q.through(q.value, first, second).bend)
-    return (3 * own[:, :, None] + np.arange(3)).reshape(len(own), -1), np.concatenate(found)
+    return (3 * places[:, :, None] + np.arange(3)).reshape(len(places), -1), np.concatenate(found)

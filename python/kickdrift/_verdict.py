@@ -378,8 +378,8 @@ def verdicts(
         shapes = ", ".join(str(array.shape) for array in arrays)
         raise KickdriftError("lambda1, lambda2, h1, h2", shapes, f"give shapes that broadcast: {error}") from None
     # Floats that are no doubles stay themselves, for as doubles they print other digits.
-    short = [own.dtype.kind == "f" and own.dtype != np.float64 for own in arrays]
-    values = [list(own.ravel()) if odd else own.ravel().tolist() for own, odd in zip(arrays, short, strict=True)]
+    short = [array.dtype.kind == "f" and array.dtype != np.float64 for array in arrays]
+    values = [list(array.ravel()) if odd else array.ravel().tolist() for array, odd in zip(arrays, short, strict=True)]
     positions = [_positions(array, shape) for array in arrays]
     try:
         code, tier = _native.verdicts(values, positions, budget, threads, shown(progress, "pairs"))
@@ -410,5 +410,5 @@ def _array(field: str, value: Any) -> npt.NDArray[Any]:
 
 
 def _positions(array: npt.NDArray[Any], shape: tuple[int, ...]) -> npt.NDArray[np.int64]:
-    own = np.arange(array.size, dtype=np.int64).reshape(array.shape)
-    return np.ascontiguousarray(np.broadcast_to(own, shape)).ravel()
+    places = np.arange(array.size, dtype=np.int64).reshape(array.shape)
+    return np.ascontiguousarray(np.broadcast_to(places, shape)).ravel()

@@ -17,6 +17,7 @@ from kickdrift._groups import Groups
 from kickdrift._hessians import Force
 from kickdrift._monodromy import Monodromy
 from kickdrift._numbers import Exact, doubles, duration, positive
+from kickdrift._periods import listed
 from kickdrift._progress import Progress
 from kickdrift._rigid import Doubles
 from kickdrift._system import System
@@ -91,6 +92,13 @@ def system(
     return _groups(atoms, groups).system(minimize, width, progress, symmetric, longest)
 
 
+def given(atoms: Any, steps: Any, made: Mapping[str, Any]) -> tuple[System, Any]:
+    """The system that advice is asked for, and the schemes asked about beside its own."""
+    if "groups" not in made:
+        raise KickdriftError("groups", None, "of ASE give groups={'fast': (calculator, '0.5fs'), ...}")
+    return system(atoms, **made), listed(steps)
+
+
 def oscillations(
     atoms: Any,
     groups: Mapping[str, tuple[Any, Exact]],
@@ -142,10 +150,10 @@ def _groups(atoms: Any, groups: Mapping[str, tuple[Any, Exact]]) -> Groups:
         raise KickdriftError("atoms", f"{len(atoms.constraints)} constraints", "constraints are not handled here")
     forces: dict[str, Force] = {}
     steps: list[Fraction] = []
-    for name, own in groups.items():
-        if not (isinstance(own, tuple | list) and len(own) == 2):
-            raise KickdriftError(f"groups[{name}]", type(own).__name__, "give (calculator, step), as (EMT(), '0.5fs')")
-        calculator, step = own
+    for name, pair in groups.items():
+        if not (isinstance(pair, tuple | list) and len(pair) == 2):
+            raise KickdriftError(f"groups[{name}]", type(pair).__name__, "give (calculator, step), as (EMT(), '0.5fs')")
+        calculator, step = pair
         forces[name] = _force(atoms, calculator, f"groups[{name}]")
         steps.append(duration(f"groups[{name}]", step, "fs"))
     return Groups(
@@ -164,19 +172,19 @@ def _groups(atoms: Any, groups: Mapping[str, tuple[Any, Exact]]) -> Groups:
 
 def _force(atoms: Any, calculator: Any, field: str) -> Force:
     if isinstance(calculator, tuple) and len(calculator) == 2:
-        dear, cheap = (_force(atoms, own, field) for own in calculator)
+        dear, cheap = (_force(atoms, part, field) for part in calculator)
         return lambda positions: dear(positions) - cheap(positions)
     if isinstance(calculator, type) or not hasattr(calculator, "get_forces"):
         name = calculator.__name__ if isinstance(calculator, type) else shown(calculator)
         raise KickdriftError(field, name, "give a calculator of ASE's, as EMT(), or a pair of them")
-    own = Atoms(numbers=atoms.numbers, positions=atoms.positions, cell=atoms.cell, pbc=atoms.pbc)
-    own.set_masses(atoms.get_masses())
-    own.set_initial_charges(atoms.get_initial_charges())
-    own.calc = calculator
+    copy = Atoms(numbers=atoms.numbers, positions=atoms.positions, cell=atoms.cell, pbc=atoms.pbc)
+    copy.set_masses(atoms.get_masses())
+    copy.set_initial_charges(atoms.get_initial_charges())
+    copy.calc = calculator
 
-    def of(positions: Doubles) -> Doubles:
-        own.set_positions(positions)
+    def force(positions: Doubles) -> Doubles:
+        copy.set_positions(positions)
         # From eV/Å to u Å/fs².
-        return np.asarray(own.get_forces() * units.fs**2, dtype=np.float64)
+        return np.asarray(copy.get_forces() * units.fs**2, dtype=np.float64)
 
-    return of
+    return force

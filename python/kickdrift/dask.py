@@ -188,10 +188,10 @@ def survey(store: str | PathLike[str], *, client: Any = None, max_sum: int, rho:
     def template(group: zarr.Group) -> None:
         for total in range(2, max_sum + 1):
             count = sum(total - 1 for p in range(1, total) if gcd(p, total) == 1)
-            own = group.create_group(f"sum-{total:05}")
-            _array(own, "tongue", np.int64, (count,), None, ("tongue",))[:] = np.arange(count)
+            table = group.create_group(f"sum-{total:05}")
+            _array(table, "tongue", np.int64, (count,), None, ("tongue",))[:] = np.arange(count)
             for name, kind in _COLUMNS.items():
-                _array(own, name, kind, (count,), (count,), ("tongue",))
+                _array(table, name, kind, (count,), (count,), ("tongue",))
 
     missing = _prepare(store, "survey", question, max_sum - 1, template, {})
     _run(client, _survey_part, [(fspath(store), question["rho"], part) for part in missing])
@@ -286,7 +286,7 @@ def _scan_part(task: tuple[str, Callable[[Any, Any], System], str, list[str], in
     found = [make(x, y).decide(budget=budget) for y in ys]
     group = zarr.open_group(store, mode="r+", use_consolidated=False)
     for name in ("stable", "proven", "growth_rate"):
-        _own(group, name)[part] = np.array([getattr(own, name) for own in found])
+        _own(group, name)[part] = np.array([getattr(tongue, name) for tongue in found])
     _own(group, "done")[part] = True
     return len(found)
 

@@ -7,7 +7,7 @@ their own, ``"4fs"``. An instance is all that is needed: this module imports no 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from fractions import Fraction
@@ -23,6 +23,7 @@ from kickdrift._errors import KickdriftError
 from kickdrift._groups import Groups
 from kickdrift._monodromy import Monodromy
 from kickdrift._numbers import Exact, duration, positive, simplest
+from kickdrift._periods import listed
 from kickdrift._progress import Progress
 from kickdrift._rigid import Doubles
 from kickdrift._system import System
@@ -119,6 +120,13 @@ def system(
     """
     groups, notes, width = _groups(lmp, respa, timestep, difference)
     return groups.system(minimize, width, progress, True, longest, notes)
+
+
+def given(lmp: Any, steps: Any, made: Mapping[str, Any]) -> tuple[System, Any]:
+    """The system that advice is asked for, and the schemes asked about beside its own."""
+    if "respa" not in made:
+        raise KickdriftError("respa", None, "of LAMMPS give respa='run_style respa ...', the line with its levels")
+    return system(lmp, **made), listed(steps)
 
 
 def oscillations(
@@ -263,7 +271,7 @@ class _Style:
                     keys[-1][1].append(word)
             # Behind the level of inner and middle stand their cutoffs.
             most = {"inner": 1, "middle": 1}
-            split = [(key, own[: most.get(key)], own[most.get(key, len(own)) :]) for key, own in keys]
+            split = [(key, words[: most.get(key)], words[most.get(key, len(words)) :]) for key, words in keys]
             made = _Style(loops, [(key, [int(level) for level in levels], rest) for key, levels, rest in split])
         except (IndexError, ValueError):
             remedy = "give the line as 'run_style respa 2 8 bond 1 pair 2', numbers for its variables"
@@ -339,8 +347,8 @@ class _Levels:
         Not a number where LAMMPS has none: outside of fixed walls, where it would lose atoms for good, and where it
         refuses, as of a bond that is torn.
         """
-        lo, hi = (np.array(own) for own in self.lmp.extract_box()[:2])
-        fixed = np.array([[side == "f" for side in own] for own in self.sides]).T
+        lo, hi = (np.array(corner) for corner in self.lmp.extract_box()[:2])
+        fixed = np.array([[side == "f" for side in sides] for sides in self.sides]).T
         out = (fixed[0] & (where < lo)) | (fixed[1] & (where > hi)) | ~np.isfinite(where)
         self._ask(most)
         try:

@@ -21,7 +21,8 @@ import numpy.typing as npt
 
 from kickdrift._errors import KickdriftError, needs, shown
 from kickdrift._numbers import Exact, doubles, frozen, number, text
-from kickdrift._system import System, SystemVerdict, _at, _compressed
+from kickdrift._system import System, SystemVerdict
+from kickdrift._system_hessians import compressed, reference
 
 __all__ = ["Waves", "waves"]
 
@@ -72,7 +73,7 @@ class Waves:
         path : str or path
             Its end names the form, one of meshio's: ``.vtu``, ``.vtk``, ``.xdmf``.
         verdict : SystemVerdict
-            Of this system, unstable: ``waves.system.decide()``.
+            That on this system, unstable: ``waves.system.decide()``.
 
         Returns
         -------
@@ -105,8 +106,8 @@ class Waves:
         fields = {}
         for count, mode in enumerate(modes, 1):
             for name in ("mode", "quadrature") if any(mode["quadrature"]) else ("mode",):
-                fields[f"{name}_{count}"] = own = np.zeros(len(self.points))
-                own[self.nodes] = mode["shape" if name == "mode" else name]
+                fields[f"{name}_{count}"] = field = np.zeros(len(self.points))
+                field[self.nodes] = mode["shape" if name == "mode" else name]
         flat = np.pad(self.points, ((0, 0), (0, 3 - self.points.shape[1])))
         kind = next(name for name, count in _SIMPLICES.items() if count == self.cells.shape[1])
         mesh = meshio.Mesh(flat, [(kind, self.cells)], point_data=fields, cell_data={"substeps": [self.substeps]})
@@ -138,14 +139,14 @@ def waves(
         A file that meshio reads, as Gmsh's ``.msh`` of version 2.2 or 4.1; its lines, triangles or tetrahedra, those of
         the highest dimension. Or points, shape (nodes, 1 to 3), and cells, shape (elements, 2 to 4), counted from 0.
     speed, density : float or array, shape (elements,)
-        Of the wave, and of what it moves through; the unit of time follows from these.
+        The speed of the wave, and the density of the medium; the unit of time follows from these.
     scheme : "lts" or "avi"
         Leapfrog with local time steps, where small elements make all their nodes fine; or asynchronous variational
         integrators, where they kick with a step of their own.
     substeps : int or sequence of int
         In a step of the level above, the coarsest level first: 2 or 3, or (2, 2); of AVI one number above 1.
     step : Exact, optional
-        Of the coarse elements, rational.
+        The step of the coarse elements, rational.
     courant : float
         In place of a step: its share of ``cfl``.
     fixed : "boundary", sequence of nodes, or None
@@ -176,23 +177,23 @@ def waves(
     (True, True)
     """
     points, cells = _simplices(mesh)
-    factors = [int(own) for own in (substeps if isinstance(substeps, Sequence) else [substeps])]
+    factors = [int(factor) for factor in (substeps if isinstance(substeps, Sequence) else [substeps])]
     if not factors or min(factors) < 1:
         raise KickdriftError("substeps", shown(substeps), "give 1 or more, or one number for each level")
     if scheme not in ("lts", "avi"):
         raise KickdriftError("scheme", shown(scheme), "give lts or avi")
     if scheme == "avi" and (len(factors) > 1 or factors[0] < 2):
         raise KickdriftError("substeps", shown(substeps), "of avi give one number above 1: two classes of elements")
-    celerity, rho = (_each(name, own, len(cells)) for name, own in (("speed", speed), ("density", density)))
+    celerity, rho = (_each(name, value, len(cells)) for name, value in (("speed", speed), ("density", density)))
     volume, gradients = _gradients(points, cells)
     count = cells.shape[1]
     gram = np.einsum("eix,ejx->eij", gradients, gradients)
     stiffness = (rho * celerity**2 * volume)[:, None, None] * gram
-    # Of one element: its lumped mass is the same at each node.
+    # One element by itself has the same lumped mass at each node.
     fastest = celerity * np.sqrt(count * np.linalg.eigvalsh(gram)[:, -1])
     limits = 2 / fastest
     # The finest level has the smallest element, with all substeps; what does not need a level's substeps is not in it.
-    own = np.ones(len(cells), dtype=np.int64)
+    steps = np.ones(len(cells), dtype=np.int64)
     coarsest = prod(factors) * limits.min()
     levels, taken = [], 1
     for factor in factors:
@@ -200,8 +201,8 @@ def waves(
         fine = limits * taken < coarsest * (1 - 1e-9)
         levels.append((fine, factor))
         taken *= factor
-        own[fine] = taken
-    cfl = float((limits * own).min())
+        steps[fine] = taken
+    cfl = float((limits * steps).min())
     still = _fixed(fixed, cells, len(points))
     used = np.unique(cells)
     nodes = np.setdiff1d(used, still)
@@ -211,13 +212,15 @@ def waves(
     place[nodes] = np.arange(len(nodes))
     masses = np.bincount(cells.ravel(), np.repeat(rho * volume / count, count), len(points))[nodes]
     document: dict[str, Any] = {"title": title} if title else {}
-    document["masses"] = _at("masses")
+    document["masses"] = reference("masses")
     arrays = {"masses": doubles("masses", masses)}
     dt = text("step", step) if step is not None else text("courant", _share(courant, cfl))
     potentials = []
-    for k, (few, factor) in enumerate([(own > 1, factors[0]), (own == 1, 1)] if scheme == "avi" else [(own > 0, 1)]):
+    for k, (few, factor) in enumerate(
+        [(steps > 1, factors[0]), (steps == 1, 1)] if scheme == "avi" else [(steps > 0, 1)]
+    ):
         matrix = _assembled(place[cells[few]], stiffness[few], len(nodes))
-        at, matrices = _compressed(k, "stiffness", matrix, 1e-12) or ({}, {})
+        at, matrices = compressed(k, "stiffness", matrix, 1e-12) or ({}, {})
         arrays |= matrices
         potentials.append({"step": text("step", Fraction(dt) / factor), "stiffness": at})
     if scheme != "avi":
@@ -225,10 +228,10 @@ def waves(
         for level, (fine, factor) in enumerate(levels):
             moving = place[np.unique(cells[fine])]
             arrays[f"fine{level}"] = doubles("fine", moving[moving >= 0].astype(np.float64))
-            document["levels"].append({"fine": _at(f"fine{level}"), "substeps": factor})
+            document["levels"].append({"fine": reference(f"fine{level}"), "substeps": factor})
     document["potentials"] = potentials
     system = System(MappingProxyType(document), arrays)
-    return Waves(system, frozen(limits), frozen(own), cfl, frozen(nodes), frozen(points), frozen(cells))
+    return Waves(system, frozen(limits), frozen(steps), cfl, frozen(nodes), frozen(points), frozen(cells))
 
 
 def _share(courant: float, cfl: float) -> Fraction:
@@ -272,10 +275,10 @@ def _simplices(mesh: Any) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int64
 
 
 def _each(name: str, value: npt.ArrayLike, count: int) -> npt.NDArray[np.float64]:
-    own = doubles(name, value)
-    if own.ndim > 1 or (own.ndim == 1 and len(own) != count) or not np.all(own > 0):
+    values = doubles(name, value)
+    if values.ndim > 1 or (values.ndim == 1 and len(values) != count) or not np.all(values > 0):
         raise KickdriftError(name, shown(value), f"give one positive number, or {count} of them, one for each element")
-    return np.broadcast_to(own, (count,))
+    return np.broadcast_to(values, (count,))
 
 
 def _gradients(
@@ -303,13 +306,17 @@ def _fixed(fixed: Any, cells: npt.NDArray[np.int64], count: int) -> npt.NDArray[
         faces = np.concatenate([np.delete(cells, i, axis=1) for i in range(cells.shape[1])])
         faces, times = np.unique(np.sort(faces, axis=1), axis=0, return_counts=True)
         return np.unique(faces[times == 1])
-    own = np.asarray(fixed)
-    if own.ndim != 1 or own.dtype.kind not in "iu" or (len(own) and not (own.min() >= 0 and own.max() < count)):
+    nodes = np.asarray(fixed)
+    if (
+        nodes.ndim != 1
+        or nodes.dtype.kind not in "iu"
+        or (len(nodes) and not (nodes.min() >= 0 and nodes.max() < count))
+    ):
         raise KickdriftError("fixed", shown(fixed), f"give nodes, 0 to {count - 1}")
-    return own.astype(np.int64)
+    return nodes.astype(np.int64)
 
 
-def _assembled(places: npt.NDArray[np.int64], own: npt.NDArray[np.float64], size: int) -> Any:
+def _assembled(places: npt.NDArray[np.int64], matrices: npt.NDArray[np.float64], size: int) -> Any:
     """The sparse sum of the elements' matrices, without rows and columns whose place is -1."""
     try:
         from scipy import sparse
@@ -318,4 +325,4 @@ def _assembled(places: npt.NDArray[np.int64], own: npt.NDArray[np.float64], size
     count = places.shape[1]
     rows, columns = np.repeat(places, count, axis=1).ravel(), np.tile(places, (1, count)).ravel()
     moving = (rows >= 0) & (columns >= 0)
-    return sparse.coo_matrix((own.ravel()[moving], (rows[moving], columns[moving])), shape=(size, size)).tocsr()
+    return sparse.coo_matrix((matrices.ravel()[moving], (rows[moving], columns[moving])), shape=(size, size)).tocsr()

@@ -2,7 +2,7 @@
 
 Units: lengths in nm, times in ps, energies in kJ/mol, so stiffness over mass is 1/ps². A step is exact: a text with its
 unit as ``"0.5fs"``, a quantity of OpenMM, which is read as it is printed (4.4 fs is 22/5 fs, whatever the double), or a
-number of ps. Of an integrator's step, a double, the simplest rational is taken that rounding makes it of.
+number of ps. An integrator's step is a double: the simplest rational is taken that rounds to it.
 
 What decides is the dynamics of small deviations. Friction and noise of Langevin integrators, barostats and thermostats
 are left out, and ``notes`` say so.
@@ -18,12 +18,13 @@ from typing import Any
 
 import numpy as np
 
-from kickdrift._advise import Advice
-from kickdrift._bands import Atoms, Band, Bands
+from kickdrift import _covered, _forcefield, _lanczos, _sparse_held
+from kickdrift._advice import Advice
 from kickdrift._cost import LARGEST, LONGEST, SOUGHT, Work, seconds_of
 from kickdrift._errors import KickdriftError
 from kickdrift._held import Held
 from kickdrift._hessians import hessian, seen, usable
+from kickdrift._levels import Atoms, Band, Bands, groups_of
 from kickdrift._minimum import free
 from kickdrift._monodromy import FOLLOWED, Followed, Monodromy, unbalanced
 from kickdrift._numbers import Exact, positive
@@ -129,13 +130,13 @@ def system(
 
     >>> import openmm
     >>> import kickdrift.openmm
-    >>> own, bond = openmm.System(), openmm.HarmonicBondForce()
+    >>> springs, bond = openmm.System(), openmm.HarmonicBondForce()
     >>> walls = openmm.CustomExternalForce("5*(x^2+y^2+z^2)")
     >>> walls.setForceGroup(1)
     >>> for atom in range(2):
-    ...     _ = own.addParticle(1.0), walls.addParticle(atom)
-    >>> _ = bond.addBond(0, 1, 0.0, 1000.0), own.addForce(bond), own.addForce(walls)
-    >>> found = kickdrift.openmm.system(own, [[0, 0, 0], [0, 0, 0]], steps={0: "1/200", 1: "1/50"})
+    ...     _ = springs.addParticle(1.0), walls.addParticle(atom)
+    >>> _ = bond.addBond(0, 1, 0.0, 1000.0), springs.addForce(bond), springs.addForce(walls)
+    >>> found = kickdrift.openmm.system(springs, [[0, 0, 0], [0, 0, 0]], steps={0: "1/200", 1: "1/50"})
     >>> found.decide().stable
     True
     """
@@ -159,7 +160,7 @@ def system(
     work.begin(longest, progress is True, _instead(system))
     chosen = None if places is None else [3 * atom + axis for atom in places for axis in range(3)]
     if places is not None:
-        constraints = [own for own in constraints if own[0] in places or own[1] in places]
+        constraints = [pair for pair in constraints if pair[0] in places or pair[1] in places]
     notes = _notes(system, integrator, clocks)
     if minimize and engine.rounding:
         where = relaxed(engine, where, chosen)
@@ -174,14 +175,16 @@ def system(
     measured = _measured(engine, clocks, (where, constraints, chosen), frame, difference, shown(progress))
     moving = free(held, where, chosen, engine.is_boxed and chosen is None)
     notes += _unbalanced(engine.masses, measured, moving, chosen)
-    accuracy = max(seen(own.matrix, own.error, own.name, f"{difference:g} nm", engine.smoother) for own in measured)
+    accuracy = max(
+        seen(level.matrix, level.error, level.name, f"{difference:g} nm", engine.smoother) for level in measured
+    )
     kept = np.arange(engine.count) if places is None else np.asarray(places, dtype=np.intp)
     title = f"{engine.count} particles, ps and nm"
     if chosen is not None:
         notes.append(f"only {len(kept)} of {engine.count} atoms move")
         if constraints:
             # Distances to atoms that stand still: in coordinates along the constraints, which have no names.
-            levels = {own.name: (own.step, own.matrix) for own in measured}
+            levels = {level.name: (level.step, level.matrix) for level in measured}
             return System.from_hessians(
                 np.ones(frame.shape[1]),
                 levels,
@@ -194,13 +197,13 @@ def system(
     keep = chosen is not None or _is_held(system, where, engine.masses, frame, measured)
     root = np.sqrt(np.repeat(engine.masses[kept], 3))
     labels, elements, bonded = names_of(masses_of(system), topology, engine.moving[kept])
-    full = {own.name: own.full for own in measured}
+    full = {level.name: level.full for level in measured}
     if system.usesPeriodicBoundaryConditions() and not keep:
         moved = rigid_motions(where[kept], engine.masses[kept], rotations=False)
-        full = {name: off_the_mesh(own, moved, name, accuracy, notes) for name, own in full.items()}
+        full = {name: off_the_mesh(matrix, moved, name, accuracy, notes) for name, matrix in full.items()}
     made = System.from_hessians(
         engine.masses[kept],
-        {own.name: (own.step, full[own.name] * np.outer(root, root)) for own in measured},
+        {level.name: (level.step, full[level.name] * np.outer(root, root)) for level in measured},
         positions=where[kept],
         accuracy=accuracy,
         title=title,
@@ -208,8 +211,8 @@ def system(
         labels=labels,
         elements=elements,
         bonded=bonded,
-        forces={own.name: own.force[kept] for own in measured},
-        constraints=[own[:2] for own in constraints] or None,
+        forces={level.name: level.force[kept] for level in measured},
+        constraints=[pair[:2] for pair in constraints] or None,
         notes=notes,
         periodic=system.usesPeriodicBoundaryConditions(),
         keep_rigid=keep,
@@ -221,14 +224,16 @@ def system(
         # Where no orbit is found at once, others are not sought unasked: that takes ten times as long.
         return _oscillations(system, where, integrator, steps, "orbit", False, difference, unit=None)
 
-    own = list(levels_of(clocks))
-    work = Work.of_period(columns, own, dear, "orbit")
-    return replace(made, _orbit=Followed.beside(work, notes, find, f"{float(max(own)) * 1000:g} fs", "nm"))
+    scheme = list(levels_of(clocks))
+    work = Work.of_period(columns, scheme, dear, "orbit")
+    return replace(made, _orbit=Followed.beside(work, notes, find, f"{float(max(scheme)) * 1000:g} fs", "nm"))
 
 
 def _instead(system: Any) -> str:
     """What to ask where dense Hessians are too much."""
-    ewald = any(isinstance(own, mm.NonbondedForce) and own.getNonbondedMethod() in EWALD for own in system.getForces())
+    ewald = any(
+        isinstance(force, mm.NonbondedForce) and force.getNonbondedMethod() in EWALD for force in system.getForces()
+    )
     sparse = "" if ewald or system.getNumConstraints() else ", sparse=True"
     return f"{_BANDS}{sparse}, or atoms=[...] and minimize=False"
 
@@ -252,8 +257,6 @@ def _sparse(
     integrator: Any,
 ) -> System:
     """Two levels with sparse Hessians, at the place where OpenMM's minimizer ends."""
-    from kickdrift import _forcefield
-
     if minimize:
         where = led_downhill(engine, where, tolerance=_REST)
     potentials: dict[str, tuple[Exact, Any]] = {}
@@ -307,7 +310,7 @@ class _Later:
         return bands(self.system, constraints=constraints, hmr=hmr, **self.asked).advise(steps, **rest)
 
 
-def given(own: Any, steps: Any, made: Mapping[str, Any]) -> tuple[System | _Later, Any]:
+def given(source: Any, steps: Any, made: Mapping[str, Any]) -> tuple[System | _Later, Any]:
     """The system of a ``System`` or a ``Simulation``, and the schemes asked about beside its own.
 
     It is asked for its bands where dense Hessians are too large, where they take long and no ``longest`` allows it, or
@@ -316,38 +319,38 @@ def given(own: Any, steps: Any, made: Mapping[str, Any]) -> tuple[System | _Late
     arguments = dict(made)
     if isinstance(steps, Mapping):
         arguments["steps"], steps = steps, ()
-    if isinstance(own, app.Simulation):
-        state = own.context.getState(getPositions=True)
-        arguments = {"positions": state.getPositions(asNumpy=True), "topology": own.topology} | arguments
+    if isinstance(source, app.Simulation):
+        state = source.context.getState(getPositions=True)
+        arguments = {"positions": state.getPositions(asNumpy=True), "topology": source.topology} | arguments
         if "steps" not in arguments:
-            arguments.setdefault("integrator", own.integrator)
-        own = own.system
-    if not isinstance(own, mm.System):
-        raise KickdriftError("periods", type(own).__name__, "of OpenMM give a Simulation, or a System with positions=")
+            arguments.setdefault("integrator", source.integrator)
+        source = source.system
+    if not isinstance(source, mm.System):
+        raise KickdriftError(
+            "periods", type(source).__name__, "of OpenMM give a Simulation, or a System with positions="
+        )
     if "positions" not in arguments:
         raise KickdriftError("positions", None, "give the positions of the particles, nm")
     plain = ("positions", "topology", "integrator", "steps", "minimize")
     asked: dict[str, Any] = {key: arguments[key] for key in plain if key in arguments}
     is_plain = arguments.keys() <= asked.keys() | {"progress", "longest"}
     most = LARGEST if "longest" in arguments else _DENSE
-    if is_plain and (3 * len(moving_of(own)) > most or _is_held_fast(own, asked)):
-        return _Later(own, asked), steps
-    return system(own, arguments.pop("positions"), **arguments), steps
+    if is_plain and (3 * len(moving_of(source)) > most or _is_held_fast(source, asked)):
+        return _Later(source, asked), steps
+    return system(source, arguments.pop("positions"), **arguments), steps
 
 
-def _is_held_fast(own: Any, asked: Mapping[str, Any]) -> bool:
+def _is_held_fast(system: Any, asked: Mapping[str, Any]) -> bool:
     """Whether there are constraints, and not two levels of forces on what they leave free: rigid water has no bonds."""
-    if not own.getNumConstraints():
+    if not system.getNumConstraints():
         return False
-    levels = levels_of(clocks_of(own, asked.get("integrator"), asked.get("steps")))
-    return len(levels) != 2 or not _terms_of(own, levels[min(levels)])
+    levels = levels_of(clocks_of(system, asked.get("integrator"), asked.get("steps")))
+    return len(levels) != 2 or not _terms_of(system, levels[min(levels)])
 
 
-def _terms_of(own: Any, groups: Sequence[int]) -> int:
+def _terms_of(system: Any, groups: Sequence[int]) -> int:
     """How many terms the forces of some groups have; a force that is not counted has some."""
-    from kickdrift import _forcefield
-
-    forces = [force for force in own.getForces() if force.getForceGroup() in groups and not is_bath(force)]
+    forces = [force for force in system.getForces() if force.getForceGroup() in groups and not is_bath(force)]
     return sum(len(_forcefield._terms(force)) if _forcefield.are_bonded([force]) else 1 for force in forces)
 
 
@@ -398,8 +401,10 @@ def _unbalanced(
     kept = np.arange(3 * len(masses)) if chosen is None else np.asarray(chosen)
     root = np.sqrt(np.repeat(masses, 3))[kept]
     # What constraints take up moves nothing, nor does the pull of a mesh at a box as a whole.
-    along = {own.name: (frame @ (frame.T @ (own.force.ravel()[kept] / root)) * root).reshape(-1, 3) for own in measured}
-    total = np.sum([own.matrix for own in measured], axis=0)
+    along = {
+        level.name: (frame @ (frame.T @ (level.force.ravel()[kept] / root)) * root).reshape(-1, 3) for level in measured
+    }
+    total = np.sum([level.matrix for level in measured], axis=0)
     follow = "Ask oscillations(...) for what grows about that orbit, as a run shows it"
     return unbalanced(along, norm(total), masses[kept[::3] // 3], "kJ/mol/nm", follow)
 
@@ -407,8 +412,8 @@ def _unbalanced(
 def _is_held(system: Any, where: Doubles, masses: Doubles, frame: Doubles, measured: Sequence[_Level]) -> bool:
     """Whether there are no rigid motions: an outer field holds the atoms."""
     moved = frame.T @ rigid_motions(where, masses, rotations=False)
-    matrices = [own.matrix for own in measured]
-    error = sum(own.error for own in measured)
+    matrices = [level.matrix for level in measured]
+    error = sum(level.error for level in measured)
     field = any(isinstance(force, mm.CustomExternalForce) for force in system.getForces())
     # The mesh of a box's Ewald sum knows places, a little.
     return field or (not system.usesPeriodicBoundaryConditions() and is_held(matrices, np.asarray(moved), error))
@@ -466,9 +471,9 @@ def oscillations(
     --------
     >>> import openmm
     >>> import kickdrift.openmm
-    >>> own, walls = openmm.System(), openmm.CustomExternalForce("200*(x^2+y^2+z^2)")
-    >>> _ = own.addParticle(1.0), walls.addParticle(0), own.addForce(walls)
-    >>> kickdrift.openmm.oscillations(own, [[0, 0, 0]], steps={0: "1/100"}, about="minimum")
+    >>> springs, walls = openmm.System(), openmm.CustomExternalForce("200*(x^2+y^2+z^2)")
+    >>> _ = springs.addParticle(1.0), walls.addParticle(0), springs.addForce(walls)
+    >>> kickdrift.openmm.oscillations(springs, [[0, 0, 0]], steps={0: "1/100"}, about="minimum")
     Monodromy(about the minimum: stable, an estimate)
     """
     return _oscillations(
@@ -505,7 +510,7 @@ def _oscillations(
     engine = resumed(engine_of(system), where, resume)
     held = Held(engine.masses, constraints_of(system))
     # The mean of the groups, each of which is asked alone.
-    dear = sum(seconds_of(engine.force(mask_of(own)), where) for own in levels.values()) / len(levels)
+    dear = sum(seconds_of(engine.force(mask_of(groups)), where) for groups in levels.values()) / len(levels)
     work = Work.of_period(3 * engine.count, list(levels), dear, about, SOUGHT if minimize else 0)
     work.begin(longest, progress is True, _BANDS)
     if minimize:
@@ -577,9 +582,9 @@ def bands(
     --------
     >>> import openmm
     >>> import kickdrift.openmm
-    >>> own, walls = openmm.System(), openmm.CustomExternalForce("200*(x^2+y^2+z^2)")
-    >>> _ = own.addParticle(1.0), walls.addParticle(0), own.addForce(walls)
-    >>> found = kickdrift.openmm.bands(own, [[0, 0, 0]], steps={0: "1/100"}, minimize=False)
+    >>> springs, walls = openmm.System(), openmm.CustomExternalForce("200*(x^2+y^2+z^2)")
+    >>> _ = springs.addParticle(1.0), walls.addParticle(0), springs.addForce(walls)
+    >>> found = kickdrift.openmm.bands(springs, [[0, 0, 0]], steps={0: "1/100"}, minimize=False)
     >>> round(found.levels[0].period), found.advise().status
     (314, 'safe')
     """
@@ -596,7 +601,7 @@ def bands(
         where, how = near_minimum(engine, where, held, difference, is_small)
         notes.append(how)
     atoms = atoms_of(before, topology, where, engine.masses)
-    found = [_band(system, engine, held, where, own, atoms, difference) for own in levels_of(clocks).items()]
+    found = [_band(system, engine, held, where, level, atoms, difference) for level in levels_of(clocks).items()]
     return Bands(tuple(found), tuple(notes))
 
 
@@ -614,18 +619,18 @@ def _band(
     difference: float,
 ) -> Band:
     """The shortest period of the groups of one step."""
-    from kickdrift import _bands, _covered, _forcefield
-
     step, groups = level
     name = " + ".join(f"group {group}" for group in groups)
     force = engine.force(mask_of(groups))
-    own = [each for each in system.getForces() if each.getForceGroup() in groups and not moves_nothing(each)]
+    forces_of_level = [
+        each for each in system.getForces() if each.getForceGroup() in groups and not moves_nothing(each)
+    ]
     pairs = (each for each in system.getForces() if isinstance(each, mm.NonbondedForce))
     reciprocal = (each.getReciprocalSpaceForceGroup() for each in pairs)
-    bent, error = _bands.curvature(held, where, force(where)), 0.0
-    if known := _forcefield.are_bonded(own) and not any(group in groups for group in reciprocal):
+    bent, error = _sparse_held.curvature(held, where, force(where)), 0.0
+    if known := _forcefield.are_bonded(forces_of_level) and not any(group in groups for group in reciprocal):
         matrix, error = _forcefield.hessian(system, groups, where, DIFFERENCE / 10)
-        matrix, error = _bands.weighted(matrix, held.root) + bent, error / float(engine.masses.min())
+        matrix, error = _sparse_held.weighted(matrix, held.root) + bent, error / float(engine.masses.min())
         free = _covered.projected(matrix, held, where)
         modes = None if free is None else _covered.modes(free, atoms.kinds())
         if modes is not None:
@@ -637,10 +642,10 @@ def _band(
             row = int(np.diff(free.indptr).max(initial=0))
             error += _covered.ROUNDED * row * float(np.abs(matrix.data).max(initial=0.0)) if held.distances else 0.0
             most = modes.largest + modes.beyond + error if modes.molecules else 0.0
-            told = _bands.groups_of(modes, atoms)
+            told = groups_of(modes, atoms)
             return Band(name, step, modes.largest, most, "", 0, looked, told[0].name if told else "", told)
-    onto = _bands.projection(held, where)
-    product, steps, forces = _bands.by_differences(force, where, held.root, difference), _ASKED, 2
+    onto = _sparse_held.projection(held, where)
+    product, steps, forces = _lanczos.by_differences(force, where, held.root, difference), _ASKED, 2
     if known:
         product, steps, forces = (lambda vector: np.asarray((matrix - bent) @ vector)), _STORED, 0
 
@@ -648,9 +653,9 @@ def _band(
         vector = onto(vector)
         return onto(product(vector) + bent @ vector)
 
-    found = _bands.top(apply, where.size, steps)
+    found = _lanczos.top(apply, where.size, steps)
     if forces:
-        wide = _bands.by_differences(force, where, held.root, 2 * difference)
+        wide = _lanczos.by_differences(force, where, held.root, 2 * difference)
         error = float(np.linalg.norm(onto(wide(found.vector) - product(found.vector))))
     moving = np.linalg.norm(found.vector.reshape(-1, 3), axis=1)
     who = ", ".join(atoms.labels[n] for n in np.argsort(-moving)[:2] if moving[n] > moving.max() / 10)

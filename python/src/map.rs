@@ -4,9 +4,10 @@ use std::sync::atomic::AtomicBool;
 
 use kickdrift::error::{Result, filled};
 use kickdrift::format::Format;
-use kickdrift::map::{Band, Counters, Grid, Map as Task, Resources};
+use kickdrift::map::{Band, Counters, Grid, Growing, Map as Task, Resources};
 use kickdrift::number::Laurent;
 use kickdrift::question::{self, Question};
+use kickdrift::report::csv;
 use kickdrift::report::figure::file;
 use kickdrift::report::map::{MapTally, Rows, marked};
 use kickdrift::report::plane::{Chart, Colouring};
@@ -35,6 +36,14 @@ pub struct Map {
     asked: question::Map,
     grid: Grid,
     tally: MapTally,
+    parts: Vec<Part>,
+}
+
+/// A band without its verdicts and tiers.
+struct Part {
+    first: u64,
+    columns: usize,
+    growing: Vec<Growing>,
 }
 
 /// The first and the last multiplier of the columns and of the rows of a grid.
@@ -61,7 +70,7 @@ pub fn map<'py>(
 ) -> PyResult<(Map, Bound<'py, PyDict>)> {
     let (asked, grid) = asked(&stiffness, &steps, &ranges, products)?;
     let (map, arrays) = job::run(py, move |stopped| {
-        let mut map = Map { asked, grid, tally: MapTally::default() };
+        let mut map = Map { asked, grid, tally: MapTally::default(), parts: Vec::new() };
         let arrays = map.compute(threads.0, budget.0, stopped)?;
         Ok((map, arrays))
     })?;
@@ -90,7 +99,7 @@ fn asked(
 
 impl Map {
     fn compute(&mut self, threads: usize, budget: Option<u64>, stopped: &AtomicBool) -> Result<Arrays> {
-        let Map { asked, grid, tally } = self;
+        let Map { asked, grid, tally, parts } = self;
         let products = asked.products();
         let resources = Resources { threads, limits: limits(budget), stopped: Some(stopped), done: None };
         let (pairs, task) = (grid.pairs(), Task::of(grid).with(products).within(resources));
@@ -107,9 +116,23 @@ impl Map {
             tally.add(grid, &band);
             arrays.put(grid, first, &band);
             first += band.verdicts.len();
+            parts.push(Part { first: band.first, columns: band.columns, growing: band.growing });
             Ok(())
         })?;
         Ok(arrays)
+    }
+
+    /// The bands as they were decided, from the arrays.
+    fn bands<'a>(&'a self, verdicts: &'a [u8], tiers: &'a [u8]) -> impl Iterator<Item = Band> + 'a {
+        let rows = self.grid.shape().1;
+        let mut end = 0;
+        self.parts.iter().map(move |Part { first, columns, growing }| {
+            let pairs = end..end + columns * rows;
+            end = pairs.end;
+            let (verdicts, tiers) = (verdicts[pairs.clone()].to_vec(), tiers[pairs].to_vec());
+            let (growing, counters) = (growing.clone(), Counters::default());
+            Band { first: *first, columns: *columns, rows, verdicts, tiers, growing, counters }
+        })
     }
 }
 
@@ -176,18 +199,28 @@ impl Map {
         document.render(form(format)).map_err(|error| raised(&error))
     }
 
+    /// The pairs that are not plainly stable as CSV, from the arrays.
+    fn csv(&self, verdict: &Bound<'_, PyArray2<u8>>, tier: &Bound<'_, PyArray2<u8>>) -> PyResult<String> {
+        let (verdict, tier) = (verdict.readonly(), tier.readonly());
+        let (verdict, tier) = (verdict.as_slice()?, tier.as_slice()?);
+        let mut rows = Rows::new(&self.grid, self.asked.products());
+        let (columns, mut text) = (rows.columns(), Vec::new());
+        let written = csv::write_header(&mut text, &columns).and_then(|()| {
+            self.bands(verdict, tier).try_for_each(|band| {
+                let cells = marked(&self.grid, &band).map(|pair| rows.cells(&pair));
+                csv::write_rows(&mut text, &columns, cells)
+            })
+        });
+        written.map_err(|error| raised(&error))?;
+        Ok(String::from_utf8_lossy(&text).into_owned())
+    }
+
     /// The picture of the verdicts, from the arrays.
     fn svg(&self, verdict: &Bound<'_, PyArray2<u8>>, tier: &Bound<'_, PyArray2<u8>>) -> PyResult<String> {
         let (verdict, tier) = (verdict.readonly(), tier.readonly());
         let (verdict, tier) = (verdict.as_slice()?, tier.as_slice()?);
-        let rows = self.grid.shape().1;
         let mut chart = Chart::new(&self.grid, Colouring::Verdict);
-        let columns = self.grid.columns().0..;
-        for ((first, verdicts), tiers) in columns.zip(verdict.chunks(rows)).zip(tier.chunks(rows)) {
-            let (verdicts, tiers) = (verdicts.to_vec(), tiers.to_vec());
-            let (growing, counters) = (Vec::new(), Counters::default());
-            chart.add(&self.grid, &Band { first, columns: 1, rows, verdicts, tiers, growing, counters });
-        }
+        self.bands(verdict, tier).for_each(|band| chart.add(&self.grid, &band));
         let figure = chart.figure(&self.grid, &self.tally.counts, &[]).footed(&self.asked.foot());
         let bytes =
             file(figure, &self.asked.bare().command(), Format::Svg).map_err(|error| raised(&error))?;

@@ -77,8 +77,8 @@ def test_a_direct_force_grows_as_its_own_eigenvalues_say() -> None:
     beside = found.no_gradient
     assert beside is not None and found.local_steps is None
     # x'' = -(33 -+ 0.6 i) x, over the mass.
-    own = np.sqrt(complex(33.0, 0.6) * units.fs**2 / atoms.get_masses()[0]).imag
-    assert beside["without_steps"]["lo"] <= own <= beside["without_steps"]["hi"]
+    rate = np.sqrt(complex(33.0, 0.6) * units.fs**2 / atoms.get_masses()[0]).imag
+    assert beside["without_steps"]["lo"] <= rate <= beside["without_steps"]["hi"]
     assert beside["within_accuracy"]["lo"] <= found.growth_rate <= beside["within_accuracy"]["hi"]
     # |J - J'|/|J + J'| of diag(3, 3, 3) and a turn of 0.6.
     assert beside["asymmetries"] == pytest.approx([0, 0.6 * 2**0.5 / (3 * 3**0.5)], abs=1e-6)

@@ -38,8 +38,8 @@ def small_tasks(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture
 def cluster() -> LocalCluster:
-    with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as own:
-        yield own
+    with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as local:
+        yield local
 
 
 @pytest.mark.usefixtures("small_tasks")

@@ -15,11 +15,11 @@ MODULES = ("kickdrift.openmm", "kickdrift.ase", "kickdrift.lammps", "kickdrift.d
 
 def public() -> Iterator[tuple[str, Any]]:
     """All functions, classes and methods by name; properties are part of their class."""
-    own = [(name, getattr(kd, name)) for name in kd.__all__]
+    named = [(name, getattr(kd, name)) for name in kd.__all__]
     for path in MODULES:
         module = importlib.import_module(path)
-        own += [(f"{path}.{name}", getattr(module, name)) for name in module.__all__]
-    for name, value in own:
+        named += [(f"{path}.{name}", getattr(module, name)) for name in module.__all__]
+    for name, value in named:
         if inspect.isfunction(value):
             yield name, value
         elif inspect.isclass(value) and value.__module__.startswith("kickdrift."):

@@ -49,7 +49,7 @@ def of_engine(system: mm.System, found: Any, levels: Sequence[tuple[int, int]]) 
     return own_multipliers(system, found, levels, closed=1e-5)
 
 
-def agrees(found: Any, own: np.ndarray, proven: bool = True) -> None:
+def agrees(found: Any, measured: np.ndarray, proven: bool = True) -> None:
     """Verdicts are equal and rates within 2 %, as the engine's map has them; the verdict is proven, the rate in its
     bounds."""
     assert found.proven == proven, found.words
@@ -57,7 +57,7 @@ def agrees(found: Any, own: np.ndarray, proven: bool = True) -> None:
         lo, hi = found.growth_bounds
         assert found.stable == (hi == 0.0) and lo <= found.growth_rate <= hi
     # Rigid motions are defective eigenvalues at 1, which differences part by the root of their error.
-    firm = own[np.abs(own - 1) > 1e-2]
+    firm = measured[np.abs(measured - 1) > 1e-2]
     rate = np.log(np.abs(firm).max()) / float(found.period)
     if found.stable:
         # Differences leave 1e-6 of eigenvalues, and the root of that where two meet.
@@ -206,9 +206,9 @@ def dipeptide(**options: Any) -> tuple[mm.System, np.ndarray]:
 
 @pytest.mark.parametrize(
     ("options", "outer"),
-    [({}, own) for own in ("4", "5.03", "5.5")]
-    + [({"constraints": app.HBonds}, own) for own in ("6", "9.65")]
-    + [({"constraints": app.HBonds, "hydrogenMass": 3.024 * unit.amu}, own) for own in ("8", "8.53", "8.6")],
+    [({}, step) for step in ("4", "5.03", "5.5")]
+    + [({"constraints": app.HBonds}, step) for step in ("6", "9.65")]
+    + [({"constraints": app.HBonds, "hydrogenMass": 3.024 * unit.amu}, step) for step in ("8", "8.53", "8.6")],
 )
 def test_the_dipeptide_grows_as_the_engine_has_it(options: dict[str, Any], outer: str) -> None:
     system, positions = dipeptide(**options)

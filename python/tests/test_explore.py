@@ -46,8 +46,8 @@ def front(monkeypatch: pytest.MonkeyPatch) -> Front:
 
 def test_a_point_is_the_verdict() -> None:
     told = kd.explore(**FIGURE1).ask("point", h1="1/10", h2="3/10")
-    own = json.loads(kd.decide(**FIGURE1, h1="1/10", h2="3/10").to_json())
-    assert own.items() <= told.items()
+    verdict = json.loads(kd.decide(**FIGURE1, h1="1/10", h2="3/10").to_json())
+    assert verdict.items() <= told.items()
 
 
 def test_a_tile_comes_as_bytes_of_the_map(front: Front) -> None:
@@ -55,8 +55,8 @@ def test_a_tile_comes_as_bytes_of_the_map(front: Front) -> None:
     content, data = front.answer("a-1")
     assert (content["status"], content["type"], data[:4]) == (200, "application/octet-stream", b"KDT1")
     cells = np.frombuffer(data, np.uint8, offset=16).reshape(16, 16).T
-    own = kd.map(**FIGURE1, step="1/50", h1=("1/50", "16/50"), h2=("1/50", "16/50"))
-    assert ((cells & 3) == 1).tolist() == (~own.stable).tolist()
+    grid = kd.map(**FIGURE1, step="1/50", h1=("1/50", "16/50"), h2=("1/50", "16/50"))
+    assert ((cells & 3) == 1).tolist() == (~grid.stable).tolist()
 
 
 def test_files_of_the_page_are_answers_too(front: Front) -> None:

@@ -13,7 +13,7 @@ from openmm import app
 
 import kickdrift as kd
 import kickdrift.openmm as ko
-from kickdrift import _bands, _covered, _forcefield
+from kickdrift import _covered, _forcefield, _lanczos, _sparse_held
 from kickdrift._held import Held
 from kickdrift._hessians import hessian
 from kickdrift._openmm.forces import engine_of
@@ -35,7 +35,7 @@ def waters(side: int, method: str, switched: bool = False) -> tuple[mm.System, n
         atoms = [topology.addAtom(name, app.Element.getBySymbol(name[0]), residue) for name in ("O", "H1", "H2")]
         topology.addBond(atoms[0], atoms[1])
         topology.addBond(atoms[0], atoms[2])
-        first, across = (own / np.linalg.norm(own) for own in random.normal(size=(2, 3)))
+        first, across = (vector / np.linalg.norm(vector) for vector in random.normal(size=(2, 3)))
         second = across - across @ first * first
         second = -0.25 * first + 0.97 * second / np.linalg.norm(second)
         places += [corner, corner + 0.0957 * first, corner + 0.0957 * second]
@@ -54,8 +54,8 @@ def waters(side: int, method: str, switched: bool = False) -> tuple[mm.System, n
 
 def by_differences(system: mm.System, group: int, positions: np.ndarray, columns: list[int]) -> np.ndarray:
     """Not mass-weighted, at displacements so small that few pairs cross a cutoff."""
-    own = [force for force in system.getForces() if force.getForceGroup() == group]
-    force = _forcefield._alone(system, own)
+    forces = [force for force in system.getForces() if force.getForceGroup() == group]
+    force = _forcefield._alone(system, forces)
     return hessian(force, positions, np.ones(len(positions)), 2e-6, columns)[0]
 
 
@@ -68,9 +68,9 @@ def test_pairs_have_the_second_derivatives_that_differences_show(method: str, sw
     matrix, error = _forcefield.hessian(system, [SLOW], positions, 1e-5)
     columns = list(range(0, positions.size, 5))
     measured = by_differences(system, SLOW, positions, columns)
-    own = matrix.toarray()[np.ix_(columns, columns)]
+    formulas = matrix.toarray()[np.ix_(columns, columns)]
     # Forces of some 1e4 kJ/mol/nm are rounded at 1e-12 of themselves, the differences are 4e-6 wide.
-    assert np.abs(own - measured).max() < 0.02 and np.abs(measured).max() > 1e4
+    assert np.abs(formulas - measured).max() < 0.02 and np.abs(measured).max() > 1e4
     assert np.abs(matrix - matrix.T).max() < 1e-9 * np.abs(measured).max()
     assert error < 1e-3, "what the formulas leave out would be seen"
     assert matrix.nnz < 0.9 * positions.size**2 or method != "CutoffNonPeriodic"
@@ -111,7 +111,7 @@ def test_a_few_differences_give_the_hessian_of_all_bonded_terms() -> None:
     every = list(range(positions.size))
     for group in (0, SLOW):
         matrix, error = _forcefield.hessian(system, [group], positions, 1e-5)
-        force = _forcefield._alone(system, [own for own in system.getForces() if own.getForceGroup() == group])
+        force = _forcefield._alone(system, [each for each in system.getForces() if each.getForceGroup() == group])
         measured, rough = hessian(force, positions, np.ones(8), 1e-5, every)
         assert np.linalg.norm(matrix.toarray() - measured, 2) <= error + rough < 1e-3 * np.abs(measured).max()
 
@@ -157,7 +157,7 @@ def strand(count: int) -> tuple[Any, Held, np.ndarray]:
     for n in range(count):
         bonds.addBond(n, count + n, 0.1, 3e5)
     held = Held(masses, [(n, count + n, float(np.linalg.norm(where[n] - where[count + n]))) for n in range(count)])
-    return _bands.weighted(_forcefield.by_formulas([bonds, angles], where), held.root), held, where
+    return _sparse_held.weighted(_forcefield.by_formulas([bonds, angles], where), held.root), held, where
 
 
 @pytest.mark.parametrize("whole", [400, 60, 30])
@@ -193,7 +193,7 @@ def test_all_modes_of_all_molecules_are_those_of_the_dense_matrix() -> None:
     system, positions = waters(3, "NoCutoff")
     positions = positions + 1e-3 * np.random.default_rng(1).normal(size=positions.shape)
     matrix, _ = _forcefield.hessian(system, [0], positions, 1e-5)
-    weighted = _bands.weighted(matrix, np.sqrt(np.repeat([15.99943, 1.007947, 1.007947] * 27, 3)))
+    weighted = _sparse_held.weighted(matrix, np.sqrt(np.repeat([15.99943, 1.007947, 1.007947] * 27, 3)))
     found = _covered.modes(weighted, ["O", "H", "H"] * 27)
     exact = np.linalg.eigvalsh(weighted.toarray())
     assert found is not None and found.molecules == 27
@@ -207,11 +207,11 @@ def test_the_evaluations_do_not_grow_with_the_number_of_molecules() -> None:
     for side in (2, 4):
         system, positions = waters(side, "CutoffNonPeriodic")
         bonded = [force for force in system.getForces() if force.getForceGroup() == 0]
-        own, asked = _forcefield._alone(system, bonded), []
+        alone, asked = _forcefield._alone(system, bonded), []
 
-        def counted(at: np.ndarray, own: Any = own, asked: list[int] = asked) -> np.ndarray:
+        def counted(at: np.ndarray, alone: Any = alone, asked: list[int] = asked) -> np.ndarray:
             asked.append(1)
-            return own(at)
+            return alone(at)
 
         terms = [
             atoms
@@ -234,17 +234,17 @@ SKEW = [[0.93, 0, 0], [0.1, 0.97, 0], [-0.3, 0.25, 0.95]]
 
 def own_pairs(given: mm.NonbondedForce, cutoff: float) -> mm.CustomNonbondedForce:
     """Screened charges and Lennard-Jones as a force of one's own, cut off at once."""
-    own = mm.CustomNonbondedForce("138.9*q1*q2*exp(-r)/r + 4*sqrt(e1*e2)*(s^12 - s^6); s = 0.5*(s1+s2)/r")
+    custom = mm.CustomNonbondedForce("138.9*q1*q2*exp(-r)/r + 4*sqrt(e1*e2)*(s^12 - s^6); s = 0.5*(s1+s2)/r")
     for name in "qse":
-        own.addPerParticleParameter(name)
+        custom.addPerParticleParameter(name)
     for n in range(given.getNumParticles()):
-        own.addParticle(given.getParticleParameters(n))
+        custom.addParticle(given.getParticleParameters(n))
     for n in range(given.getNumExceptions()):
-        own.addExclusion(*given.getExceptionParameters(n)[:2])
-    own.setNonbondedMethod(own.CutoffPeriodic)
-    own.setCutoffDistance(cutoff)
-    own.setForceGroup(SLOW)
-    return own
+        custom.addExclusion(*given.getExceptionParameters(n)[:2])
+    custom.setNonbondedMethod(custom.CutoffPeriodic)
+    custom.setCutoffDistance(cutoff)
+    custom.setForceGroup(SLOW)
+    return custom
 
 
 @pytest.mark.parametrize(
@@ -279,7 +279,7 @@ def test_pairs_that_cross_the_cutoff_stay_on_their_side(
         system.addForce(own_pairs(system.getForce(place), float(r[chosen]) + 2e-5))
         system.removeForce(place)
     if box is not None:
-        system.setDefaultPeriodicBoxVectors(*[mm.Vec3(*own) for own in box])
+        system.setDefaultPeriodicBoxVectors(*[mm.Vec3(*edge) for edge in box])
     engine, columns = engine_of(system), list(range(0, positions.size, 6))
     force = engine.force(1 << SLOW)
     raw, before = hessian(lambda at: force(at), positions, engine.masses, ko.DIFFERENCE, columns)
@@ -308,10 +308,10 @@ def test_a_product_with_all_atoms_moved_sees_no_cutoff_either() -> None:
     engine = engine_of(system)
     force, held = engine.force(1 << SLOW), Held(engine.masses)
     vector = np.random.default_rng(2).normal(size=positions.size)
-    exact = _bands.weighted(_forcefield.hessian(system, [SLOW], positions, 1e-5)[0], held.root) @ vector
+    exact = _sparse_held.weighted(_forcefield.hessian(system, [SLOW], positions, 1e-5)[0], held.root) @ vector
     off = [
-        np.linalg.norm(_bands.by_differences(own, positions, held.root, ko.WIDE)(vector) - exact)
-        for own in (force, lambda at: force(at))
+        np.linalg.norm(_lanczos.by_differences(given, positions, held.root, ko.WIDE)(vector) - exact)
+        for given in (force, lambda at: force(at))
     ]
     # Second-order differences of 0.001 nm leave 1e-4 of a stiffness that turns within 0.1 nm.
     assert off[0] < 1e-3 * np.linalg.norm(exact) < 0.05 * off[1]
@@ -322,8 +322,8 @@ def test_sparse_and_dense_systems_have_one_first_unstable_step() -> None:
     steps = {0: "0.5fs", SLOW: "4fs"}
     where = at_rest(engine_of(system), positions, [], ko.DIFFERENCE)[0]
     both = [ko.system(system, where, steps=steps, sparse=sparse, minimize=False).decide() for sparse in (True, False)]
-    assert all(own.stable for own in both)
-    first, same = (own.data["measured"]["first_unstable"] for own in both)
+    assert all(verdict.stable for verdict in both)
+    first, same = (verdict.data["measured"]["first_unstable"] for verdict in both)
     # The dense step is enclosed in 1e-7 of itself, each for Hessians known to 1e-6.
     assert first["lo"] <= same["hi"] * (1 + 1e-5) and same["lo"] <= first["hi"] * (1 + 1e-5), (first, same)
 

@@ -42,8 +42,8 @@ def counted(monkeypatch: pytest.MonkeyPatch) -> Callable[[], int]:
         return force(self, positions)
 
     def since() -> int:
-        own, count[0] = count[0], 0
-        return own
+        asked, count[0] = count[0], 0
+        return asked
 
     monkeypatch.setattr(Forces, "__call__", call)
     return since
@@ -52,7 +52,7 @@ def counted(monkeypatch: pytest.MonkeyPatch) -> Callable[[], int]:
 def bits(system: kd.System, folder: Path) -> list[bytes]:
     """The file of a system and its arrays."""
     file = system.save(folder)
-    return [file.read_bytes(), *(own.tobytes() for _, own in sorted(system.arrays.items()))]
+    return [file.read_bytes(), *(array.tobytes() for _, array in sorted(system.arrays.items()))]
 
 
 def test_hessians_that_were_killed_go_on_and_are_the_same_to_the_last_bit(
@@ -146,7 +146,9 @@ def test_a_journal_cut_anywhere_keeps_its_whole_records(tmp_path: Path) -> None:
             made[0] += 1
             return array
 
-        found = [journal.of("array").kept(lambda own=own: make(own), float(k)) for k, own in enumerate(arrays)]
+        found = [
+            journal.under("array").kept(lambda array=array: make(array), float(k)) for k, array in enumerate(arrays)
+        ]
         return made[0], found
 
     path = tmp_path / "whole"
@@ -157,7 +159,9 @@ def test_a_journal_cut_anywhere_keeps_its_whole_records(tmp_path: Path) -> None:
         path.write_bytes(whole[:end])
         count, found = ask(path)
         counts.append(count)
-        assert all(own.shape == array.shape and (own == array).all() for own, array in zip(found, arrays, strict=True))
+        assert all(
+            kept.shape == array.shape and (kept == array).all() for kept, array in zip(found, arrays, strict=True)
+        )
         assert path.read_bytes() == whole
     assert counts == sorted(counts, reverse=True) and set(counts) == set(range(1, len(arrays) + 1))
     # A byte that was changed ends what stands.

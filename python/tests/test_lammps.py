@@ -77,8 +77,11 @@ def test_springs_are_the_oscillators_that_they_are() -> None:
         one = kd.decide(lambda1=20, lambda2=1, h1=Fraction(step) / 4, h2=step)
         verdict = found.decide()
         assert verdict.stable == one.stable == stable and verdict.proven
-        assert [own["step"] for own in found.document["potentials"]] == [str(Fraction(step) / 4), str(Fraction(step))]
-        assert [own["name"] for own in found.document["potentials"]] == ["level 1 (bond)", "level 2 (pair)"]
+        assert [potential["step"] for potential in found.document["potentials"]] == [
+            str(Fraction(step) / 4),
+            str(Fraction(step)),
+        ]
+        assert [potential["name"] for potential in found.document["potentials"]] == ["level 1 (bond)", "level 2 (pair)"]
         # As it was: positions and the line.
         assert lmp.where.tolist() == [0.01, 0.0, 0.0] and lmp.commands[-2:] == [
             "unfix kickdrift",
@@ -165,7 +168,7 @@ def chain() -> Any:
         bond_style fene
         special_bonds fene
         bond_coeff 1 30 1.5 1 1
-        {"".join(f"{own}{chr(10)}" for own in beads + bonds)}
+        {"".join(f"{line}{chr(10)}" for line in beads + bonds)}
         fix tether all spring/self 20
         fix move all nve
         """
@@ -221,8 +224,8 @@ def started(lmp: Any, line: str, found: Any) -> Any:
 
     def after(state: np.ndarray, steps: int = 1) -> np.ndarray:
         lmp.scatter_atoms("image", 0, 3, images)
-        for name, own in (("x", found.positions.ravel() + state[:size]), ("v", state[size:] / per)):
-            lmp.scatter_atoms(name, 1, 3, np.ctypeslib.as_ctypes(np.ascontiguousarray(own)))
+        for name, values in (("x", found.positions.ravel() + state[:size]), ("v", state[size:] / per)):
+            lmp.scatter_atoms(name, 1, 3, np.ctypeslib.as_ctypes(np.ascontiguousarray(values)))
         lmp.command(f"run {steps} post no")
         moved = np.array(lmp.gather_atoms("x", 1, 3)).reshape(-1, 3) - found.positions
         # Back through the faces of a box.
@@ -313,7 +316,7 @@ def test_levels_have_the_forces_that_lammps_has() -> None:
     lmp = chain()
     lmp.command("fix_modify tether respa 2")
 
-    def of(line: str) -> tuple[np.ndarray, list[np.ndarray]]:
+    def levels_of(line: str) -> tuple[np.ndarray, list[np.ndarray]]:
         groups = kl._groups(lmp, line, "0.02", None)[0]
         where = groups.where + 0.01 * np.random.default_rng(2).normal(size=groups.where.shape)
         with groups.session():
@@ -325,7 +328,7 @@ def test_levels_have_the_forces_that_lammps_has() -> None:
         lmp.scatter_atoms("x", 1, 3, np.ctypeslib.as_ctypes(groups.where.ravel()))
         return where - groups.where, levels
 
-    moved, (_, middle, outer) = of("run_style respa 3 4 2 bond 1 inner 2 1.2 1.6 outer 3")
+    moved, (_, middle, outer) = levels_of("run_style respa 3 4 2 bond 1 inner 2 1.2 1.6 outer 3")
     # Pairs pull at nothing as a whole, tethers do.
     assert np.abs(outer).max() > 1e-3 and np.abs(outer.sum(axis=0)).max() < 1e-12
     assert np.abs((middle + 20 * moved).sum(axis=0)).max() < 1e-12
@@ -336,7 +339,7 @@ def test_levels_have_the_forces_that_lammps_has() -> None:
         pair_coeff * * yukawa 2
         """
     )
-    moved, (_, outer) = of("run_style respa 2 4 bond 1 hybrid 1 2")
+    moved, (_, outer) = levels_of("run_style respa 2 4 bond 1 hybrid 1 2")
     where = np.array(lmp.gather_atoms("x", 1, 3)).reshape(-1, 3) + moved
     apart = where[:, None] - where
     r = np.linalg.norm(apart, axis=2, keepdims=True)

@@ -19,9 +19,9 @@ Array = npt.NDArray[np.float64]
 
 def square(lines: npt.ArrayLike) -> tuple[Array, npt.NDArray[np.int64]]:
     """A square between these grid lines, two triangles to a cell."""
-    own = np.asarray(lines, dtype=float)
-    n = len(own)
-    points = np.stack(np.meshgrid(own, own, indexing="ij"), axis=-1).reshape(-1, 2)
+    axis = np.asarray(lines, dtype=float)
+    n = len(axis)
+    points = np.stack(np.meshgrid(axis, axis, indexing="ij"), axis=-1).reshape(-1, 2)
     i, j = (index.ravel() for index in np.meshgrid(np.arange(n - 1), np.arange(n - 1), indexing="ij"))
     a, b, c, d = i * n + j, (i + 1) * n + j, (i + 1) * n + j + 1, i * n + j + 1
     return points, np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)])
@@ -39,14 +39,14 @@ def graded() -> tuple[Array, npt.NDArray[np.int64]]:
 def dense(waves: kickdrift.mesh.Waves) -> tuple[Array, Array]:
     """M^-1 K, and 1 where a degree of freedom is fine."""
     arrays, n = waves.system.arrays, len(waves.nodes)
-    own = np.zeros((n, n))
+    matrix = np.zeros((n, n))
     ends = arrays["hessian0.indptr"].astype(int)
     for i in range(n):
         at = slice(ends[i], ends[i + 1])
-        own[i, arrays["hessian0.indices"][at].astype(int)] = arrays["hessian0.data"][at]
+        matrix[i, arrays["hessian0.indices"][at].astype(int)] = arrays["hessian0.data"][at]
     fine = np.zeros(n)
     fine[arrays["fine0"].astype(int)] = 1
-    return own / arrays["masses"][:, None], fine
+    return matrix / arrays["masses"][:, None], fine
 
 
 def longest(a: Array, fine: Array, dt: float, p: int, steps: int = 4000) -> float:
@@ -87,9 +87,9 @@ def test_a_mesh_of_gmsh_is_the_same_as_its_arrays(tmp_path: Path) -> None:
     for name in ("gmsh22", "gmsh"):
         path = tmp_path / f"{name}.msh"
         meshio.write(path, meshio.Mesh(flat, [("triangle", cells)]), file_format=name, binary=False)
-        own, other = kickdrift.mesh.waves(path), kickdrift.mesh.waves((points, cells))
-        assert np.allclose(own.limits, other.limits)
-        assert own.system.decide().stable == other.system.decide().stable
+        read, other = kickdrift.mesh.waves(path), kickdrift.mesh.waves((points, cells))
+        assert np.allclose(read.limits, other.limits)
+        assert read.system.decide().stable == other.system.decide().stable
 
 
 @pytest.mark.parametrize("form", ["vtu", "vtk"])
@@ -104,9 +104,9 @@ def test_modes_on_the_mesh_are_read_back_with_their_numbers(tmp_path: Path, form
     assert np.array_equal(found.points[:, :2], points) and not found.points[:, 2].any()
     assert np.array_equal(found.cells_dict["triangle"], cells)
     assert np.array_equal(found.cell_data["substeps"][0], waves.substeps)
-    modes = [own for part in verdict.data["parts"] for own in part["instabilities"]]
+    modes = [mode for part in verdict.data["parts"] for mode in part["instabilities"]]
     assert modes and {f"mode_{n}" for n in range(1, len(modes) + 1)} <= set(found.point_data)
-    rates = [abs(complex(own["lambda"]["re"], own["lambda"]["im"])) for own in modes]
+    rates = [abs(complex(mode["lambda"]["re"], mode["lambda"]["im"])) for mode in modes]
     worst = modes[int(np.argmax(rates))]
     field = found.point_data["mode_1"]
     assert np.array_equal(field[waves.nodes], worst["shape"])
@@ -142,12 +142,12 @@ def element_by_element(waves: kickdrift.mesh.Waves, dt: float, p: int) -> float:
     """The largest multiplier of a period of AVI, each class of elements kicking when its own step is over."""
     n, arrays = len(waves.nodes), waves.system.arrays
     fast, slow = (np.zeros((n, n)), np.zeros((n, n)))
-    for k, own in enumerate((fast, slow)):
+    for k, matrix in enumerate((fast, slow)):
         ends = arrays[f"hessian{k}.indptr"].astype(int)
         for i in range(n):
             at = slice(ends[i], ends[i + 1])
-            own[i, arrays[f"hessian{k}.indices"][at].astype(int)] = arrays[f"hessian{k}.data"][at]
-    fast, slow = (own / arrays["masses"][:, None] for own in (fast, slow))
+            matrix[i, arrays[f"hessian{k}.indices"][at].astype(int)] = arrays[f"hessian{k}.data"][at]
+    fast, slow = (matrix / arrays["masses"][:, None] for matrix in (fast, slow))
     x, v = np.eye(n, 2 * n), np.eye(n, 2 * n, n)
     for tick in range(p):
         v = v - dt / p * (fast @ x) - (dt * (slow @ x) if tick == 0 else 0)

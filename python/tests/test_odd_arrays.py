@@ -117,7 +117,7 @@ def test_an_array_is_read_whatever_its_layout() -> None:
     strided[:] = plain
     frozen = plain.copy()
     frozen.setflags(write=False)
-    for own in (np.asfortranarray(plain), plain[:, ::-1].copy()[:, ::-1], strided, frozen, plain.astype(">f8")):
-        assert (kd.verdicts(lambda1=10, lambda2=1, h1=own, h2=2, budget=BUDGET).code == code).all()
+    for steps in (np.asfortranarray(plain), plain[:, ::-1].copy()[:, ::-1], strided, frozen, plain.astype(">f8")):
+        assert (kd.verdicts(lambda1=10, lambda2=1, h1=steps, h2=2, budget=BUDGET).code == code).all()
     odd = np.asfortranarray(IDENTITY + np.diag(np.full(5, 1e-3), 1) + np.diag(np.full(5, 1e-3), -1))
     assert measured(fast=odd).decide() == measured(fast=np.ascontiguousarray(odd)).decide()

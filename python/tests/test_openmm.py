@@ -201,7 +201,7 @@ def test_where_the_orbit_ends_it_is_said(outer: str, monkeypatch: pytest.MonkeyP
     assert caught.value.field == "about" and "minimum" in caught.value.remedy
     told = re.search(r"followed to ([\d.]+) ps and folds at ([\d.]+) ps", caught.value.remedy)
     assert told is not None
-    followed, fold = (Fraction(own) for own in told.groups())
+    followed, fold = (Fraction(number) for number in told.groups())
     assert Fraction("0.0087") < followed <= fold < followed * Fraction("1.001")
     before, beyond = (fold * Fraction(part) for part in ("0.9995", "1.0005"))
     near = ko.oscillations(system, positions, steps={0: before / inner, 1: before}, minimize=False)
@@ -243,8 +243,8 @@ def test_a_loosely_bound_molecule_drifts_a_little_and_is_left_apart() -> None:
     found = ko.oscillations(system, where, steps={0: step / 10, 1: step})
     assert 1e-9 < found.drift < 1e-8 and found.proven
     assert "softest motions apart, which drift by" in found.words
-    own = own_multipliers(system, found, [(1, 1), (0, 10)])
-    assert found.growth_rate == pytest.approx(np.log(np.abs(own).max()) / float(step), rel=1e-5)
+    mapped = own_multipliers(system, found, [(1, 1), (0, 10)])
+    assert found.growth_rate == pytest.approx(np.log(np.abs(mapped).max()) / float(step), rel=1e-5)
 
 
 def test_about_the_minimum_is_nearly_the_same_and_says_so() -> None:
@@ -314,12 +314,12 @@ def test_multipliers_of_random_bonds_are_those_of_the_measured_map(seed: int) ->
     values = np.linalg.eigvals(measured)
     verdict = ko.system(system, positions, integrator=integrator)
     told = verdict.decide().multipliers
-    own = ko.oscillations(system, positions, integrator=integrator, about="minimum").multipliers
+    predicted = ko.oscillations(system, positions, integrator=integrator, about="minimum").multipliers
     # Six rigid motions: a double eigenvalue 1 each, not diagonalizable.
     firm = values[np.abs(values - 1) > 1e-3]
     assert len(firm) == 2 * n - 12
     for value in firm:
-        assert np.abs(own - value).min() < 1e-7
+        assert np.abs(predicted - value).min() < 1e-7
     for value in told:
         assert min(np.abs(values - value).min(), np.abs(values - np.conj(value)).min()) < 1e-7
 
@@ -385,16 +385,16 @@ def test_virtual_sites_follow_their_atoms_as_the_engine_has_it(
     found = ko.oscillations(system, positions, steps={0: step / inner, 1: step})
     assert found.proven and found.stable is not grows
     assert found.positions.shape == (9, 3) and len(found.mu) == 27 - system.getNumConstraints()
-    own = own_multipliers(system, found, [(1, 1), (0, inner)])
+    mapped = own_multipliers(system, found, [(1, 1), (0, inner)])
 
     def apart(told: Any) -> float:
         # Rigid motions are defective eigenvalues at 1.
-        return max(np.abs(own - value).min() for value in told.multipliers[np.abs(told.multipliers - 1) > 1e-2])
+        return max(np.abs(mapped - value).min() for value in told.multipliers[np.abs(told.multipliers - 1) > 1e-2])
 
     # 2e-10 is what differences leave; of what SETTLE leaves 1e-7.
     assert apart(found) < 1e-6
     if grows:
-        assert found.growth_rate == pytest.approx(np.log(np.abs(own).max()) / float(step), rel=1e-5)
+        assert found.growth_rate == pytest.approx(np.log(np.abs(mapped).max()) / float(step), rel=1e-5)
     # Sites that stand where the orbit begins are seen.
     at = engine_of(system).placed(found.positions)
 
@@ -432,12 +432,12 @@ def test_what_virtual_sites_do_in_openmm_is_told() -> None:
         context.setVelocities(speeds)
         integrator.step(1)
         now = context.getState(getPositions=True, getVelocities=True)
-        at, going = (own(asNumpy=True)._value[engine.moving] for own in (now.getPositions, now.getVelocities))
+        at, going = (getter(asNumpy=True)._value[engine.moving] for getter in (now.getPositions, now.getVelocities))
         return np.concatenate([((at - found.positions).ravel() * root), going.ravel() * root])
 
-    own = multipliers(after, 27, 1e-4, 2e-6)
+    measured = multipliers(after, 27, 1e-4, 2e-6)
     # The note's rate. Should OpenMM place them at each drift some day, this is 0 and the note is wrong.
-    assert np.log(np.abs(own).max()) / float(step) == pytest.approx(0.34, abs=0.01)
+    assert np.log(np.abs(measured).max()) / float(step) == pytest.approx(0.34, abs=0.01)
     # One clock alone has each platform's sites in place.
     assert "another map" not in ko.system(system, positions, integrator=mm.VerletIntegrator(0.0005)).notes[0]
 
@@ -452,14 +452,14 @@ def test_virtual_sites_that_cross_a_cutoff_are_kept_on_their_side(model: str) ->
     ends = sorted(float(np.linalg.norm(where[engine.sites[0]] - where[n])) for n in sites)
     found = []
     for beyond in (2e-5, 1e-3):
-        own = mm.XmlSerializer.clone(system)
-        for force in own.getForces():
+        copy = mm.XmlSerializer.clone(system)
+        for force in copy.getForces():
             if isinstance(force, mm.NonbondedForce):
                 force.setNonbondedMethod(mm.NonbondedForce.CutoffNonPeriodic)
                 force.setCutoffDistance(ends[0] + beyond)
                 # No reaction field, which knows the cutoff.
                 force.setReactionFieldDielectric(1.0)
-        force = engine_of(own).force(2)
+        force = engine_of(copy).force(2)
         found.append(hessian(force, where[engine.moving], engine.masses, 1e-4))
         if beyond == 2e-5:
             _, jumped = hessian(lambda at, force=force: force(at), where[engine.moving], engine.masses, 1e-4)
@@ -686,7 +686,7 @@ def test_some_atoms_of_many(capsys: pytest.CaptureFixture[str]) -> None:
         steps=levels(Fraction(1, 500))[0],
         atoms=[0, 1, 2],
         minimize=False,
-        progress=lambda done, of: seen.append((done, of)),
+        progress=lambda done, total: seen.append((done, total)),
     )
     assert seen[-1] == (9, 9) and "only 3 of 12 atoms move" in found.notes
     assert found.decide().data["degrees_of_freedom"] == 9
@@ -699,17 +699,17 @@ def test_the_minimum_of_some_atoms_asks_for_their_columns_alone(rigid: bool, mon
     """The second water among the others as these stand: its own forces vanish, and nothing else has moved."""
     system, positions = waters(rigid)
     positions = positions + 2e-3 * np.random.default_rng(4).normal(size=positions.shape)
-    asked, own = [], Engine.force
+    asked, force_of = [], Engine.force
 
     def counted(engine: Any, groups: int) -> Any:
-        force = own(engine, groups)
+        force = force_of(engine, groups)
 
-        def of(at: np.ndarray) -> np.ndarray:
+        def told(at: np.ndarray) -> np.ndarray:
             asked.append(groups)
             assert (np.delete(at, [3, 4, 5], axis=0) == np.delete(positions, [3, 4, 5], axis=0)).all()
             return force(at)
 
-        return of
+        return told
 
     monkeypatch.setattr(Engine, "force", counted)
     steps = {0: "0.5fs", 1: "4fs"} if not rigid else {0: "0.5fs", 1: "0.5fs"}
@@ -788,7 +788,7 @@ def test_far_from_a_minimum_newtons_method_is_left_at_once(monkeypatch: pytest.M
     """An atom far beyond the rest of its bonds: the first step tells, and OpenMM's minimizer goes on."""
     system, positions = bonds(1)
     columns: list[int] = []
-    tell = ko._of_minimum(lambda done, of: columns.append(done))
+    tell = ko._of_minimum(lambda done, total: columns.append(done))
     led: list[int] = []
     monkeypatch.setattr(rest, "relaxed", lambda *given: led.append(len(columns)) or relaxed(*given))
     there = positions.copy()
@@ -811,8 +811,8 @@ def test_what_is_stopped_leaves_nothing_half_done() -> None:
     system, positions = waters()
     written, kept = mm.XmlSerializer.serialize(system), positions.copy()
 
-    def stop(done: int, of: int) -> None:
-        if done == of // 2:
+    def stop(done: int, total: int) -> None:
+        if done == total // 2:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
@@ -872,7 +872,7 @@ def test_reciprocal_space_has_a_group_and_needs_a_step() -> None:
         ko.system(system, positions, steps={0: "0.5fs", 1: "2fs"})
     assert caught.value.value == "group 2" and "reciprocal space" in caught.value.remedy
     found = ko.system(system, positions, steps={0: "0.5fs", 1: "2fs", 2: "4fs"}, minimize=False)
-    assert [own["name"] for own in found.document["potentials"]] == ["group 0", "group 1", "group 2"]
+    assert [potential["name"] for potential in found.document["potentials"]] == ["group 0", "group 1", "group 2"]
     integrator = mm.MTSIntegrator(4 * unit.femtoseconds, [(2, 1), (1, 2), (0, 8)])
     same = ko.system(system, positions, integrator=integrator, minimize=False)
     assert same.document["potentials"] == found.document["potentials"]
@@ -1166,8 +1166,8 @@ def named_waters() -> app.Topology:
     chain = topology.addChain()
     for n in range(4):
         residue = topology.addResidue("HOH", chain, str(n + 1))
-        own = [topology.addAtom(name, app.Element.getBySymbol(name[0]), residue) for name in ("O", "H1", "H2")]
-        topology.addBond(own[0], own[1]), topology.addBond(own[0], own[2])
+        atoms = [topology.addAtom(name, app.Element.getBySymbol(name[0]), residue) for name in ("O", "H1", "H2")]
+        topology.addBond(atoms[0], atoms[1]), topology.addBond(atoms[0], atoms[2])
     return topology
 
 
@@ -1194,7 +1194,7 @@ def test_motions_are_called_by_their_topology_or_by_masses_and_distances() -> No
     # The forces come along, so held bonds are among what lets the step grow.
     assert longer.startswith("longer: ") and "h-bonds held" in {row["lever"] for row in advice.levers}
     # Of the forces that do not vanish the orbit's line speaks, and nothing sends to it.
-    assert not any("do not vanish" in own for own in others) and "do not vanish" in advice.warnings[0]
+    assert not any("do not vanish" in warning for warning in others) and "do not vanish" in advice.warnings[0]
     held = kd.advise(simulation, constraints="h-bonds", hmr="3.024", friction="1/ps", levers=False)
     assert held.groups[0]["name"] == "H-O-H bend of HOH" and held.groups[0]["shortest"] > 20
     # That is not the system whose orbit was followed.
@@ -1226,9 +1226,9 @@ def multipliers(after: Callable[[np.ndarray], np.ndarray], size: int, width: flo
     measured = np.empty((2 * size, 2 * size))
     for column in range(2 * size):
         move = np.zeros(2 * size)
-        move[column] = own = width if column < size else 250 * width
+        move[column] = displacement = width if column < size else 250 * width
         near, far = (after(k * move) - after(-k * move) for k in (1, 2))
-        measured[:, column] = (8 * near - far) / (12 * own)
+        measured[:, column] = (8 * near - far) / (12 * displacement)
     return np.linalg.eigvals(measured)
 
 
@@ -1245,20 +1245,20 @@ def own_steps(system: mm.System, period: float, levels: Sequence[tuple[int, int]
 
     def piece(group: int | None, time: float) -> int:
         if (group, time) not in numbers:
-            own = mm.CustomIntegrator(time)
+            integrator = mm.CustomIntegrator(time)
             if group is None:
-                own.addPerDofVariable("x1", 0)
-                own.addComputePerDof("x", "x+dt*v")
-                own.addComputePerDof("x1", "x")
-                own.addConstrainPositions()
-                own.addComputePerDof("v", "v+(x-x1)/dt")
+                integrator.addPerDofVariable("x1", 0)
+                integrator.addComputePerDof("x", "x+dt*v")
+                integrator.addComputePerDof("x1", "x")
+                integrator.addConstrainPositions()
+                integrator.addComputePerDof("v", "v+(x-x1)/dt")
             else:
                 # Forces are asked for anew: none of these integrators knows that another has moved the atoms.
-                own.addComputePerDof("x", "x")
-                own.addComputePerDof("v", f"v+dt*f{group}/m")
-            own.addConstrainVelocities()
-            own.setConstraintTolerance(1e-13)
-            numbers[group, time] = whole.addIntegrator(own)
+                integrator.addComputePerDof("x", "x")
+                integrator.addComputePerDof("v", f"v+dt*f{group}/m")
+            integrator.addConstrainVelocities()
+            integrator.setConstraintTolerance(1e-13)
+            numbers[group, time] = whole.addIntegrator(integrator)
         return numbers[group, time]
 
     def made(left: Sequence[tuple[int, int]], done: int) -> list[int]:
@@ -1337,12 +1337,12 @@ def test_held_bonds_swing_and_grow_as_the_engine_does(make: Any, outer: str, gro
     found = ko.oscillations(system, positions, steps=steps)
     assert found.residual < 1e-9 and found.away > 1e-4 and found.growth_rate == pytest.approx(grows, rel=5e-3)
     assert found.matrix.shape == (2 * (positions.size - system.getNumConstraints()),) * 2
-    own = own_multipliers(system, found, [(1, 1), (0, inner)])
+    mapped = own_multipliers(system, found, [(1, 1), (0, inner)])
     # Rigid motions are defective eigenvalues at 1; of all others is left what SETTLE and differences leave.
     for value in found.multipliers[np.abs(found.multipliers - 1) > 1e-2]:
-        assert np.abs(own - value).min() < 1e-6
+        assert np.abs(mapped - value).min() < 1e-6
     if grows:
-        assert found.growth_rate == pytest.approx(np.log(np.abs(own).max()) / float(steps[1]), rel=1e-5)
+        assert found.growth_rate == pytest.approx(np.log(np.abs(mapped).max()) / float(steps[1]), rel=1e-5)
         about = ko.oscillations(system, positions, steps=steps, about="minimum")
         verdict = ko.system(system, positions, steps=steps).decide()
         assert about.growth_rate == pytest.approx(verdict.growth_rate, rel=1e-3)
@@ -1362,10 +1362,10 @@ def test_held_bonds_are_proven_where_half_a_period_ends_between_kicks() -> None:
         found = ko.oscillations(system, positions, steps={0: step / inner, 1: step})
         assert found.proven and found.growth_bounds is not None, found.words
         lo, hi = found.growth_bounds
-        own = np.log(np.abs(own_multipliers(system, found, [(1, 1), (0, inner)])).max()) / float(step)
+        rate = np.log(np.abs(own_multipliers(system, found, [(1, 1), (0, inner)])).max()) / float(step)
         # Rigid motions are defective eigenvalues at 1, of which differences leave some 10^-2/ps. All kicks of a clock
         # are known to a part of the largest: 3e-3/ps.
-        assert lo - 1e-2 < own < hi + 1e-2 and hi - lo < 1e-4 * hi + 1e-9 and (hi > 0) == (outer == "12")
+        assert lo - 1e-2 < rate < hi + 1e-2 and hi - lo < 1e-4 * hi + 1e-9 and (hi > 0) == (outer == "12")
 
 
 def test_drifts_too_long_for_held_distances_are_refused() -> None:
@@ -1386,7 +1386,7 @@ def test_held_bonds_keep_the_names_of_their_atoms() -> None:
     here = ko.system(held, where, steps=steps, minimize=False).advise(levers=False)
     there = kd.advise(system, positions=where, steps=steps, constraints="h-bonds", levers=False)
     assert [row["name"] for row in here.groups] == [row["name"] for row in there.groups]
-    periods = [[row["shortest"] for row in own.groups] for own in (here, there)]
+    periods = [[row["shortest"] for row in advice.groups] for advice in (here, there)]
     assert periods[0] == pytest.approx(periods[1], rel=1e-6)
 
 
@@ -1395,17 +1395,17 @@ def test_multipliers_are_off_by_no_more_than_their_doubts() -> None:
     rng = np.random.default_rng(3)
 
     def symmetric(size: float) -> np.ndarray:
-        own = rng.normal(size=(6, 6))
-        own = own + own.T
-        return size * own / np.linalg.norm(own, 2)
+        matrix = rng.normal(size=(6, 6))
+        matrix = matrix + matrix.T
+        return size * matrix / np.linalg.norm(matrix, 2)
 
     fast, slow = 300.0 * np.eye(6) + symmetric(200.0), symmetric(20.0)
     masses, steps, start = np.ones(2), [Fraction(1, 40), Fraction(1, 8)], np.zeros((2, 3))
 
     def found(pair: list[np.ndarray], error: float | None = None) -> tuple[np.ndarray, np.ndarray]:
-        forces = [lambda x, k=own: -(k @ x.ravel()).reshape(x.shape) for own in pair]
+        forces = [lambda x, k=stiffness: -(k @ x.ravel()).reshape(x.shape) for stiffness in pair]
         half = compose(forces, steps, start, Held(masses), 1e-3, still=True)
-        struck = half.struck if error is None else [replace(own, error=error) for own in half.struck]
+        struck = half.struck if error is None else [replace(kick, error=error) for kick in half.struck]
         return eigenvalues(half.matrix, struck, 0.0)
 
     size = 1e-5
@@ -1413,7 +1413,7 @@ def test_multipliers_are_off_by_no_more_than_their_doubts() -> None:
     parts = []
     for _ in range(200):
         other, _ = found([fast + symmetric(size), slow + symmetric(size)])
-        parts.append(max(np.abs(other - own).min() / doubt for own, doubt in zip(mu, doubts, strict=True)))
+        parts.append(max(np.abs(other - value).min() / doubt for value, doubt in zip(mu, doubts, strict=True)))
     # Never more, and no idle bound: a tenth of it is reached.
     assert 0.1 < max(parts) <= 1.0
 
@@ -1442,11 +1442,11 @@ def test_what_is_published_beside_runs_is_what_is_said_today() -> None:
         # Differences leave some 1e-6 of the stiffness, of which a thin interval makes a part in a thousand.
         assert verdict.growth_rate == pytest.approx(row["minimum"]["rate"], rel=1e-2)
     # One of those about the orbit: it takes some seconds.
-    row = next(own for own in stored if own["outer"] == "5.03")
+    row = next(row for row in stored if row["outer"] == "5.03")
     orbit = runs.predicted(ko.oscillations(system, at, steps=runs.steps_of(Fraction("5.03"))[0], minimize=False))
     assert (orbit["stable"], orbit["proven"]) == (row["orbit"]["stable"], row["orbit"]["proven"]) == (False, True)
     assert orbit["bounds"] == pytest.approx(row["orbit"]["bounds"], rel=1e-2)
-    assert all(own["orbit"]["proven"] for own in stored)
+    assert all(row["orbit"]["proven"] for row in stored)
     blown, _ = runs.run(system, at, Fraction("5.03"), 11)
     # From 1 K at 0.555/ps: a hundredfold to a thousandfold amplitude, by where the noise begins.
     assert blown is not None and 5 < blown < 20
@@ -1482,14 +1482,14 @@ def test_bands_have_the_names_and_periods_of_dense_advice(constraints: str | Non
     dense = ko.system(system, positions, steps=steps, topology=topology, minimize=False)
     told = dense.advise(levers=False, **changed).groups
     found = ko.bands(system, positions, steps=steps, topology=topology, minimize=False, **changed)
-    own = [group for group in found.levels[0].groups if "stretch" in group.name or "bend" in group.name]
-    assert [(group.name, group.count) for group in own] == [(row["name"], row["count"]) for row in told[: len(own)]]
-    for group, row in zip(own, told, strict=False):
+    named = [group for group in found.levels[0].groups if "stretch" in group.name or "bend" in group.name]
+    assert [(group.name, group.count) for group in named] == [(row["name"], row["count"]) for row in told[: len(named)]]
+    for group, row in zip(named, told, strict=False):
         # Held at the length of rest here and as long as they are there: a part in a thousand.
         assert (group.shortest, group.longest) == pytest.approx((row["shortest"], row["longest"]), rel=2e-3)
     assert found.levels[0].forces == 0 and (hmr is not None or "libration" in found.levels[1].motion)
     advice = found.advise(friction="1/ps", levers=False)
-    assert own[0].name in str(advice) and advice.modes[0]["name"] == f"{own[0].name} in group 0"
+    assert named[0].name in str(advice) and advice.modes[0]["name"] == f"{named[0].name} in group 0"
     assert "Lanczos" in str(advice).splitlines()[0] and "motion of group 1 by" in str(advice).splitlines()[0]
 
 
@@ -1549,9 +1549,9 @@ def test_three_levels_get_their_verdict_and_a_region() -> None:
         assert ko.system(system, waters()[1], steps=beside, minimize=False).decide().stable == stable
     # The verdict at another scheme, and what would let the step grow: T/3 of heavy hydrogens is 4.7 fs.
     other = made.advise(["0.5fs", "1fs", "4fs"])
-    assert [own["status"] for own in other.schemes] == ["safe", "caution"]
+    assert [scheme["status"] for scheme in other.schemes] == ["safe", "caution"]
     other = made.advise(["0.5fs", "1fs", "4fs"], hmr="3.024")
-    assert [own["status"] for own in other.schemes] == ["safe", "safe"]
+    assert [scheme["status"] for scheme in other.schemes] == ["safe", "safe"]
     assert float(other.schemes[0]["first"]["lo"]) > 1.4 * first["lo"]
     assert {"hydrogens of 3.024 amu", "h-bonds held"} < {row["lever"] for row in advice.levers}
     with pytest.raises(kd.KickdriftError, match="there are 3 levels"):
@@ -1567,12 +1567,14 @@ def test_a_peptide_in_water_gets_advice_with_the_names_of_its_motions() -> None:
     system, made = bench.solvated(2.0)
     waters = (system.getNumParticles() - 22) // 3
     found = ko.bands(system, made.positions, topology=made.topology, steps={0: "0.5fs", 1: "4fs"})
-    own = {group.name: group for group in found.levels[0].groups}
-    assert own["O-H stretch of HOH"].count == 2 * waters and own["H-O-H bend of HOH"].count == waters
-    assert own["N-H stretch of ALA, NME"].count == 2 and own["C-H stretch of ACE, ALA, NME"].count == 10
+    by_name = {group.name: group for group in found.levels[0].groups}
+    assert by_name["O-H stretch of HOH"].count == 2 * waters and by_name["H-O-H bend of HOH"].count == waters
+    assert by_name["N-H stretch of ALA, NME"].count == 2 and by_name["C-H stretch of ACE, ALA, NME"].count == 10
     # Published of these constants: 10.11 fs of N-H and 11.36 fs of C-H alone, in bonds of slightly other lengths.
-    assert 10.0 < own["N-H stretch of ALA, NME"].shortest < 10.2
-    assert 11.1 < own["C-H stretch of ACE, ALA, NME"].shortest < own["C-H stretch of ACE, ALA, NME"].longest < 11.8
+    assert 10.0 < by_name["N-H stretch of ALA, NME"].shortest < 10.2
+    assert (
+        11.1 < by_name["C-H stretch of ACE, ALA, NME"].shortest < by_name["C-H stretch of ACE, ALA, NME"].longest < 11.8
+    )
     told = f"all {3 * system.getNumParticles():,} modes of {waters + 1:,} molecules"
     assert told in str(found.advise(levers=False))
     # By name: where the solvent was placed moves it by some hundredths.
@@ -1605,8 +1607,10 @@ def _cluster(count: int) -> tuple[mm.System, np.ndarray]:
     modeller = app.Modeller(pdb.topology, pdb.positions)
     modeller.delete([residue for residue in pdb.topology.residues() if residue.index not in near])
     modeller.topology.setPeriodicBoxVectors(None)
-    own = app.ForceField("amber14/tip3pfb.xml").createSystem(modeller.topology, rigidWater=False, removeCMMotion=False)
-    return groups(own), np.array(modeller.positions.value_in_unit(unit.nanometer))
+    system = app.ForceField("amber14/tip3pfb.xml").createSystem(
+        modeller.topology, rigidWater=False, removeCMMotion=False
+    )
+    return groups(system), np.array(modeller.positions.value_in_unit(unit.nanometer))
 
 
 @pytest.mark.skipif("CPU" not in platforms(), reason="needs OpenMM's CPU platform")
@@ -1615,8 +1619,8 @@ def _cluster(count: int) -> tuple[mm.System, np.ndarray]:
 @pytest.mark.parametrize("count", [2, 3, 8])
 def test_the_accuracy_of_forces_in_single_precision_covers_how_far_their_hessians_are_off(count, difference, far):
     # Far from the origin single precision places atoms worse.
-    own, positions = _cluster(count)
-    single, double = engine_of(own, "CPU"), engine_of(own)
+    system, positions = _cluster(count)
+    single, double = engine_of(system, "CPU"), engine_of(system)
     where, width = single.exactly(positions + far, difference)
     for group in (0, 1):
         ask = where, single.masses
@@ -1632,9 +1636,9 @@ def test_a_field_in_single_precision_is_known_by_its_rounding():
     # It has no entries off the diagonal, by which noise would be seen.
     if "CPU" not in platforms():
         pytest.skip("needs OpenMM's CPU platform")
-    own, walls = mm.System(), mm.CustomExternalForce("500*(x-1)^2+500*y^2+500*z^2")
-    own.addParticle(1.0), walls.addParticle(0), own.addForce(walls)
-    engine = engine_of(own, "CPU")
+    field, walls = mm.System(), mm.CustomExternalForce("500*(x-1)^2+500*y^2+500*z^2")
+    field.addParticle(1.0), walls.addParticle(0), field.addForce(walls)
+    engine = engine_of(field, "CPU")
     where, width = engine.exactly(np.array([[1.3, 0.1, 0.2]]), ko.WIDE)
     found, error = hessian(engine.force(1), where, engine.masses, width, rounding=engine.rounding)
     assert np.linalg.norm(found - 1000 * np.eye(3), 2) < error
@@ -1642,19 +1646,19 @@ def test_a_field_in_single_precision_is_known_by_its_rounding():
 
 @pytest.mark.skipif("CPU" not in platforms(), reason="needs OpenMM's CPU platform")
 def test_a_system_on_a_platform_in_single_precision_has_the_verdicts_of_doubles():
-    own, positions = waters()
+    system, positions = waters()
     found = {}
     for platform in ("CPU", "Reference"):
         for outer in ("4fs", "4.6fs"):
-            made = ko.system(own, positions, steps={0: "0.5fs", 1: outer}, minimize=False, platform=platform)
+            made = ko.system(system, positions, steps={0: "0.5fs", 1: outer}, minimize=False, platform=platform)
             assert made.accuracy < (1e-3 if platform == "CPU" else 1e-5)
             found[platform, outer] = made.decide().stable
     assert all(found["CPU", outer] == found["Reference", outer] for outer in ("4fs", "4.6fs"))
     # Its minimizer alone.
-    made = ko.system(own, positions, steps={0: "0.5fs", 1: "4fs"}, platform="CPU")
+    made = ko.system(system, positions, steps={0: "0.5fs", 1: "4fs"}, platform="CPU")
     assert any("single precision" in note for note in made.notes) and made.accuracy < 1e-3
     with pytest.raises(kd.KickdriftError, match="sparse"):
-        ko.system(own, positions, steps={0: "0.5fs", 1: "4fs"}, platform="CPU", sparse=True)
+        ko.system(system, positions, steps={0: "0.5fs", 1: "4fs"}, platform="CPU", sparse=True)
 
 
 def test_a_platform_that_is_not_here_is_refused():

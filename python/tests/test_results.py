@@ -66,7 +66,7 @@ def told(result: Any) -> list[Any]:
     arrays = {**arrays, **{name: getattr(result, name) for name in ARRAYS if hasattr(type(result), name)}}
     document = result.to_json() if hasattr(result, "to_json") else None
     # The verdict about an orbit is no array.
-    arrays = {name: own.tobytes() for name, own in arrays.items() if isinstance(own, np.ndarray)}
+    arrays = {name: array.tobytes() for name, array in arrays.items() if isinstance(array, np.ndarray)}
     return [repr(result), str(result), document, arrays]
 
 
@@ -94,20 +94,20 @@ def test_a_copied_map_is_drawn_and_answers_as_before() -> None:
 
 def arrays_of(name: str) -> dict[str, np.ndarray]:
     result = RESULTS[name]()
-    fields = [own for own in dir(type(result)) if isinstance(getattr(type(result), own), property)]
+    fields = [field for field in dir(type(result)) if isinstance(getattr(type(result), field), property)]
     fields += ["multipliers", "matrix", "code", "tier", "half", "positions"]
-    found = {own: getattr(result, own, None) for own in fields} | dict(getattr(result, "arrays", {}))
-    return {own: value for own, value in found.items() if isinstance(value, np.ndarray)}
+    found = {field: getattr(result, field, None) for field in fields} | dict(getattr(result, "arrays", {}))
+    return {field: value for field, value in found.items() if isinstance(value, np.ndarray)}
 
 
 @pytest.mark.parametrize("name", ["Map", "Monodromy", "System", "SystemVerdict", "Verdicts"])
 def test_arrays_of_results_cannot_be_written_to(name: str) -> None:
     found = arrays_of(name)
     assert found
-    for own, array in found.items():
+    for field, array in found.items():
         with pytest.raises(ValueError, match="read-only"):
             array[...] = 0
-        assert not array.flags.writeable, own
+        assert not array.flags.writeable, field
 
 
 def test_a_system_keeps_what_it_was_given() -> None:
@@ -165,8 +165,21 @@ def test_advice_is_asked_of_a_system_and_carries_its_warnings(tmp_path: Path) ->
     assert caught.value.field in ("masses", "positions")
     # A total that is not positive definite is warned of by the verdict, and so by the advice.
     bent = kd.System.from_hessians([1.0, 1.0], {"fast": ("1/2", FAST), "slow": (4, -SLOW * 30)}, time_unit="fs")
-    assert any("positive definite" in own for own in bent.decide().warnings)
+    assert any("positive definite" in warning for warning in bent.decide().warnings)
     assert bent.advise().warnings == bent.decide().warnings and "positive definite" in str(bent.advise())
+
+
+@pytest.mark.parametrize("levers", [True, False])
+def test_warnings_stand_between_what_is_advised_and_why(levers: bool) -> None:
+    cheap, correction = [[0.5, 0], [0, 0.5]], [[0.02, 1e-4], [-1e-4, 0.02]]
+    levels = {"cheap": ("1/2", cheap), "correction": (4, correction)}
+    learned = kd.System.from_hessians([1, 1], levels, time_unit="fs", symmetric=False, notes=["a note"])
+    for system in (molecule(), learned):
+        lines = str(system.advise(levers=levers)).splitlines()
+        place = lines.index("warning: a note")
+        words = [line.partition(":")[0] for line in lines[:place]]
+        assert words[0] == "advice" and set(words) <= {"advice", "limit", "longer"}
+        assert lines[place + 1].startswith("4 fs ")
 
 
 def test_steps_with_units_are_taken_in_the_systems_unit() -> None:
@@ -174,7 +187,7 @@ def test_steps_with_units_are_taken_in_the_systems_unit() -> None:
     for unit, steps in given.items():
         levels = {"fast": (steps[0], FAST), "slow": (steps[1], SLOW)}
         system = kd.System.from_hessians([1.0, 1.0], levels, time_unit=unit)
-        inner, outer = (kd.number(own["step"]).fraction for own in system.document["potentials"])
+        inner, outer = (kd.number(potential["step"]).fraction for potential in system.document["potentials"])
         scale = {"fs": 1, "ps": 1000, "ns": 10**6}[unit]
         assert (inner * scale, outer * scale) == (Fraction(1, 2), 4)
     with pytest.raises(kd.KickdriftError, match="time_unit"):
@@ -216,8 +229,8 @@ def test_rigid_motions_are_projected_out_of_three_clocks_as_of_two(where: bool, 
         assert f"with {removed} motions projected out ({by})" in verdict.warnings[-1]
         assert (verdict.stable and verdict.proven) or linear
     for clocks in ("abc", "ab"):
-        own = {name: levels[name] for name in clocks}
-        kept = kd.System.from_hessians(masses, own, positions=positions if where else None, keep_rigid=True)
+        chosen = {name: levels[name] for name in clocks}
+        kept = kd.System.from_hessians(masses, chosen, positions=positions if where else None, keep_rigid=True)
         verdict = kept.decide()
         assert verdict.data["degrees_of_freedom"] == 12 and not (verdict.measured or {}).get("rigid_motions")
 
@@ -255,12 +268,12 @@ def test_sparse_levels_are_decided_as_dense_ones_in_the_first_region() -> None:
         np.ones(count), dict(zip(names, zip(steps, matrices, strict=True), strict=True)), **given
     )
     assert system.document["potentials"][0]["stiffness"] == {"npz": "arrays.npz", "csr": "hessian0"}
-    own, truth = system.decide(), dense.decide()
-    assert own.stable and truth.stable and own.proven
-    assert own.measured is not None and truth.measured is not None
-    found, edge = own.measured["first_unstable"], truth.measured["first_unstable"]["lo"]
+    decided, truth = system.decide(), dense.decide()
+    assert decided.stable and truth.stable and decided.proven
+    assert decided.measured is not None and truth.measured is not None
+    found, edge = decided.measured["first_unstable"], truth.measured["first_unstable"]["lo"]
     assert found["lo"] <= edge < found["hi"] < 1.01 * found["lo"]
-    assert pickle.loads(pickle.dumps(own)).stable and kd.recheck(own).holds
+    assert pickle.loads(pickle.dumps(decided)).stable and kd.recheck(decided).holds
     with pytest.raises(kd.KickdriftError) as caught:
         system.intervals(("1/500", "1/200"))
     assert caught.value.field == "intervals"

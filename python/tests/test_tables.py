@@ -13,6 +13,7 @@ import pytest
 from conftest import REPOSITORY
 
 import kickdrift as kd
+from kickdrift import _native
 
 TABLES: list[tuple[Callable[[], kd.Table], list[str]]] = [
     (lambda: kd.tongues("5/3", rho="1/25"), ["tongues", "--ratio=5/3", "--rho=1/25"]),
@@ -253,3 +254,58 @@ def test_a_part_that_one_row_lacks_has_no_column_of_its_own() -> None:
     frame = found.to_pandas()
     assert "upper_lo" in frame and not {"upper", "width", "growth"} & set(frame.columns)
     assert frame.upper_lo.isna().sum() == 1 and "<th>upper</th>" not in found._repr_html_()
+
+
+def test_edges_are_arrays() -> None:
+    found = kd.tongues("7/3", rho="1/25")
+    assert found.lower.tolist() == [[row["lower"]["lo"], row["lower"]["hi"]] for row in found]
+    assert found.upper[:-1].tolist() == [[row["upper"]["lo"], row["upper"]["hi"]] for row in found[:-1]]
+    assert found[-1]["upper"] is None and np.isnan(found.upper[-1]).all()
+    none = kd.tongues("7/3", rho="1/25", lambda1=1, h1=("1/1000", "1/500"))
+    assert len(none) == 0 and none.lower.shape == (0, 2)
+    closed = kd.closings("5/3")
+    assert closed.s.shape == closed.rho.shape == (1, 2) and closed.s[0, 0] <= 2.75 <= closed.s[0, 1]
+    system = kd.System.from_hessians([1.0], {"stiff": ("1/40", [[400.0]]), "soft": ("1/10", [[1.0]])})
+    stretches = system.intervals(("1/20", "1/5"))
+    assert stretches.edges.shape == (5, 2) and (stretches.edges[1:, 0] == stretches.edges[:-1, 1]).all()
+    curves = kd.curves(a="0..1", b="0..1", samples=7)
+    assert sum(len(points) for points in curves.points.values()) == len(curves.to_pandas())
+    for array in (found.lower, closed.rho, stretches.edges, curves.points[0, 1], found.column("m")):
+        assert not array.flags.writeable
+
+
+def test_a_column_is_an_array_of_numbers_or_of_texts() -> None:
+    found = kd.tongues("7/3", rho="1/25", lambda1="pi^2")
+    assert found.column("m").dtype == np.int64 and found.column("closed").dtype == np.bool_
+    assert found.column("lower.h1").shape == (len(found), 2)
+    assert found.column("lower.entry").tolist() == [row["lower"]["entry"] for row in found]
+    assert np.isnan(found.column("growth.rate")[-1]) and found.column("growth.rate")[0] == found[0]["growth"]["rate"]
+    with pytest.raises(kd.KickdriftError, match="there are p, q, m"):
+        found.column("edge")
+    with pytest.raises(kd.KickdriftError, match="there are lo, hi"):
+        found.column("lower.h3")
+
+
+WRITTEN: dict[str, tuple[Callable[[], Any], tuple[str, ...]]] = {
+    "closings": (lambda: kd.closings("5/3"), ("to_json", "to_csv", "to_latex")),
+    "comparison": (lambda: kd.compare(max_sum=6, rho="1/25", samples=9), ("to_json", "to_csv", "to_latex")),
+    "intervals": (lambda: chain().intervals(("1/20", "1/10")), ("to_json", "to_csv", "to_latex")),
+    "map": (lambda: kd.map(**GRID, label=True, growth=True), ("to_json", "to_csv", "to_svg")),
+    "plain map": (lambda: kd.map(**GRID), ("to_json", "to_csv", "to_svg")),
+    "run": (lambda: kd.simulate(chain(), periods=3, displace="1/100"), ("to_json",)),
+    "verdict": (lambda: kd.decide(lambda1=1, lambda2=0, h1=1, h2=1), ("to_json", "to_csv", "to_latex")),
+    "verdict on a system": (lambda: chain().decide(), ("to_json", "__str__")),
+}
+
+
+def chain() -> kd.System:
+    return kd.System.from_hessians([1.0], {"stiff": ("1/40", [[400.0]]), "soft": ("1/10", [[1.0]])})
+
+
+@pytest.mark.parametrize("name", WRITTEN)
+def test_what_is_written_is_not_computed_again(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    ask, forms = WRITTEN[name]
+    result = ask()
+    for function in ("answer", "ask", "decide", "map", "verdicts"):
+        monkeypatch.setattr(_native, function, None)
+    assert all(getattr(result, form)() for form in forms)

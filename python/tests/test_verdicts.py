@@ -62,7 +62,7 @@ def test_many_verdicts_are_those_of_one_at_a_time() -> None:
     h1 = [Fraction(rng.randint(1, 300), 100) for _ in range(60)]
     h2 = [Fraction(rng.randint(1, 300), 100) for _ in range(60)]
     lambdas = ["pi^2", "11/4"]
-    found = kd.verdicts(lambda1=[[own] for own in lambdas], lambda2="1/25", h1=h1, h2=h2)
+    found = kd.verdicts(lambda1=[[stiffness] for stiffness in lambdas], lambda2="1/25", h1=h1, h2=h2)
     assert found.code.shape == (2, 60) == found.stable.shape and len(found) == 2
     for (row, lambda1), (column, steps) in itertools.product(enumerate(lambdas), enumerate(zip(h1, h2, strict=True))):
         one = kd.decide(lambda1=lambda1, lambda2="1/25", h1=steps[0], h2=steps[1])
@@ -124,7 +124,7 @@ LONG = {
     "map": "kd.map(lambda1='pi^2', lambda2='pi^2/25', step='1/9000', h1=('1/9000', '2/pi'), h2=('1/9000', '7/2'))",
     "tongues": "kd.tongues(max_sum=400, rho='1/25')",
     "closings": "kd.closings(max_sum=60)",
-    "compare": "kd.compare(max_sum=900, rho='1/25', samples=900)",
+    "compare": "kd.compare(max_sum=900, rho='1/25', samples=900, budget=10**12)",
     "verdicts": "kd.verdicts(lambda1=1, lambda2='1/25', h1='1/1000003', h2=[f'{n}/1000033' for n in range(1, 60000)])",
 }
 

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from kickdrift._bands import Atoms
 from kickdrift._errors import KickdriftError, shown
+from kickdrift._levels import Atoms
 from kickdrift._numbers import Exact, doubles, rational
 from kickdrift._openmm import app, mm, unit
 from kickdrift._openmm.forces import masses_of, moving_of
@@ -28,9 +28,9 @@ def names_of(
     if len(atoms) != len(masses):
         remedy = f"the system has {len(masses)} particles: give the topology that it was made of"
         raise KickdriftError("topology", f"{len(atoms)} atoms", remedy)
-    own = [atoms[n] for n in kept]
-    labels = [f"{atom.name} {atom.residue.name} {atom.residue.id}" for atom in own]
-    elements = [atom.element.symbol if atom.element is not None else "atom" for atom in own]
+    chosen = [atoms[n] for n in kept]
+    labels = [f"{atom.name} {atom.residue.name} {atom.residue.id}" for atom in chosen]
+    elements = [atom.element.symbol if atom.element is not None else "atom" for atom in chosen]
     place = {n: k for k, n in enumerate(kept)}
     pairs = [(place.get(bond[0].index), place.get(bond[1].index)) for bond in topology.bonds()]
     bonded = [(i, j) for i, j in pairs if i is not None and j is not None]
@@ -68,8 +68,8 @@ def bonds_of(system: Any) -> list[tuple[int, int]]:
     pairs = [tuple(force.getBondParameters(n)[:2]) for force in forces for n in range(force.getNumBonds())]
     pairs += [tuple(system.getConstraintParameters(n)[:2]) for n in range(system.getNumConstraints())]
     masses = masses_of(system)
-    own = {(min(pair), max(pair)) for pair in pairs if masses[list(pair)].all()}
-    return sorted(pair for pair in own if masses[list(pair)].max() > _HYDROGEN)
+    distinct = {(min(pair), max(pair)) for pair in pairs if masses[list(pair)].all()}
+    return sorted(pair for pair in distinct if masses[list(pair)].max() > _HYDROGEN)
 
 
 #: u: what is no heavier is a hydrogen, as files of systems have it.
@@ -85,7 +85,7 @@ def changed(system: Any, topology: Any, where: Doubles, constraints: str | None,
         return system
     if constraints not in (None, "h-bonds"):
         raise KickdriftError("constraints", str(constraints), "of OpenMM's systems write h-bonds")
-    own, masses = mm.XmlSerializer.clone(system), [float(mass) for mass in masses_of(system)]
+    copy, masses = mm.XmlSerializer.clone(system), [float(mass) for mass in masses_of(system)]
     named = names_of(np.array(masses), topology, np.arange(len(masses)))[2] or bonds_of(system)
     light = [pair if masses[pair[0]] <= _HYDROGEN else pair[::-1] for pair in named]
     light = [(i, j) for i, j in light if 0 < masses[i] <= _HYDROGEN < masses[j]]
@@ -101,20 +101,20 @@ def changed(system: Any, topology: Any, where: Doubles, constraints: str | None,
             remedy = f"leaves particle {least} a mass of {moved[least]:.3g} u: give hydrogens 3.024 or so"
             raise KickdriftError("hmr", str(hmr), remedy)
         for n, mass in enumerate(moved):
-            own.setParticleMass(n, mass)
+            copy.setParticleMass(n, mass)
     if constraints is not None:
         place = {int(n): k for k, n in enumerate(moving_of(system))}
-        there = {frozenset(own.getConstraintParameters(n)[:2]) for n in range(own.getNumConstraints())}
+        there = {frozenset(copy.getConstraintParameters(n)[:2]) for n in range(copy.getNumConstraints())}
         rest: dict[frozenset[int], float] = {}
-        for force in own.getForces():
+        for force in copy.getForces():
             if isinstance(force, mm.HarmonicBondForce):
                 terms = (force.getBondParameters(n) for n in range(force.getNumBonds()))
                 rest |= {frozenset(term[:2]): term[2]._value for term in terms}
         for i, j in light:
             if frozenset((i, j)) not in there:
                 apart = float(np.linalg.norm(where[place[i]] - where[place[j]]))
-                own.addConstraint(i, j, rest.get(frozenset((i, j)), apart))
-    return own
+                copy.addConstraint(i, j, rest.get(frozenset((i, j)), apart))
+    return copy
 
 
 def places_of(system: Any, atoms: Sequence[int]) -> list[int]:
@@ -139,9 +139,9 @@ def places_of(system: Any, atoms: Sequence[int]) -> list[int]:
 
 
 def positions_of(positions: Any, system: Any) -> Doubles:
-    """Of the particles that are no virtual sites, nm; sites are placed anew, whether they are given or not."""
-    own = positions.value_in_unit(unit.nanometer) if unit.is_quantity(positions) else positions
-    array = doubles("positions", own if isinstance(own, np.ndarray) else [list(row) for row in own])
+    """Where the particles are that are no virtual sites, nm; sites are placed anew, whether they are given or not."""
+    numbers = positions.value_in_unit(unit.nanometer) if unit.is_quantity(positions) else positions
+    array = doubles("positions", numbers if isinstance(numbers, np.ndarray) else [list(row) for row in numbers])
     count, moving = system.getNumParticles(), moving_of(system)
     if array.shape == (count, 3):
         array = array[moving]

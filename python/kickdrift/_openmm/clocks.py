@@ -44,7 +44,7 @@ def clocks_of(system: Any, integrator: Any, steps: Mapping[int, Any] | None) -> 
     if steps is None:
         clocks = clocks_of_integrator(integrator, set(acting))
     else:
-        clocks = {group: duration(f"steps[{group}]", _plain(own), "ps") for group, own in steps.items()}
+        clocks = {group: duration(f"steps[{group}]", _plain(step), "ps") for group, step in steps.items()}
     missing = sorted(acting.keys() - clocks.keys())
     if missing:
         remedy = f"is never integrated ({', '.join(acting[missing[0]])}): give it a step"
@@ -63,9 +63,9 @@ def _acting(system: Any) -> dict[int, list[str]]:
         if moves_nothing(force):
             continue
         acting.setdefault(force.getForceGroup(), []).append(force.getName())
-        own = getattr(force, "getReciprocalSpaceForceGroup", lambda: -1)()
-        if own >= 0 and force.getNonbondedMethod() in EWALD:
-            acting.setdefault(own, []).append(f"reciprocal space of {force.getName()}")
+        reciprocal = getattr(force, "getReciprocalSpaceForceGroup", lambda: -1)()
+        if reciprocal >= 0 and force.getNonbondedMethod() in EWALD:
+            acting.setdefault(reciprocal, []).append(f"reciprocal space of {force.getName()}")
     return acting
 
 
@@ -105,8 +105,8 @@ def clocks_of_integrator(integrator: Any, groups: set[int]) -> dict[int, Fractio
             _, variable, expression = integrator.getComputationStep(number_)
             found = _KICK.match(expression.replace(" ", "")) if variable == "v" else None
             if found:
-                own = [int(found["group"])] if found["group"] else sorted(groups)
-                clocks |= dict.fromkeys(own, step / int(found["parts"] or 1))
+                moved = [int(found["group"])] if found["group"] else sorted(groups)
+                clocks |= dict.fromkeys(moved, step / int(found["parts"] or 1))
     if not clocks:
         remedy = "its steps are not known from its form: give steps={group: step} instead"
         raise KickdriftError("integrator", type(integrator).__name__, remedy)

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from kickdrift import _forcefield
 from kickdrift._errors import KickdriftError
 from kickdrift._hessians import Force
 from kickdrift._journal import Journal
@@ -67,24 +68,24 @@ class Engine:
     def _shared(self) -> Callable[[Doubles, Doubles], Doubles]:
         """Forces on all particles at positions of those that move, as forces on these: what acts on a site acts on its
         parents, as OpenMM has it."""
-        own, pull = mm.XmlSerializer.clone(self.context.getSystem()), mm.CustomExternalForce("-(fx*x+fy*y+fz*z)")
-        for n in reversed(range(own.getNumForces())):
-            own.removeForce(n)
+        copy, pull = mm.XmlSerializer.clone(self.context.getSystem()), mm.CustomExternalForce("-(fx*x+fy*y+fz*z)")
+        for n in reversed(range(copy.getNumForces())):
+            copy.removeForce(n)
         for axis in "xyz":
             pull.addPerParticleParameter(f"f{axis}")
         for n in self.sites:
             pull.addParticle(int(n), [0.0, 0.0, 0.0])
-        own.addForce(pull)
-        context = mm.Context(own, mm.VerletIntegrator(0.001), mm.Platform.getPlatformByName("Reference"))
+        copy.addForce(pull)
+        context = mm.Context(copy, mm.VerletIntegrator(0.001), mm.Platform.getPlatformByName("Reference"))
         engine = Engine(context, self.masses, self.moving)
 
-        def of(positions: Doubles, forces: Doubles) -> Doubles:
+        def shared(positions: Doubles, forces: Doubles) -> Doubles:
             for k, n in enumerate(self.sites):
                 pull.setParticleParameters(k, int(n), list(forces[n]))
             pull.updateParametersInContext(context)
             return forces[self.moving] + engine.force(-1)(positions)
 
-        return of
+        return shared
 
     def shared(self, positions: Doubles, forces: Doubles) -> Doubles:
         """The forces on the particles that move by themselves, of forces on all."""
@@ -116,10 +117,12 @@ class Engine:
     @cached_property
     def smoother(self) -> str:
         """What makes a jump at a cutoff smaller. OpenMM leaves the switching function out of LJPME, whatever is set."""
-        own = [own.getNonbondedMethod() for own in self.context.getSystem().getForces() if isinstance(own, _CUT)]
-        takes = set(own) - {mm.NonbondedForce.NoCutoff, mm.NonbondedForce.LJPME}
+        methods = [
+            force.getNonbondedMethod() for force in self.context.getSystem().getForces() if isinstance(force, _CUT)
+        ]
+        takes = set(methods) - {mm.NonbondedForce.NoCutoff, mm.NonbondedForce.LJPME}
         tuned = "a smaller Ewald tolerance or a longer cutoff"
-        if mm.NonbondedForce.LJPME in own and not takes:
+        if mm.NonbondedForce.LJPME in methods and not takes:
             return f"{tuned} (OpenMM takes no switching function with LJPME, but with PME)"
         return f"a switching function, {tuned}"
 
@@ -128,19 +131,17 @@ class Engine:
         return Forces(self, groups)
 
     def energy(self, where: Doubles) -> float:
-        """Of all forces, kJ/mol."""
+        """The energy of all forces, kJ/mol."""
         self.place(where)
         return float(self.context.getState(getEnergy=True).getPotentialEnergy()._value)
 
     @cached_property
     def cuts(self) -> dict[int, list[Any]]:
         """What is cut off of each group: pairs whose forces are known."""
-        from kickdrift import _forcefield
-
         found: dict[int, list[Any]] = {}
         for force in self.context.getSystem().getForces():
-            if isinstance(force, _CUT) and (own := _forcefield.cut(force, self.context)) is not None:
-                found.setdefault(force.getForceGroup(), []).append(own)
+            if isinstance(force, _CUT) and (cut := _forcefield.cut(force, self.context)) is not None:
+                found.setdefault(force.getForceGroup(), []).append(cut)
         return found
 
 
@@ -158,16 +159,16 @@ class Forces:
 
     @property
     def journal(self) -> Journal | None:
-        return self.engine.journal and self.engine.journal.of("forces", float(self.groups))
+        return self.engine.journal and self.engine.journal.under("forces", float(self.groups))
 
     def smooth(self, positions: Doubles, reach: float) -> Force:
         """With each pair kept on that side of the cutoff on which it is at these positions."""
-        acting = [own for group, cuts in self.engine.cuts.items() if self.groups >> group & 1 for own in cuts]
+        acting = [cut for group, cuts in self.engine.cuts.items() if self.groups >> group & 1 for cut in cuts]
         if not acting:
             return self
         every, about = self.engine.placed(positions), (positions, reach)
         reach *= stretch_of(self.engine.context.getSystem(), every)
-        kept = [found for own in acting if (found := own.kept(every, reach)) is not None]
+        kept = [found for cut in acting if (found := cut.kept(every, reach)) is not None]
         return Smooth(self, kept, about) if kept else self
 
 
@@ -182,23 +183,23 @@ class Smooth:
 
     @property
     def journal(self) -> Journal | None:
-        own = self.force.journal
-        return own and own.of("smooth", *self.about)
+        journal = self.force.journal
+        return journal and journal.under("smooth", *self.about)
 
     def __call__(self, positions: Doubles) -> Doubles:
         engine = self.force.engine
         every = engine.placed(positions)
-        added = np.sum([own(every) for own in self.kept], axis=0)
+        added = np.sum([cut(every) for cut in self.kept], axis=0)
         return np.asarray(self.force(positions) + (engine.shared(positions, added) if added.any() else 0.0))
 
     def note(self, positions: Doubles) -> str | None:
         """What to know of a minimum of this where it is none of the forces as they are: pairs beyond their side."""
         every = self.force.engine.placed(positions)
-        crossed = [own.crossed(every) for own in self.kept]
+        crossed = [cut.crossed(every) for cut in self.kept]
         pairs = [pair for pairs, _ in crossed for pair in pairs]
         if not pairs:
             return None
-        off = max(float(own.max(initial=0.0)) for _, own in crossed)
+        off = max(float(depths.max(initial=0.0)) for _, depths in crossed)
         jump = float(np.linalg.norm(self(positions) - self.force(positions), axis=1).max())
         who = f"{len(pairs)} pair{'s' * (len(pairs) > 1)} (as particles {pairs[0][0]} and {pairs[0][1]})"
         return (
@@ -242,7 +243,7 @@ def engine_of(system: Any, platform: str = "Reference") -> Engine:
 
 
 def masses_of(system: Any) -> Doubles:
-    """Of all particles, u."""
+    """The masses of all particles, u."""
     return np.array([system.getParticleMass(n)._value for n in range(system.getNumParticles())], dtype=np.float64)
 
 
@@ -266,7 +267,9 @@ def stretch_of(system: Any, at: Doubles) -> float:
 def _turned(site: Any, at: Doubles) -> float:
     """How far a site moves where its parents, which are here, move by 1 each: by the norms of its derivatives."""
     if isinstance(site, mm.OutOfPlaneSite):
-        first, second, cross = (float(own) for own in (site.getWeight12(), site.getWeight13(), site.getWeightCross()))
+        first, second, cross = (
+            float(weight) for weight in (site.getWeight12(), site.getWeight13(), site.getWeightCross())
+        )
         one, two = float(np.linalg.norm(at[1] - at[0])), float(np.linalg.norm(at[2] - at[0]))
         return abs(1 - first - second) + abs(first) + abs(second) + 2 * abs(cross) * (one + two)
     if isinstance(site, mm.LocalCoordinatesSite):
@@ -285,8 +288,10 @@ def led_downhill(engine: Engine, where: Doubles, context: Any = None, **how: flo
     context = context or engine.context
     if engine.journal is not None:
         # Threads add up forces in any order: it need not end at the same place again.
-        own, xml = replace(engine, journal=None), mm.XmlSerializer.serialize(context.getSystem())
-        return engine.journal.kept(lambda: led_downhill(own, where, context, **how), "downhill", str(how), xml, where)
+        unkept, xml = replace(engine, journal=None), mm.XmlSerializer.serialize(context.getSystem())
+        return engine.journal.kept(
+            lambda: led_downhill(unkept, where, context, **how), "downhill", str(how), xml, where
+        )
     engine.place(where, context)
     energy = context.getState(getEnergy=True).getPotentialEnergy()._value
     if not np.isfinite(energy):

@@ -45,8 +45,8 @@ def at_rest(
     it.
 
     Newton's method first, since OpenMM's minimizer leaves a minimum that it is given; after the minimizer where that
-    does not arrive close by. All but the chosen coordinates stand still. Of forces that jump at a cutoff the minimum
-    need not be one: then a note says so.
+    does not arrive close by. All but the chosen coordinates stand still. Forces that jump at a cutoff need
+    have no minimum: then a note says so.
 
     Raises
     ------
@@ -93,15 +93,15 @@ def relaxed(engine: Engine, where: Doubles, chosen: Sequence[int] | None) -> Dou
     """Where OpenMM's minimizer ends; what has no mass stands still for it."""
     context = engine.context
     if chosen is not None:
-        own = mm.XmlSerializer.clone(context.getSystem())
+        copy = mm.XmlSerializer.clone(context.getSystem())
         still = {int(n) for n in np.delete(engine.moving, sorted({column // 3 for column in chosen}))}
         for n in still:
-            own.setParticleMass(n, 0.0)
+            copy.setParticleMass(n, 0.0)
         # Held distances to what stands still are the next step's: the minimizer knows none of massless particles.
-        for n in reversed(range(own.getNumConstraints())):
-            if set(own.getConstraintParameters(n)[:2]) & still:
-                own.removeConstraint(n)
-        context = mm.Context(own, mm.VerletIntegrator(0.001), context.getPlatform())
+        for n in reversed(range(copy.getNumConstraints())):
+            if set(copy.getConstraintParameters(n)[:2]) & still:
+                copy.removeConstraint(n)
+        context = mm.Context(copy, mm.VerletIntegrator(0.001), context.getPlatform())
     return led_downhill(engine, where, context, tolerance=1e-4)
 
 

@@ -75,8 +75,8 @@ def draw(path: str, sizes: list[int], seconds: list[float]) -> None:
 
 def main() -> None:
     """Print a line for each number of waters."""
-    counts = [int(own) for own in sys.argv[1:] if own.isdigit()]
-    cutoff = next((float(own[:-2]) for own in sys.argv[1:] if own.endswith("nm")), CUTOFF)
+    counts = [int(word) for word in sys.argv[1:] if word.isdigit()]
+    cutoff = next((float(word[:-2]) for word in sys.argv[1:] if word.endswith("nm")), CUTOFF)
     seconds = []
     for count in counts:
         system, positions = droplet(count, cutoff)
@@ -90,9 +90,9 @@ def main() -> None:
         for outer in STEPS:
             steps = {0: Fraction(outer) / 16, 1: Fraction(outer)}
             times = [(time.perf_counter(), time.process_time())]
-            own = ko.system(system, positions, steps=steps, sparse=True, minimize=False)
+            droplet_system = ko.system(system, positions, steps=steps, sparse=True, minimize=False)
             times.append((time.perf_counter(), time.process_time()))
-            found = own.decide(budget=10**15)
+            found = droplet_system.decide(budget=10**15)
             times.append((time.perf_counter(), time.process_time()))
             (made, _), (decided, processor) = np.diff(times, axis=0)
             peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6

@@ -93,7 +93,7 @@ def from_nowhere(field: app.ForceField, topology: app.Topology) -> np.ndarray:
         x = minimum(system, x, warm=True)
         context.setPositions(x)
         found.append((context.getState(getEnergy=True).getPotentialEnergy()._value, x))
-    return min(found, key=lambda own: own[0])[1]
+    return min(found, key=lambda pair: pair[0])[1]
 
 
 def measured(name: str, field: app.ForceField, topology: app.Topology, x: np.ndarray) -> None:
@@ -102,14 +102,14 @@ def measured(name: str, field: app.ForceField, topology: app.Topology, x: np.nda
     system = field.createSystem(topology, nonbondedMethod=cutoff, **free)
     x = minimum(system, x)
     bonded = mm.XmlSerializer.clone(system)
-    slow = [n for n, own in enumerate(bonded.getForces()) if "onbonded" in type(own).__name__]
+    slow = [n for n, force in enumerate(bonded.getForces()) if "onbonded" in type(force).__name__]
     for n in reversed(slow):
         bonded.removeForce(n)
     masses = np.array([system.getParticleMass(i)._value for i in range(system.getNumParticles())])
     held = bonds_with_hydrogen(topology)
     both = []
-    for own in (system, bonded):
-        context = mm.Context(own, mm.VerletIntegrator(0.001), mm.Platform.getPlatformByName("Reference"))
+    for each in (system, bonded):
+        context = mm.Context(each, mm.VerletIntegrator(0.001), mm.Platform.getPlatformByName("Reference"))
         both.append(hessian(context, x))
     shown = []
     atoms = list(topology.atoms())
