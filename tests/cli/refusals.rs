@@ -395,6 +395,18 @@ fn work_beyond_the_budget_is_refused_with_its_cost_before_it_begins() {
             env!("CARGO_MANIFEST_DIR"),
             "/data/scenes/bar-resonant.json --nearest --resolution 1e-7"
         ),
+        // Wide cells, but twelve ranges one after the other, each with edges that are sharpened.
+        concat!(
+            "system ",
+            env!("CARGO_MANIFEST_DIR"),
+            "/data/scenes/chain200.json --nearest --resolution 1e-1"
+        ),
+        // Rational masses of what is left beside rigid motions.
+        concat!(
+            "system ",
+            env!("CARGO_MANIFEST_DIR"),
+            "/data/scenes/ring24.json --nearest --resolution 1e-3"
+        ),
         concat!(
             "system ",
             env!("CARGO_MANIFEST_DIR"),

@@ -7,7 +7,7 @@ use crate::levels::Method;
 use crate::spectrum::rate::middle;
 use crate::vary::edges::{Family, Linear};
 use crate::vary::nearest::Nearest;
-use crate::vary::stretches::{Stretch, check_width};
+use crate::vary::stretches::{Stretch, check_width, most_cells};
 use crate::verdict::analysis::Analysis;
 use crate::verdict::decide::{decide_around, decide_by};
 use crate::verdict::limits::{Limits, Route};
@@ -99,15 +99,19 @@ impl Model {
         limits: &Limits,
     ) -> Result<f64> {
         check_width(width)?;
+        self.cost_of_cells(number, range, most_cells(range, width), limits)
+    }
+
+    fn cost_of_cells(&self, number: &Number, range: (f64, f64), cells: f64, limits: &Limits) -> Result<f64> {
         match (number, self) {
             (Number::Linear(at), _) => {
                 let at = |x: &Rational| Ok(at(x)?.moving()?.into_owned());
-                Family { linear: Linear::Number, at: &at }.cost(range, width, limits)
+                Family { linear: Linear::Number, at: &at }.cost(range, cells, limits)
             }
-            (_, Model::Measured(own)) => own.cost_of_stretches(range, width),
+            (_, Model::Measured(own)) => own.cost_of_cells(cells),
             (_, Model::LocalSteps(own)) => Ok(own.cost()),
             (_, Model::Along(_) | Model::NoGradient(_) | Model::Sparse(_)) => Err(self.no_intervals()),
-            _ => self.over_outer_steps(|family| family.cost(range, width, limits)),
+            _ => self.over_outer_steps(|family| family.cost(range, cells, limits)),
         }
     }
 
@@ -116,8 +120,10 @@ impl Model {
     /// # Errors
     /// As [`Family::cost`].
     pub fn cost_of_nearest(&self, width: f64, limits: &Limits) -> Result<f64> {
-        let range = Nearest::reach(to_f64(&self.outer_step()));
-        self.cost_of_stretches(&Number::Outer, range, width, limits)
+        check_width(width)?;
+        let step = to_f64(&self.outer_step());
+        let cells = Nearest::most_cells(step, width);
+        self.cost_of_cells(&Number::Outer, Nearest::reach(step), cells, limits)
     }
 
     /// The result of `ask` on the systems of all outer steps.

@@ -10,7 +10,7 @@ use crate::friction::Friction;
 use crate::levels::{Cells, Hessians, Kernel, Method, Nested, Outer};
 use crate::linear::sparse::Symmetric;
 use crate::linear::system::{Potential, System};
-use crate::vary::stretches::{Stretch, cover, most_cells};
+use crate::vary::stretches::{Stretch, cover};
 use crate::verdict::analysis::Analysis;
 use crate::verdict::limits::{Limits, Route};
 use crate::verdict::measured::{Holds, check_accuracy};
@@ -317,12 +317,12 @@ impl MeasuredSystem {
     }
 
     /// The products that these cost, roughly, where cells are narrow throughout.
-    pub(super) fn cost_of_stretches(&self, range: (f64, f64), width: f64) -> Result<f64> {
+    pub(super) fn cost_of_cells(&self, cells: f64) -> Result<f64> {
         if self.is_of_two_levels() {
             let n = self.size() as f64;
-            return Ok(self.cost() as f64 + most_cells(range, width) * n * n * (n + CELL));
+            return Ok(self.cost() as f64 + cells * n * n * (n + CELL));
         }
-        self.over_steps(|levels, steps| Ok(levels.at(steps)?.cost_of_stretches(range, width)))
+        self.over_steps(|levels, steps| Ok(levels.at(steps)?.cost_of_cells(cells)))
     }
 
     /// What `ask` finds of levels that are not two of an inner and an outer step, and of their steps.

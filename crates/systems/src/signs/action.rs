@@ -149,6 +149,11 @@ fn positions(order: &[usize]) -> Vec<usize> {
     place
 }
 
+/// The products of one elimination of the action, 0 where none is tried.
+pub(crate) fn cost_of_signs(system: &System) -> f64 {
+    Action::new(system).and_then(|own| own.matrix(Held::Neither)).map_or(0.0, |own| own.products())
+}
+
 /// The parts of the action, degrees of freedom in an order in which neighbours stand close together.
 struct Action {
     /// The kicks in ticks, for rows in the new order: (column, coefficient).

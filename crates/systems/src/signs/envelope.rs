@@ -38,6 +38,11 @@ impl Envelope {
         Envelope { sizes: vec![0.0; first.len()], first, rows }
     }
 
+    /// The products of an elimination.
+    pub fn products(&self) -> f64 {
+        self.rows.iter().map(|row| (row.len() as f64).powi(2) / 2.0).sum()
+    }
+
     /// Adds x to the entries (i, j) and (j, i), once if i = j; j must not lie left of the envelope.
     pub fn add(&mut self, i: usize, j: usize, x: f64) {
         let (i, j) = (i.max(j), i.min(j));

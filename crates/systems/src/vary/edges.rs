@@ -7,9 +7,10 @@
 
 use crate::half::compose;
 use crate::linear::system::System;
+use crate::signs::action;
 use crate::vary::between::{Cells, verify_line};
 use crate::vary::critical::{Gap, Line, Plan};
-use crate::vary::stretches::{Stretch, cover, most_cells};
+use crate::vary::stretches::{Stretch, cover};
 use crate::verdict::decide::decide_system;
 use crate::verdict::limits::Limits;
 use crate::verdict::measured::Holds;
@@ -34,6 +35,13 @@ impl Linear {
         }
     }
 }
+
+/// Eliminations of the action that a cell takes, roughly: signs at both ends, and counts at some halvings of those that counts prove.
+const ELIMINATIONS: f64 = 16.0;
+
+/// A product of rationals, with what goes on around it, in products of words: of these a cell takes 3 n³ where rigid modes leave
+/// the masses of the rest dense.
+const RATIONAL: f64 = 1000.0;
 
 /// The systems of one number.
 pub struct Family<'a> {
@@ -84,11 +92,11 @@ impl Family<'_> {
         Plan::new(&Line::new([first, last]), limits)
     }
 
-    /// The products that the stretches of a range cost, roughly: those of the polynomials, else of as many cells as there can be.
+    /// The products that the stretches of a range cost, roughly: those of the polynomials, else of so many cells.
     ///
     /// # Errors
     /// As [`Family::exactly`].
-    pub fn cost(&self, (lo, hi): (f64, f64), width: f64, limits: &Limits) -> Result<f64> {
+    pub fn cost(&self, (lo, hi): (f64, f64), cells: f64, limits: &Limits) -> Result<f64> {
         if let Some(plan) = self.plan((lo, hi), limits)? {
             return Ok(plan.cost());
         }
@@ -96,8 +104,10 @@ impl Family<'_> {
         // The half period with its norms, some eliminations, and rational entries: as measured on bar-resonant.json and chain200.json.
         let entries = middle.clocks().iter().map(|own| own.stiffness.places().count()).sum::<usize>();
         let n = middle.size() as f64;
+        let rigid = if middle.rigid_modes().is_empty() { 0.0 } else { RATIONAL * 3.0 * n.powi(3) };
         let own = 16.0 * compose::cost(&middle) as f64 + 4.0 * n.powi(3) + 8_000.0 * (entries as f64 + n);
-        Ok(most_cells((lo, hi), width) * own)
+        let signs = ELIMINATIONS * action::cost_of_signs(&middle);
+        Ok(cells * (own + rigid + signs))
     }
 
     /// The result of `ask` on the cells of these systems.

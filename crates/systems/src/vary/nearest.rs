@@ -1,6 +1,6 @@
 //! The unstable intervals next to one number, from stretches that cover its neighbourhood: searched for outwards, farther and farther.
 
-use crate::vary::stretches::{Stretch, merged};
+use crate::vary::stretches::{self, Stretch, merged};
 use crate::verdict::measured::Holds;
 use number::error::Result;
 
@@ -37,6 +37,22 @@ impl Nearest {
         (number / 2.0, number * 2.0)
     }
 
+    /// The ranges from a number outwards, which [`Nearest::search`] covers one after the other.
+    fn ranges(number: f64, upwards: bool) -> impl Iterator<Item = (f64, f64)> {
+        let reaches = std::iter::successors(Some(FIRST), |reach| (*reach < 1.0).then_some(2.0 * reach));
+        let ends = reaches.map(move |far| if upwards { number * (1.0 + far) } else { number / (1.0 + far) });
+        ends.scan(number, move |at, end| {
+            let before = std::mem::replace(at, end);
+            Some(if upwards { (before, end) } else { (end, before) })
+        })
+    }
+
+    /// The most cells that a search asks about, roughly.
+    pub fn most_cells(number: f64, width: f64) -> f64 {
+        let ranges = [false, true].into_iter().flat_map(|upwards| Nearest::ranges(number, upwards));
+        ranges.map(|range| stretches::most_cells(range, width)).sum()
+    }
+
     /// Searched for from `number` > 0 outwards, down to half of it and up to twice, `stretches` covering a range; `own` is what is proven at
     /// the number itself, which parts what nothing is proven of on either side of it.
     ///
@@ -48,10 +64,8 @@ impl Nearest {
     ) -> Result<Nearest> {
         let mut covered = vec![Stretch { lo: number, hi: number, verdict: own }];
         for upwards in [false, true] {
-            let (mut at, mut reach) = (number, FIRST);
-            loop {
-                let end = if upwards { number * (1.0 + reach) } else { number / (1.0 + reach) };
-                let more = stretches(if upwards { (at, end) } else { (end, at) })?;
+            for range in Nearest::ranges(number, upwards) {
+                let more = stretches(range)?;
                 covered = if upwards { [covered, more].concat() } else { [more, covered].concat() };
                 covered = merged(covered.into_iter());
                 let found = Nearest::of(number, &covered);
@@ -61,10 +75,9 @@ impl Nearest {
                 } else {
                     found.below.is_some_and(|own| own.within.0.is_some())
                 };
-                if is_whole || reach >= 1.0 {
+                if is_whole {
                     break;
                 }
-                (at, reach) = (end, (2.0 * reach).min(1.0));
             }
         }
         Ok(Nearest::of(number, &covered))

@@ -59,10 +59,12 @@ pub fn check_width(width: f64) -> Result<()> {
     Ok(())
 }
 
-/// The most cells that [`cover`] asks about, roughly: each as narrow as they get, and a wider one tried before it. Those that sharpen the
-/// ends of open stretches come on top.
+/// Cells that sharpen the ends of open stretches of a range: of one to three, some 24 each, as measured on data/scenes.
+const SHARPENING: f64 = 60.0;
+
+/// The most cells that [`cover`] asks about, roughly: each as narrow as they get, and a wider one tried before it.
 pub fn most_cells((lo, hi): (f64, f64), width: f64) -> f64 {
-    2.0 * (hi - lo) / (width * lo.abs().max(hi.abs())) + f64::from(PARTS)
+    2.0 * (hi - lo) / (width * lo.abs().max(hi.abs())) + f64::from(PARTS) + SHARPENING
 }
 
 /// Cells that sharpen one end.

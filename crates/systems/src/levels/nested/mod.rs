@@ -31,7 +31,7 @@ use super::growth::{Growing, Grows};
 use super::region::largest;
 use crate::signs;
 use crate::spectrum::discs::Spectrum;
-use crate::vary::stretches::{Stretch, cover, merged, most_cells};
+use crate::vary::stretches::{Stretch, cover, merged};
 use crate::verdict::measured::Holds;
 use number::bisected;
 use number::error::Result;
@@ -107,11 +107,11 @@ impl Steps<'_> {
         Ok(merged(known.into_iter().chain(rest)))
     }
 
-    /// The products of doubles that these cost, roughly: of each cell six counts of chains of twice as many nodes at both ends, products at each node, and the eigenvalues. Of
+    /// The products of doubles that so many cells of a range cost, roughly: of each six counts of chains of twice as many nodes at both ends, products at each node, and the eigenvalues. Of
     /// waters a quarter of the range is narrow cells, those where nothing is proven.
-    pub fn cost_of_stretches(&self, range: (f64, f64), width: f64) -> f64 {
+    pub fn cost_of_cells(&self, cells: f64) -> f64 {
         let each = 40.0 * self.events.len() as f64 + 40.0;
-        most_cells(range, width) / 4.0 * each * (self.nested.size() as f64).powi(3)
+        cells / 4.0 * each * (self.nested.size() as f64).powi(3)
     }
 
     /// The verdict, and what grows.
