@@ -7,6 +7,7 @@ mod golden;
 mod help;
 mod manners;
 mod refusals;
+mod remedies;
 mod scenes;
 mod side;
 mod support;

@@ -51,7 +51,10 @@ impl Stream {
             return Ok(());
         }
         let work = format!("the tongues of {} are {rows} rows, the budget is {most}", self.ratios.words());
-        Err(Error::budget(work, rows).or("choose a smaller --max-sum, a window, or --survey"))
+        Err(Error::budget(work, rows).or(match self.ratios {
+            Ratios::One(_) => "choose labels by --m, or a window",
+            Ratios::UpTo(_) => "choose a smaller --max-sum, a window, or --survey",
+        }))
     }
 
     /// Hands on the tongues in the order of p + q, p, m.

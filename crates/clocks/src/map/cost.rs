@@ -70,7 +70,7 @@ pub(super) fn allow(grid: &Grid, shard: Shard, limits: &Limits) -> Result<()> {
     }
     let cost =
         format!("a map of {pairs} pairs composes about {kicks:.1e} kicks, {} of one core", time(kicks));
-    let needed = (kicks / TIMES_A_PAIR as f64).ceil() as u64;
+    let needed = ((kicks / TIMES_A_PAIR as f64).ceil() as u64).max(grid.longest() + 1);
     Err(Error::budget(cost, needed).or("choose a larger step, a smaller window, or a part of the map"))
 }
 

@@ -155,9 +155,9 @@ impl Simulate {
         let period = simulation.clocks().period();
         // The series, the measurement of growth, and one period forward and back.
         let runs = 2 * u64::from(self.periods) + 2;
-        limits.allow(simulation.cost(period).saturating_mul(runs), || {
-            format!("{} periods of {} kicks", self.periods, simulation.clocks().strikes())
-        })?;
+        let work = || format!("{} periods of {} kicks", self.periods, simulation.clocks().strikes());
+        let allowed = limits.allow(simulation.cost(period).saturating_mul(runs), work);
+        allowed.map_err(|error| error.or("choose fewer periods"))?;
         if !simulation.energy().is_finite() {
             let remedy = "the energy there is beyond all doubles: choose a smaller displacement";
             return Err(Error::input("displace", &self.displace.text, remedy));

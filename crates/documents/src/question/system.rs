@@ -168,7 +168,9 @@ impl System {
         let (xs, ys, limits) = (axes.x.values(), axes.ys(), work.products());
         let points = xs.len() * ys.len();
         let cost = System::cost_of_map(axes, &xs, &ys)?;
-        limits.allow(scene.model().counted(cost) as u64, || format!("a map of {points} points"))?;
+        limits
+            .allow(scene.model().counted(cost) as u64, || format!("a map of {points} points"))
+            .map_err(|error| error.or("choose larger spacings"))?;
         let seconds = scene.model().seconds_of(cost);
         work.announce(&format!("{points} points, each {:.2} s on average", seconds / points as f64), seconds);
         let bar = work.count(points as u64, "points");

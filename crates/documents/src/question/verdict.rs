@@ -35,7 +35,7 @@ question! {
 }
 
 /// Seconds a kick of friction.
-const DAMPED_KICK: f64 = 1e-6;
+const DAMPED_KICK: f64 = 5e-5;
 
 impl Verdict {
     /// The question about an oscillator with its steps.
@@ -87,6 +87,9 @@ impl Question for Verdict {
 
     fn answer(&self, work: &Work) -> Result<Decided> {
         let oscillator = self.oscillator()?;
+        if self.friction.is_some() {
+            systems::friction::allow_pair(&oscillator, &work.limits())?;
+        }
         let (decision, growth) = decide_with_growth(&oscillator, self.first_tier(), &work.limits())?;
         Ok(Decided {
             decision,

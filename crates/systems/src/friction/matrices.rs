@@ -16,7 +16,7 @@ use crate::linear::system::{Potential, System};
 use crate::verdict::decide::decide_by;
 use crate::verdict::limits::{Limits, Route, degrees_of_freedom};
 use clocks::propagator::Oscillator;
-use clocks::verdict::{self, Kind, Tier};
+use clocks::verdict::{self, Kind};
 use number::error::{Error, Result};
 use number::rational::{from_f64_exact, to_f64};
 use number::{Ball, Laurent, Rational, Real, Sign, U};
@@ -81,13 +81,34 @@ fn damped_part(part: &System, ticking: &System, rate: &Rational, limits: &Limits
 /// The spectral radius is 1, whatever the friction.
 const TIE: At = (Some(Damping::Marginal), Some((0.0, 0.0)));
 
+/// A kick of friction costs as much as so many without, as measured.
+const A_DAMPED_KICK: u64 = 50;
+
+/// That friction on a pair of steps is within the limits.
+///
+/// # Errors
+/// A budget error, before the work; steps without a rational ratio.
+pub fn allow_pair(oscillator: &Oscillator, limits: &verdict::Limits) -> Result<()> {
+    let kicks = oscillator.clocks()?.ratio().kicks();
+    let cost = kicks.saturating_mul(A_DAMPED_KICK);
+    if cost <= limits.kicks {
+        return Ok(());
+    }
+    let work = format!(
+        "friction on {kicks} kicks costs as much as {cost} of them without, on the order of {} s; the budget is {}",
+        cost.div_ceil(1_000_000),
+        limits.kicks
+    );
+    Err(Error::budget(work, cost).or("choose steps with a simpler ratio"))
+}
+
 /// As [`damped_system`], for a pair of steps.
 ///
 /// # Errors
 /// As [`damped_oscillator`]; a period of more kicks than the limits allow.
 pub fn damped_pair(oscillator: &Oscillator, rate: &Rational, limits: &verdict::Limits) -> Result<Friction> {
     let two = oscillator.clocks()?;
-    limits.allow(two.ratio().kicks(), Tier::Refine)?;
+    allow_pair(oscillator, limits)?;
     let steps = [Rational::from_integer(1.into()), Rational::new(two.p().into(), two.q().into())];
     let strengths = vec![two.fast().clone(), two.slow().clone()];
     let clocks = ManyClocks::new(&steps, &[Rational::default(), Rational::default()], strengths)?;

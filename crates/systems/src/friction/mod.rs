@@ -50,5 +50,5 @@ mod tie;
 pub use damping::Damping;
 pub use masking::Search;
 pub use masking::{Mask, Masked};
-pub use matrices::{Friction, damped_oscillator, damped_pair, damped_system};
+pub use matrices::{Friction, allow_pair, damped_oscillator, damped_pair, damped_system};
 pub(crate) use radius::{Radius, damping};

@@ -145,11 +145,13 @@ fn decide_clocks<S: Decidable>(
 /// One or two clocks of phase 0: the certified ladder.
 fn by_ladder<S: Decidable>(clocks: &ManyClocks<S>, limits: &Limits) -> Result<Option<Scalar>> {
     let Some(two) = clocks.as_two_clocks() else { return Ok(None) };
-    let limits = limits.of_ladder();
-    let answer = verdict::decide(&two, &limits)?;
-    let mu = answer.trace()?.sub(&Ball::from_integer(&2.into()), BITS).scale2(-2);
-    let growth = answer.growth()?.ln_multiplier.clone();
-    Ok(Some(Scalar { verdict: answer.verdict, tier: answer.decided_by, mu, growth, label: answer.label()? }))
+    let found = || {
+        let answer = verdict::decide(&two, &limits.of_ladder())?;
+        let mu = answer.trace()?.sub(&Ball::from_integer(&2.into()), BITS).scale2(-2);
+        let growth = answer.growth()?.ln_multiplier.clone();
+        Ok(Scalar { verdict: answer.verdict, tier: answer.decided_by, mu, growth, label: answer.label()? })
+    };
+    found().map(Some).map_err(Limits::in_products)
 }
 
 /// Any clocks: the signs that doubles prove. The bound of [`float`] has room for one more rounding of each stiffness.

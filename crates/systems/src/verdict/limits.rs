@@ -15,6 +15,9 @@ pub enum Route {
 /// Products of dense doubles are so many times as fast as others, which are of words or of few doubles at once, as measured on two machines.
 pub(crate) const DENSE: u64 = 10;
 
+/// Products that a kick of the scalar ladder counts as.
+const A_KICK: u64 = 1000;
+
 /// Products a second, of rational systems with what goes on around them.
 pub(crate) const PACE: f64 = 1e9;
 
@@ -66,7 +69,14 @@ impl Limits {
 
     /// This limit in kicks of the scalar ladder, whose refine tier spends some thousand products on each.
     pub(crate) fn of_ladder(&self) -> verdict::Limits {
-        verdict::Limits { kicks: self.products / 1000 }
+        verdict::Limits { kicks: self.products / A_KICK }
+    }
+
+    /// An error of that ladder, its budget in products.
+    pub(crate) fn in_products(error: Error) -> Error {
+        let Some(kicks) = error.needed() else { return error };
+        let work = format!("{} (in kicks, of which each counts as {A_KICK} products)", error.field());
+        Error::budget(work, kicks.saturating_mul(A_KICK)).or(error.remedy())
     }
 }
 

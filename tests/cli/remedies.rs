@@ -1,0 +1,212 @@
+//! Every remedy that a message names works: whoever does as it says gets an answer.
+
+use super::support::Desk;
+
+const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/scenes");
+
+/// A command line as the shell takes it: words between quotes are one, and `data/` is the folder of scenes.
+fn parts(line: &str) -> Vec<String> {
+    let words = line.split('"').enumerate().flat_map(|(k, part)| match k % 2 {
+        1 => vec![part],
+        _ => part.split_whitespace().collect(),
+    });
+    words.map(|word| word.replace("data/", &format!("{DATA}/"))).collect()
+}
+
+/// The budget that is refused, and what else is asked.
+fn with_budget(line: &str, budget: &str) -> Vec<String> {
+    [parts(line), vec!["--budget".into(), budget.into()]].concat()
+}
+
+fn run(desk: &Desk, args: &[String]) -> (Option<i32>, String) {
+    let ended = desk.run(&args.iter().map(String::as_str).collect::<Vec<_>>());
+    (ended.code, ended.stderr)
+}
+
+#[test]
+fn the_budget_that_a_message_names_is_enough() {
+    let desk = Desk::new();
+    for (budget, line) in [
+        ("50", "verdict --lambda1 10 --lambda2 1 --h1 0.01 --h2 1.01 --exact"),
+        ("100", "verdict --lambda1 1 --lambda2 1/3 --h1 1 --h2 203/201 --friction 1/10"),
+        ("1500", "verdict --lambda1 1 --lambda2 1/3 --h1 1 --h2 2003 --certificate verdict.v"),
+        ("1", "word \"K(1/2) D(1) K(1/2)\""),
+        ("1", "half --ratio 5/3 --s 11/4 --rho 1/25"),
+        ("1", "polynomial --ratio 5/3"),
+        ("100", "proposition --max 5"),
+        ("100", "closings --ratio 5/3 --samples 20"),
+        ("10", "tongues --ratio 11/9 --rho 1"),
+        ("10", "tongues --max-sum 9 --rho 1"),
+        ("20", "tongues --ratio 31/29 --rho 1 --m 3 --certificate tongue.v"),
+        ("0", "map --lambda1 10 --lambda2 1 --step 1/20 --h1-range 1/10..1 --h2-range 1/10..1"),
+        ("10", "bands --lambda1 pi^2 --lambda2 pi^2/25 --h1-range 1/5..1/4 --h2-range 9/10..1 --sectors 100"),
+        ("10", "compare --max-sum 5 --rho 1 --samples 3"),
+        ("10", "advise --period 10fs --period 40fs --steps 1fs,4fs"),
+        ("10", "system data/three-clocks.json"),
+        ("10", "system data/two-bars.json"),
+        ("10", "system data/fpu.json --exact"),
+        ("10", "system data/no-gradient.json"),
+        ("10", "system data/membrane.json"),
+        ("10", "system data/fpu.json --scan outer=1/10..1/2:1/10"),
+    ] {
+        let (code, message) = run(&desk, &with_budget(line, budget));
+        assert_eq!(code, Some(2), "{line}: {message}");
+        let (_, named) = message.split_once("--budget ").unwrap_or_else(|| panic!("{line}: {message}"));
+        let needed: String = named.chars().take_while(char::is_ascii_digit).collect();
+        let (code, other) = run(&desk, &with_budget(line, &needed));
+        assert_eq!(code, Some(0), "{line}: {message}{other}");
+    }
+}
+
+/// Doubles do not reach the end of this period, whatever they may cost: the first refusal named a budget after which came another one.
+#[test]
+fn kicks_beyond_both_limits_name_what_exact_numbers_cost() {
+    let line = "verdict --lambda1 1000 --lambda2 10 --h1 0.12345 --h2 100003";
+    let (code, message) = run(&Desk::new(), &parts(line));
+    assert!(code == Some(2) && message.contains("the exact tier"), "{message}");
+}
+
+/// What is refused, a part of the message, and what it says to do instead.
+const REMEDIES: &[(&str, &str, &str)] = &[
+    ("verdict --lambda1 1 --h1 1 --h2 1", "add --lambda2", "verdict --lambda1 1 --lambda2 1 --h1 1 --h2 1"),
+    (
+        "verdict --lambda1 1 --lambda2 1 --h1 1 --h2 1 --float table",
+        "add --format latex",
+        "verdict --lambda1 1 --lambda2 1 --h1 1 --h2 1 --float table --format latex",
+    ),
+    (
+        "verdict --lambda1 8 --lambda2 1 --h1 1 --h2 1.000000000000000000000001 --exact",
+        "simpler ratio",
+        "verdict --lambda1 8 --lambda2 1 --h1 1 --h2 1.001 --exact",
+    ),
+    (
+        "tongues --ratio 5/3 --rho -1/25",
+        "use `map` or `verdict`",
+        "verdict --lambda1 10 --lambda2 -2/5 --h1 1 --h2 5/3",
+    ),
+    (
+        "tongues --ratio 5/3 --rho 1 --h1-range 1..2",
+        "lambda1 missing",
+        "tongues --ratio 5/3 --rho 1 --h1-range 1..2 --lambda1 1",
+    ),
+    (
+        "tongues --ratio 11/9 --rho 1 --budget 10",
+        "labels by --m",
+        "tongues --ratio 11/9 --rho 1 --budget 10 --m 3",
+    ),
+    (
+        "tongues --max-sum 9 --rho 1 --budget 10",
+        "--survey",
+        "tongues --max-sum 9 --rho 1 --budget 10 --survey",
+    ),
+    (
+        "tongues --max-sum 5 --rho 1 --theta pi/2",
+        "--figure strength",
+        "tongues --max-sum 5 --rho 1 --theta pi/2 --figure strength --output a.svg",
+    ),
+    (
+        "tongues --max-sum 5 --rho 1 --thinnest 3",
+        "--survey",
+        "tongues --max-sum 5 --rho 1 --thinnest 3 --survey",
+    ),
+    ("tongues --ratio 5/3 --rho 1 --survey", "--max-sum N", "tongues --max-sum 5 --rho 1 --survey"),
+    (
+        "tongues --max-sum 5 --rho 1 --figure diagram --output a.svg",
+        "--ratio P/Q,P/Q",
+        "tongues --ratio 3/2,2/1 --rho 1 --figure diagram --output a.svg",
+    ),
+    (
+        "tongues --max-sum 5 --rho 1 --figure atlas --output a.svg",
+        "lambda1 missing",
+        "tongues --max-sum 5 --rho 1 --figure atlas --output a.svg --lambda1 pi^2 --h1-range 0..2/pi --h2-range 0..7/2",
+    ),
+    ("tongues --ratio 3/2,2/1 --rho 1", "all by --max-sum", "tongues --max-sum 5 --rho 1"),
+    (
+        "tongues --ratio 5/3 --rho 1 --certificate t.v",
+        "add --m",
+        "tongues --ratio 5/3 --rho 1 --certificate t.v --m 3",
+    ),
+    ("closings --max-sum 5 --m 3", "leave --m out", "closings --max-sum 5 --samples 20"),
+    (
+        "map --lambda1 1 --lambda2 1 --step 1/5 --h1-range 1/5..1 --h2-range 1/5..1 --shard 1/1",
+        "--resume DIR",
+        "map --lambda1 1 --lambda2 1 --step 1/5 --h1-range 1/5..1 --h2-range 1/5..1 --shard 1/1 --resume parts",
+    ),
+    (
+        "map --lambda1 1 --lambda2 1 --step 1/5 --h1-range 1/5..1 --h2-range 1/5..1 --shard 1/1 --resume parts --format csv",
+        "kickdrift merge makes the rest",
+        "merge parts --format csv",
+    ),
+    (
+        "merge parts --colour growth --output a.svg",
+        "--growth: compute them with it",
+        "map --lambda1 1 --lambda2 1 --step 1/5 --h1-range 1/5..1 --h2-range 1/5..1 --growth --shard 1/1 --resume growing",
+    ),
+    (
+        "map --lambda1 1 --lambda2 1 --step 1/5 --h1-range 1/5..1 --h2-range 1/5..1 --a 0..1 --output a.svg",
+        "add --curves",
+        "map --lambda1 1 --lambda2 1 --step 1/5 --h1-range 1/5..1 --h2-range 1/5..1 --a 0..1 --curves --output a.svg",
+    ),
+    ("word", "K(1/2) D(1) K(1/2)", "word \"K(1/2) D(1) K(1/2)\""),
+    (
+        "word --method respa-4 --lambda1 1 --h 1",
+        "both stiffnesses",
+        "word --method respa-4 --lambda1 1 --lambda2 1/9 --h 1",
+    ),
+    (
+        "word \"K(1/2) D(1) K(1/2)\" --certificate w.v",
+        "--lambda1 and --h",
+        "word \"K(1/2) D(1) K(1/2)\" --certificate w.v --lambda1 1 --h 1",
+    ),
+    (
+        "system data/fpu.json --resolution 1e-2",
+        "--intervals PATH=LO..HI",
+        "system data/fpu.json --resolution 1e-2 --intervals outer=1/10..1/2",
+    ),
+    (
+        "system data/fpu.json --resolution 1e-2",
+        "--nearest",
+        "system data/fpu.json --resolution 1e-2 --nearest",
+    ),
+    (
+        "system data/diatomic-tether.json --colour growth",
+        "--scan twice",
+        "system data/diatomic-tether.json --colour growth --scan potentials.0.step=1/10..1:1/2 --scan potentials.1.step=1/10..1:1/2 --output a.svg",
+    ),
+    ("system data/small.json", "kickdrift run FILE", "run data/small.json --output small"),
+    ("run data/fpu.json", "kickdrift system FILE", "system data/fpu.json"),
+    ("verify data/fpu.json", "kickdrift system FILE", "system data/fpu.json"),
+    (
+        "system data/membrane.json --intervals outer=1/10..1",
+        "--scan the steps",
+        "system data/membrane.json --scan outer=1/10..1:1/2",
+    ),
+    (
+        "system data/no-gradient.json --intervals outer=1/10..1",
+        "--scan outer=LO..HI:BY",
+        "system data/no-gradient.json --scan outer=1/10..1:1/2",
+    ),
+    (
+        "system data/edge-pi.json --nearest",
+        "--scan outer=LO..HI:BY",
+        "system data/edge-pi.json --scan outer=1/10..1:1/2",
+    ),
+    (
+        "simulate data/fpu.json --budget 100000",
+        "fewer periods",
+        "simulate data/fpu.json --budget 100000 --periods 1",
+    ),
+    ("advise data/fpu.json", "`kickdrift system` takes numbers", "system data/fpu.json"),
+    ("advise data/membrane.json --steps 1fs,2fs", "`kickdrift system FILE`", "system data/membrane.json"),
+];
+
+#[test]
+fn whoever_does_as_a_message_says_gets_an_answer() {
+    let desk = Desk::new();
+    for (wrong, part, right) in REMEDIES {
+        let (code, message) = run(&desk, &parts(wrong));
+        assert!(code == Some(2) && message.contains(part), "{wrong}: {message}");
+        let (code, other) = run(&desk, &parts(right));
+        assert_eq!(code, Some(0), "{wrong}: {message}{right}: {other}");
+    }
+}
