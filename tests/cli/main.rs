@@ -6,6 +6,7 @@ mod files;
 mod golden;
 mod help;
 mod manners;
+mod names;
 mod refusals;
 mod remedies;
 mod scenes;

@@ -147,6 +147,8 @@ impl SystemScene {
             let shown = ends.iter().filter(|end| !end.is_null()).map(text).collect::<Vec<_>>();
             if shown.len() < 2 { format!("{} to its place", shown.concat()) } else { shown.join("–") }
         };
+        // Of keys alone: names stay as they are.
+        let plain = |keys: &str| keys.replace('_', " ");
         let words = match keys[..] {
             ["outer"] => "outer step".into(),
             ["masses", i] => format!("mass of particle {i}"),
@@ -161,13 +163,13 @@ impl SystemScene {
                     ["bonds", k, key] => {
                         format!("{key} of bond {} of {name}", ends(found(&potential["bonds"], k), ["i", "j"]))
                     }
-                    [key] => format!("{key} of {name}"),
-                    ref keys => format!("{} of {name}", keys.join(" ")),
+                    [key] => format!("{} of {name}", plain(key)),
+                    ref keys => format!("{} of {name}", plain(&keys.join(" "))),
                 }
             }
             ["build" | "mesh", "steps", i] => format!("step {i}"),
-            ["build" | "mesh", ref rest @ ..] => rest.join(" "),
-            ref keys => keys.join(" "),
+            ["build" | "mesh", ref rest @ ..] => plain(&rest.join(" ")),
+            ref keys => plain(&keys.join(" ")),
         };
         let last = keys.iter().rfind(|key| key.parse::<usize>().is_err());
         let time = match last {
@@ -175,7 +177,7 @@ impl SystemScene {
             Some(&"friction") => -1,
             _ => 0,
         };
-        (words.replace('_', " "), time)
+        (words, time)
     }
 
     /// This file with other numbers at some of its paths; `field` is what errors name.
