@@ -8,8 +8,8 @@ use kickdrift::number::rational::{from_f64_exact, ratio};
 use kickdrift::scene::{Array, Arrays, SystemScene};
 use kickdrift::system::levels::Method;
 use kickdrift::system::{
-    Analysis, Body, Holds, ImplicitExplicit, Jacobians, Level, Limits, LocalSteps, MeasuredSystem, Model,
-    Potential, Route, Symmetric, System,
+    Analysis, Body, Holds, ImplicitExplicit, Jacobians, Level, Limits, LocalSteps, Measured, MeasuredSystem,
+    Model, Potential, Route, Symmetric, System,
 };
 use kickdrift::verdict::Kind;
 use nalgebra::DMatrix;
@@ -271,11 +271,14 @@ struct Tally {
     open: usize,
     refused: usize,
     with_rigid: usize,
+    /// Systems within a margin, and first unstable steps, that were compared.
+    margins: usize,
+    first: usize,
 }
 
 /// Compares an answer with the truth: nothing proven is wrong, nothing held is set apart.
 fn compare(tally: &mut Tally, name: &str, analysis: &Analysis, given: &Given) {
-    let apart = given.size() - analysis.parts.iter().map(|part| part.size).sum::<usize>();
+    let apart = given.size() - size(analysis);
     let free = given.rigid().len();
     assert!(apart <= free, "{name}: {apart} set apart, {free} are not held: {given:?}");
     if apart < free && apart > 0 {
@@ -298,13 +301,67 @@ fn compare(tally: &mut Tally, name: &str, analysis: &Analysis, given: &Given) {
     }
 }
 
+/// Compares what is said of other systems: margins and first unstable steps.
+fn compare_others(tally: &mut Tally, seed: u64, analysis: &Analysis, given: &Given) {
+    let Some(measured) = &analysis.measured else { return };
+    let (name, apart) = (format!("seed {seed}"), given.size() - size(analysis));
+    if apart != 0 && apart < given.rigid().len() {
+        return;
+    }
+    if let Some(truth) = measured.holds.is_stable() {
+        tally.margins += usize::from(within_margin(seed, measured, given, (truth, apart > 0)));
+    }
+    if let Some(ends) = measured.first_unstable {
+        first_step(&name, ends, given, apart > 0);
+        tally.first += 1;
+    }
+}
+
+/// Degrees of freedom that are not set apart.
+fn size(analysis: &Analysis) -> usize {
+    analysis.parts.iter().map(|part| part.size).sum()
+}
+
+/// That the verdict is the same of two systems within the margin: stiffer or softer by it; and with a spring more where no motion is set
+/// apart, which that would hold.
+fn within_margin(seed: u64, measured: &Measured, given: &Given, (truth, is_apart): (bool, bool)) -> bool {
+    let Some(margin) = measured.margin.filter(|own| *own > 0.0) else { return false };
+    // A power of two below it, so that numbers stay short.
+    let part = from_f64_exact(margin.min(0.5).log2().floor().exp2()).unwrap();
+    let part = if seed & 8 == 0 { part } else { -part };
+    let stiffer = given.scaled(&(ratio(1, 1) + &part));
+    let sprung = (!is_apart).then(|| given.sprung(seed as usize / 16 % given.size(), &part));
+    for other in [Some(stiffer), sprung].into_iter().flatten() {
+        assert_eq!(other.is_stable(is_apart), truth, "seed {seed}: margin {margin} is wrong: {other:?}");
+    }
+    true
+}
+
+/// That outer steps up to the first end are stable, as far as two of them say, and the second end is not, where matrices are small: it has
+/// all digits of a double.
+fn first_step(name: &str, (lo, hi): (f64, f64), given: &Given, is_apart: bool) {
+    let stable = |outer: &Rational| given.slowed(&(outer / given.outer())).is_stable(is_apart);
+    let below = ratio((256.0 * lo).floor() as i64, 256);
+    for outer in [below.clone(), below / ratio(2, 1)].iter().filter(|outer| !outer.is_zero()) {
+        assert!(stable(outer), "{name}: {outer} is not stable, below {lo}: {given:?}");
+    }
+    if hi.is_finite() && given.size() <= 2 {
+        let outer = from_f64_exact(hi).unwrap();
+        assert!(!stable(&outer), "{name}: {hi} is not unstable: {given:?}");
+    }
+}
+
 fn symmetric(k: &DMatrix<Rational>) -> Symmetric {
     Symmetric::try_from(k).unwrap()
 }
 
 fn system(given: &Given) -> System {
-    let potential = |(h, k): &(Rational, DMatrix<Rational>)| Potential::new(symmetric(k), h.clone());
-    System::new(Symmetric::diagonal(&given.masses), given.potentials.iter().map(potential).collect()).unwrap()
+    let potential = |((h, k), phase): (&(Rational, DMatrix<Rational>), &Rational)| Potential {
+        phase: phase.clone(),
+        ..Potential::new(symmetric(k), h.clone())
+    };
+    let potentials = given.potentials.iter().zip(&given.phases).map(potential).collect();
+    System::new(Symmetric::diagonal(&given.masses), potentials).unwrap()
 }
 
 fn all(seeds: std::ops::Range<u64>) -> Tally {
@@ -337,7 +394,9 @@ fn all(seeds: std::ops::Range<u64>) -> Tally {
                     (h.clone(), k.map(|x| kickdrift::number::rational::to_f64(&x)))
                 };
                 let masses = given.masses.iter().map(kickdrift::number::rational::to_f64).collect();
-                let body = Body { masses: Some(masses), ..Body::default() };
+                let places = |all: &Vec<[i64; 3]>| all.iter().map(|own| own.map(|x| x as f64)).collect();
+                let positions = given.positions.as_ref().map(places);
+                let body = Body { masses: Some(masses), positions, ..Body::default() };
                 let own =
                     MeasuredSystem::new(body, given.potentials.iter().map(doubles).collect(), *accuracy)
                         .unwrap();
@@ -345,7 +404,13 @@ fn all(seeds: std::ops::Range<u64>) -> Tally {
             }
         };
         match model.decide(Route::Cheapest, &limits) {
-            Ok(analysis) => compare(&mut tally, &name, &analysis, &given),
+            Ok(analysis) => {
+                compare(&mut tally, &name, &analysis, &given);
+                // Some are enough: each takes as long as several of the others.
+                if given.size() <= 6 && (seed % 6 == 4 || given.positions.is_some()) {
+                    compare_others(&mut tally, seed, &analysis, &given);
+                }
+            }
             // Balanced by small parts, or more than six directions: said, and nothing is proven.
             Err(error) => {
                 assert!(matches!(given.step, Step::Dense { .. }), "{name}: {error}");
@@ -362,6 +427,8 @@ fn is_telling(tally: &Tally, count: usize) -> bool {
         && 10 * tally.stable > count
         && 10 * tally.unstable > count
         && 50 * tally.with_rigid > count
+        && 20 * tally.margins > count
+        && 30 * tally.first > count
 }
 
 #[test]
@@ -382,6 +449,8 @@ fn the_reference_knows_what_is_known() {
     let one = |k: i64, h: (i64, i64)| Given {
         masses: vec![ratio(1, 1)],
         potentials: vec![(ratio(h.0, h.1), DMatrix::from_element(1, 1, ratio(k, 1)))],
+        phases: vec![Rational::zero()],
+        positions: None,
         step: Step::Clocks,
     };
     // Verlet: h² k < 4.

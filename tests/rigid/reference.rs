@@ -39,12 +39,19 @@ pub struct Given {
     pub masses: Vec<Rational>,
     /// Each with its step.
     pub potentials: Vec<(Rational, Matrix)>,
+    /// For each potential 0, or 1/2: kicks at (n + phase) step.
+    pub phases: Vec<Rational>,
+    /// Where the atoms are, of which there is one for each three degrees of freedom.
+    pub positions: Option<Vec<[i64; 3]>>,
     pub step: Step,
 }
 
 impl Given {
     /// Stiffnesses that share a few directions, of which some are held by none, some fall, and along some potentials cancel.
     pub fn random(numbers: &mut Numbers, seed: u64) -> Given {
+        if seed % 24 == 5 {
+            return Given::molecule(numbers);
+        }
         let n = 1 + numbers.below(4) as usize;
         let step = match seed % 6 {
             0 | 1 => Step::Clocks,
@@ -95,7 +102,79 @@ impl Given {
         {
             full_turn(&mut potentials[0], levels, &masses);
         }
-        Given { masses, potentials, step }
+        let has_phases = seed % 6 == 1;
+        let phase = |_| if has_phases { ratio(numbers.below(2), 2) } else { Rational::zero() };
+        let phases = potentials.iter().map(phase).collect();
+        Given { masses, potentials, phases, positions: None, step }
+    }
+
+    /// Two atoms or three, bonds between them along which they stand, and sometimes what ties one of them to its place.
+    fn molecule(numbers: &mut Numbers) -> Given {
+        let step = Step::Dense { accuracy: 1e-6, keeps: numbers.below(6) == 0 };
+        let atoms = if numbers.below(5) == 0 { 3 } else { 2 };
+        let mut positions: Vec<[i64; 3]> = Vec::new();
+        while positions.len() < atoms {
+            let own = [0; 3].map(|_| numbers.below(3));
+            if !positions.contains(&own) {
+                positions.push(own);
+            }
+        }
+        let n = 3 * atoms;
+        let mass = [0; 3].map(|_| [1, 2, 4][numbers.below(3) as usize]);
+        let mut potentials = Vec::new();
+        let all = steps(numbers, &step);
+        for (k, h) in all.iter().enumerate() {
+            let hardness = ratio(1, if k == 0 { 4 } else { 16 }) / (h * h).max(ratio(1, 4));
+            let mut stiffness = Matrix::zeros(n, n);
+            for (i, j) in [(0, 1), (0, 2), (1, 2)].into_iter().filter(|(_, j)| *j < atoms) {
+                let apart = [0, 1, 2].map(|a| positions[j][a] - positions[i][a]);
+                let square: i64 = apart.iter().map(|x| x * x).sum();
+                let sign = if numbers.below(8) == 0 { -1 } else { 1 };
+                let weight = &hardness * ratio(sign * numbers.below(5), square);
+                for (p, a) in (0..n).map(|p| (p, p % 3)).filter(|(p, _)| [i, j].contains(&(p / 3))) {
+                    for (q, b) in (0..n).map(|q| (q, q % 3)).filter(|(q, _)| [i, j].contains(&(q / 3))) {
+                        let sign = if p / 3 == q / 3 { 1 } else { -1 };
+                        stiffness[(p, q)] += &weight * ratio(sign * apart[a] * apart[b], 1);
+                    }
+                }
+            }
+            if numbers.below(6) == 0 {
+                let held = numbers.below(n as u64) as usize;
+                stiffness[(held, held)] += hardness;
+            }
+            potentials.push((h.clone(), stiffness));
+        }
+        let masses = (0..n).map(|i| ratio(mass[i / 3], 1)).collect();
+        let phases = vec![Rational::zero(); potentials.len()];
+        Given { masses, potentials, phases, positions: Some(positions), step }
+    }
+
+    /// With all steps so many times as long.
+    pub fn slowed(&self, factor: &Rational) -> Given {
+        let slower = |(h, k): &(Rational, Matrix)| (h * factor, k.clone());
+        Given { potentials: self.potentials.iter().map(slower).collect(), ..self.clone() }
+    }
+
+    /// With every stiffness so many times as large.
+    pub fn scaled(&self, factor: &Rational) -> Given {
+        let stiffer = |(h, k): &(Rational, Matrix)| (h.clone(), k * factor.clone());
+        Given { potentials: self.potentials.iter().map(stiffer).collect(), ..self.clone() }
+    }
+
+    /// With a spring more at the i-th degree of freedom, in each potential so many times its largest diagonal entry over the mass, which its
+    /// norm is not below.
+    pub fn sprung(&self, i: usize, part: &Rational) -> Given {
+        let other = |(h, k): &(Rational, Matrix)| {
+            let least = (0..self.size()).map(|j| k[(j, j)].abs() / &self.masses[j]).max().expect("one");
+            let mut k = k.clone();
+            k[(i, i)] += part * least * &self.masses[i];
+            (h.clone(), k)
+        };
+        Given { potentials: self.potentials.iter().map(other).collect(), ..self.clone() }
+    }
+
+    pub fn outer(&self) -> &Rational {
+        self.potentials.iter().map(|(h, _)| h).max().expect("a step")
     }
 
     pub fn size(&self) -> usize {
@@ -181,14 +260,16 @@ impl Given {
         let period = steps[1..].iter().fold(steps[0].clone(), |t, h| lcm(t, h));
         let mut q = Matrix::identity(2 * n, 2 * n);
         let mut now = Rational::zero();
+        // In steps of a clock since a kick of it.
+        let since = |now: &Rational, k: usize| now / steps[k] - &self.phases[k];
         while now < period {
-            for (h, pull) in steps.iter().zip(pulls).filter(|(h, _)| (&now / **h).is_integer()) {
-                let change = pull * q.rows(0, n) * (**h).clone();
+            for (k, pull) in pulls.iter().enumerate().filter(|(k, _)| since(&now, *k).is_integer()) {
+                let change = pull * q.rows(0, n) * steps[k].clone();
                 let mut v = q.rows_mut(n, n);
                 v -= change;
             }
-            let next =
-                steps.iter().map(|h| ((&now / *h).floor() + Rational::one()) * *h).min().expect("a clock");
+            let next = |k: usize| (since(&now, k).floor() + Rational::one() + &self.phases[k]) * steps[k];
+            let next = (0..steps.len()).map(next).chain([period.clone()]).min().expect("a clock");
             let moved = q.rows(n, n) * (&next - &now);
             let mut x = q.rows_mut(0, n);
             x += moved;
