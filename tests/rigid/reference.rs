@@ -111,14 +111,9 @@ impl Given {
     /// Two atoms or three, bonds between them along which they stand, and sometimes what ties one of them to its place.
     fn molecule(numbers: &mut Numbers) -> Given {
         let step = Step::Dense { accuracy: 1e-6, keeps: numbers.below(6) == 0 };
-        let atoms = if numbers.below(5) == 0 { 3 } else { 2 };
-        let mut positions: Vec<[i64; 3]> = Vec::new();
-        while positions.len() < atoms {
-            let own = [0; 3].map(|_| numbers.below(3));
-            if !positions.contains(&own) {
-                positions.push(own);
-            }
-        }
+        let atoms = if numbers.below(20) == 0 { 3 } else { 2 };
+        let place = |numbers: &mut Numbers, k: i64| [k, numbers.below(3), numbers.below(3)];
+        let positions: Vec<[i64; 3]> = (0..atoms as i64).map(|k| place(numbers, k)).collect();
         let n = 3 * atoms;
         let mass = [0; 3].map(|_| [1, 2, 4][numbers.below(3) as usize]);
         let mut potentials = Vec::new();
@@ -144,21 +139,21 @@ impl Given {
             }
             potentials.push((h.clone(), stiffness));
         }
-        let masses = (0..n).map(|i| ratio(mass[i / 3], 1)).collect();
-        let phases = vec![Rational::zero(); potentials.len()];
+        let (masses, phases) =
+            ((0..n).map(|i| ratio(mass[i / 3], 1)).collect(), vec![ratio(0, 1); all.len()]);
         Given { masses, potentials, phases, positions: Some(positions), step }
     }
 
     /// With all steps so many times as long.
     pub fn slowed(&self, factor: &Rational) -> Given {
-        let slower = |(h, k): &(Rational, Matrix)| (h * factor, k.clone());
-        Given { potentials: self.potentials.iter().map(slower).collect(), ..self.clone() }
+        let potentials = self.potentials.iter().map(|(h, k)| (h * factor, k.clone())).collect();
+        Given { potentials, ..self.clone() }
     }
 
     /// With every stiffness so many times as large.
     pub fn scaled(&self, factor: &Rational) -> Given {
-        let stiffer = |(h, k): &(Rational, Matrix)| (h.clone(), k * factor.clone());
-        Given { potentials: self.potentials.iter().map(stiffer).collect(), ..self.clone() }
+        let potentials = self.potentials.iter().map(|(h, k)| (h.clone(), k * factor.clone())).collect();
+        Given { potentials, ..self.clone() }
     }
 
     /// With a spring more at the i-th degree of freedom, in each potential so many times its largest diagonal entry over the mass, which its
@@ -260,7 +255,6 @@ impl Given {
         let period = steps[1..].iter().fold(steps[0].clone(), |t, h| lcm(t, h));
         let mut q = Matrix::identity(2 * n, 2 * n);
         let mut now = Rational::zero();
-        // In steps of a clock since a kick of it.
         let since = |now: &Rational, k: usize| now / steps[k] - &self.phases[k];
         while now < period {
             for (k, pull) in pulls.iter().enumerate().filter(|(k, _)| since(&now, *k).is_integer()) {
