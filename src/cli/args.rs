@@ -243,8 +243,8 @@ impl Grid {
         let missing = |flag: &str, example: &str| {
             Error::missing(flag, format!("a grid needs it, as --{flag} {example}"))
         };
-        let step = |own: &Option<Laurent>| {
-            own.as_ref().or(self.step.as_ref()).cloned().ok_or_else(|| missing("step", "1/100"))
+        let step = |value: &Option<Laurent>| {
+            value.as_ref().or(self.step.as_ref()).cloned().ok_or_else(|| missing("step", "1/100"))
         };
         let range = |flag: &str, range: &Option<StepRange>, example: &str| {
             range.clone().ok_or_else(|| missing(flag, example))

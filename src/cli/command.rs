@@ -21,32 +21,32 @@ pub fn text(program: &Command, matches: &ArgMatches) -> String {
     let Some((name, given)) = matches.subcommand() else { return program.get_name().into() };
     let arguments = program.find_subcommand(name).into_iter().flat_map(Command::get_arguments);
     let is_map = ["map", "merge"].contains(&name);
-    let asked = arguments.filter(|own| !is_map || !OF_MAPS.contains(&own.get_id().as_str()));
-    let shown = asked.filter(|own| is_shown(own, given)).flat_map(|own| words(own, given));
+    let asked = arguments.filter(|arguments| !is_map || !OF_MAPS.contains(&arguments.get_id().as_str()));
+    let shown = asked.filter(|asked| is_shown(asked, given)).flat_map(|asked| words(asked, given));
     let name = if is_map { "map" } else { name };
     [program.get_name().to_string(), name.to_string()].into_iter().chain(shown).collect::<Vec<_>>().join(" ")
 }
 
-fn is_shown(own: &Arg, given: &ArgMatches) -> bool {
-    let id = own.get_id().as_str();
-    let is_file = own.get_value_hint() == ValueHint::AnyPath && id == "figure";
+fn is_shown(arg: &Arg, given: &ArgMatches) -> bool {
+    let id = arg.get_id().as_str();
+    let is_file = arg.get_value_hint() == ValueHint::AnyPath && id == "figure";
     given.value_source(id) == Some(ValueSource::CommandLine) && !ELSEWHERE.contains(&id) && !is_file
 }
 
 /// The flag and its values as a shell reads them; a flag that is given again comes again.
-fn words(own: &Arg, given: &ArgMatches) -> Vec<String> {
-    let is_path = own.get_value_hint() == ValueHint::AnyPath;
+fn words(arg: &Arg, given: &ArgMatches) -> Vec<String> {
+    let is_path = arg.get_value_hint() == ValueHint::AnyPath;
     let shown = |value: &std::ffi::OsStr| {
         let path = std::path::Path::new(value);
         let name = path.file_name().filter(|_| is_path).unwrap_or(value);
         quoted(&name.to_string_lossy())
     };
-    let values = given.get_raw_occurrences(own.get_id().as_str()).into_iter().flatten();
-    let separator = own.get_value_delimiter().map_or(" ".into(), String::from);
+    let values = given.get_raw_occurrences(arg.get_id().as_str()).into_iter().flatten();
+    let separator = arg.get_value_delimiter().map_or(" ".into(), String::from);
     let one = |values: Vec<String>| {
         let joined = values.join(&separator);
-        match own.get_long() {
-            Some(flag) if joined.is_empty() || !own.get_action().takes_values() => format!("--{flag}"),
+        match arg.get_long() {
+            Some(flag) if joined.is_empty() || !arg.get_action().takes_values() => format!("--{flag}"),
             Some(flag) => format!("--{flag} {joined}"),
             None => joined,
         }

@@ -91,7 +91,8 @@ const EXAMPLES: [(&str, &[&str]); 16] = [
 /// The program with all of this, its commands in their order. A negative number is a value, for the flag before it to refuse.
 pub fn explained(program: Command) -> Command {
     let program = negative_numbers(program);
-    let names: Vec<String> = program.get_subcommands().map(|own| own.get_name().to_string()).collect();
+    let names: Vec<String> =
+        program.get_subcommands().map(|get_subcommand| get_subcommand.get_name().to_string()).collect();
     names.iter().fold(program, |program, name| {
         program.mut_subcommand(name, |command| {
             let command = negative_numbers(command);

@@ -97,7 +97,7 @@ impl Args {
             }
         }
         match &answer.found {
-            Found::Verdict(own) if self.exit_code => self.code(own.analysis.holds()),
+            Found::Verdict(verdict) if self.exit_code => self.code(verdict.analysis.holds()),
             _ => Ok(0),
         }
     }

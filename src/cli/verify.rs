@@ -41,8 +41,8 @@ impl Args {
         let work = claim.work(&options).map_err(|error| self.elsewhere(error))?;
         announce(common.quiet, &format!("{file}, about {work} kicks"), work as f64 / KICKS_A_SECOND);
         let bar = progress(common.quiet, 0, "rows");
-        let see = |done: u64, of: u64| {
-            bar.set_length(of);
+        let see = |done: u64, count: u64| {
+            bar.set_length(count);
             bar.set_position(done);
         };
         let outcome = claim.recheck(&options, Some(&see)).map_err(|error| self.elsewhere(error))?;
@@ -71,7 +71,8 @@ impl Args {
 
 /// The error of the first of some failures: its row by number and name, where the document has rows.
 fn failed(first: &Failure, outcome: &Outcome, name: &str, file: &str) -> Error {
-    let rows: BTreeSet<u64> = outcome.failures.iter().map(|own| own.row).filter(|&row| row > 0).collect();
+    let rows: BTreeSet<u64> =
+        outcome.failures.iter().map(|failure| failure.row).filter(|&row| row > 0).collect();
     let more = match (outcome.failures.len(), rows.len()) {
         (_, failing @ 1..) if outcome.rows > 1 => {
             format!(
@@ -105,7 +106,7 @@ fn document(outcome: &Outcome, file: &str, name: &str) -> Document {
         .entry("rows", *rows)
         .entry("holding", *rows)
         .entry("route", *route)
-        .entry("sample", sample.map_or(Value::Null, |(drawn, of)| json!({"drawn": drawn, "of": of})))
+        .entry("sample", sample.map_or(Value::Null, |(drawn, count)| json!({"drawn": drawn, "of": count})))
         .entry("not_rechecked", not_rechecked.clone())
         .entry("failures", Vec::<Value>::new())
         .summary_alone(&lines)

@@ -70,8 +70,8 @@ static PAGE: LazyLock<String> = LazyLock::new(|| module("boot.js", ""));
 /// All scripts as one module, which takes a browser a single request: each becomes a function that returns what it exported, imports take
 /// that apart.
 fn module(host: &str, end: &str) -> String {
-    let own = SCRIPTS.iter().filter(|(name, _)| *name == host || !HOSTS.contains(name));
-    own.map(|(name, text)| enclosed(name, text)).chain([end.into()]).collect()
+    let filter = SCRIPTS.iter().filter(|(name, _)| *name == host || !HOSTS.contains(name));
+    filter.map(|(name, text)| enclosed(name, text)).chain([end.into()]).collect()
 }
 
 fn enclosed(name: &str, text: &str) -> String {
@@ -111,14 +111,14 @@ mod tests {
         for (place, (name, text)) in SCRIPTS.iter().enumerate() {
             for line in text.lines().filter(|line| line.contains(" from \"./")) {
                 let from = line.split("\"./").nth(1).unwrap().trim_end_matches("\";");
-                assert!(SCRIPTS[..place].iter().any(|(own, _)| *own == from), "{name} imports {from}");
+                assert!(SCRIPTS[..place].iter().any(|(text, _)| *text == from), "{name} imports {from}");
             }
         }
         let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/src/explore/page");
         let files = std::fs::read_dir(folder).unwrap();
         let names = files.map(|file| file.unwrap().file_name().into_string().unwrap());
         let kept = |name: &String| {
-            FILES.iter().map(|own| own.0).chain(SCRIPTS.iter().map(|own| own.0)).any(|own| own == name)
+            FILES.iter().map(|pair| pair.0).chain(SCRIPTS.iter().map(|pair| pair.0)).any(|text| text == name)
         };
         assert_eq!(names.filter(|name| !kept(name)).collect::<Vec<_>>(), Vec::<String>::new());
     }

@@ -42,7 +42,7 @@ fn verdict(scene: &SystemScene, analysis: &Analysis) -> Value {
 
 /// The file's outer step, and the range asked for: from a quarter of it to twice it, where none is.
 fn range(scene: &SystemScene, query: &Query) -> Result<(Rational, (Rational, Rational))> {
-    let own = scene
+    let value = scene
         .model()
         .system()
         .clocks()
@@ -52,12 +52,12 @@ fn range(scene: &SystemScene, query: &Query) -> Result<(Rational, (Rational, Rat
         .expect("a system has clocks");
     let (lo, hi) = match query.read("outer", parse_rational_range)? {
         Some(range) => range,
-        None => (&own * rational::ratio(1, 4), &own * rational::ratio(2, 1)),
+        None => (&value * rational::ratio(1, 4), &value * rational::ratio(2, 1)),
     };
     if lo <= Rational::default() || hi == lo {
         return Err(Error::input("outer", format!("{lo}..{hi}"), "write a range of positive steps"));
     }
-    Ok((own, (lo, hi)))
+    Ok((value, (lo, hi)))
 }
 
 /// `stretches` {`lo`, `hi`, `verdict`} that cover the range; null of systems that have none proven. They may cost far more than
@@ -68,7 +68,7 @@ pub(super) fn stretches(session: &Session, query: &Query) -> Result<Reply> {
     let span: Span = format!("outer={lo}..{hi}").parse()?;
     let stretches = match scene.intervals(&span, WIDTH, &Limits::default()) {
         Ok(found) => {
-            let one = |own: &Stretch| json!({"lo": own.lo, "hi": own.hi, "verdict": own.verdict.name()});
+            let one = |stretch: &Stretch| json!({"lo": stretch.lo, "hi": stretch.hi, "verdict": stretch.verdict.name()});
             found.stretches.iter().map(one).collect()
         }
         Err(error) if error.kind() != Kind::Input => return Err(error),
@@ -82,7 +82,7 @@ pub(super) fn stretches(session: &Session, query: &Query) -> Result<Reply> {
 /// too much; `own` the file's outer step, `verdict` the document of the file's own steps, `unit` of time, `title`.
 pub(super) fn answer(session: &Session, query: &Query) -> Result<Reply> {
     let scene = system(session)?;
-    let (own, (lo, hi)) = range(scene, query)?;
+    let (value, (lo, hi)) = range(scene, query)?;
     let affordable = MOST_PRODUCTS / scene.model().cost().max(1);
     if affordable < 2 {
         return Err(Error::budget("two verdicts on this system", 2 * scene.model().cost()));
@@ -94,7 +94,7 @@ pub(super) fn answer(session: &Session, query: &Query) -> Result<Reply> {
     let rates = scene.growth_rates(&span, &steps, &limits)?;
     let analysis = scene.model().decide(Route::Cheapest, &limits)?;
     Ok(Reply::json(&json!({
-        "outer": steps, "rate": rates, "own": rational::to_f64(&own), "verdict": verdict(scene, &analysis),
+        "outer": steps, "rate": rates, "own": rational::to_f64(&value), "verdict": verdict(scene, &analysis),
         "unit": scene.time_unit(), "title": scene.title(),
     })))
 }

@@ -57,16 +57,16 @@ impl Query {
 
     /// The stiffnesses: as given, or the session's; `rho` in place of the slow one.
     pub fn stiffnesses(&self, session: &Session) -> Result<(Laurent, Laurent)> {
-        let own = session.stiffnesses();
-        let known = |given: Option<Laurent>, own: Option<&Laurent>, key: &str| {
+        let pair = session.stiffnesses();
+        let known = |given: Option<Laurent>, value: Option<&Laurent>, key: &str| {
             given
-                .or(own.cloned())
+                .or(value.cloned())
                 .ok_or_else(|| Error::missing(key, "the file has no two stiffnesses: give them"))
         };
-        let lambda1 = known(self.read("lambda1", parse)?, own.map(|own| &own.0), "lambda1")?;
+        let lambda1 = known(self.read("lambda1", parse)?, pair.map(|pair| &pair.0), "lambda1")?;
         let lambda2 = match self.read("rho", parse_rational)? {
             Some(rho) => &Laurent::from_rational(rho) * &lambda1,
-            None => known(self.read("lambda2", parse)?, own.map(|own| &own.1), "lambda2")?,
+            None => known(self.read("lambda2", parse)?, pair.map(|pair| &pair.1), "lambda2")?,
         };
         let both = (lambda1, lambda2);
         Session::shows(&both)?;

@@ -144,11 +144,11 @@ impl Session {
 /// Stiffnesses beyond doubles.
 fn natural(lambda1: &Laurent, lambda2: &Laurent) -> Result<[StepRange; 2]> {
     let limit = |lambda: &Laurent| 2.0 / lambda.to_f64().sqrt();
-    let own = if lambda2.sign() == Sign::Positive { 1.1 * limit(lambda2) } else { f64::INFINITY };
+    let value = if lambda2.sign() == Sign::Positive { 1.1 * limit(lambda2) } else { f64::INFINITY };
     let most = 3.5 * std::f64::consts::FRAC_PI_2 * limit(lambda1);
     let to = |x: f64| Some((Laurent::from_integer(0), Laurent::from_rational(short(x, 2)?)));
     let h1 = to(limit(lambda1)).ok_or_else(|| beyond("lambda1", lambda1))?;
-    let h2 = to(own.min(most.max(limit(lambda1)))).ok_or_else(|| beyond("lambda2", lambda2))?;
+    let h2 = to(value.min(most.max(limit(lambda1)))).ok_or_else(|| beyond("lambda2", lambda2))?;
     if lambda2.to_f64().is_finite() { Ok([h1, h2]) } else { Err(beyond("lambda2", lambda2)) }
 }
 

@@ -53,17 +53,17 @@ fn tongue(ratio: Ratio, n: usize, gaps: &[Vec<Gap>]) -> Value {
     let (a, b) = dominant_family(ratio, m);
     json!({
         "m": m, "a": a, "b": b,
-        "lower": gaps.iter().map(|of| middle(&of[n].lower)).collect::<Vec<_>>(),
-        "upper": gaps.iter().map(|of| of[n].upper.as_ref().map(middle)).collect::<Vec<_>>(),
+        "lower": gaps.iter().map(|gap| middle(&gap[n].lower)).collect::<Vec<_>>(),
+        "upper": gaps.iter().map(|gap| gap[n].upper.as_ref().map(middle)).collect::<Vec<_>>(),
     })
 }
 
 fn closed(ratio: Ratio, rho: (Rational, Rational), samples: usize) -> Result<Value> {
     let found = closings(ratio, &Search { m: None, rho, samples })?;
     let point = |x: &clocks::tongue::Enclosure| rational::to_f64(&x.middle());
-    let one = |own: &clocks::tongue::Closing| {
-        let exact = own.exact.as_ref().map(|(s, rho)| [s.to_string(), rho.to_string()]);
-        json!({"m": own.m, "s": point(&own.s), "rho": point(&own.rho), "exact": exact})
+    let one = |closing: &clocks::tongue::Closing| {
+        let exact = closing.exact.as_ref().map(|(s, rho)| [s.to_string(), rho.to_string()]);
+        json!({"m": closing.m, "s": point(&closing.s), "rho": point(&closing.rho), "exact": exact})
     };
     Ok(found.closings.iter().map(one).collect())
 }

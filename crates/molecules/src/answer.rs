@@ -283,13 +283,14 @@ impl Question {
         });
         let Some(edges) = Edges::new(levels) else { return Ok(()) };
         row.intervals = edges.all(REACH * hi.max(1.0) * REACH, MOST_INTERVALS);
-        let upper = |own: &Unstable| own.upper.map_or(f64::INFINITY, |upper| upper.1);
-        row.first = row.intervals.iter().find(|own| own.label == 1).cloned().or(row.first.take());
+        let upper = |unstable: &Unstable| unstable.upper.map_or(f64::INFINITY, |upper| upper.1);
+        row.first = row.intervals.iter().find(|interval| interval.label == 1).cloned().or(row.first.take());
         if row.found.kind.is_stable() {
-            row.below = row.intervals.iter().rev().find(|own| upper(own) <= outer).cloned();
-            row.above = row.intervals.iter().find(|own| own.lower.0 >= outer).cloned();
+            row.below = row.intervals.iter().rev().find(|interval| upper(interval) <= outer).cloned();
+            row.above = row.intervals.iter().find(|interval| interval.lower.0 >= outer).cloned();
         } else {
-            row.inside = row.intervals.iter().find(|own| Some(own.label) == row.found.label).cloned();
+            row.inside =
+                row.intervals.iter().find(|interval| Some(interval.label) == row.found.label).cloned();
         }
         Ok(())
     }
@@ -346,8 +347,8 @@ impl Question {
             return None;
         }
         let mut stable = |slow: f64| {
-            let own = Laurent::from_rational(from_f64_exact(slow)?);
-            silent.iter().for_each(|&k| corner.stiffness[k] = own.clone());
+            let value = Laurent::from_rational(from_f64_exact(slow)?);
+            silent.iter().for_each(|&k| corner.stiffness[k] = value.clone());
             corner.in_first_region(&Ball::one()).filter(|&holds| holds)
         };
         // From a period of 2 π 10^8 fs down.

@@ -30,7 +30,7 @@ impl Beads {
     /// assert_eq!(format!("{:.2}", beads.period(1).unwrap()), "25.50");
     /// ```
     pub fn period(&self, k: u64) -> Option<f64> {
-        let kelvin = self.kelvin.as_ref()?.to_f64().filter(|own| *own > 0.0)?;
+        let kelvin = self.kelvin.as_ref()?.to_f64().filter(|value| *value > 0.0)?;
         let frequency = 2.0 * self.count as f64 * kelvin / HBAR_OVER_K;
         let turn = (k as f64 * std::f64::consts::PI / self.count as f64).sin();
         (turn > 0.0).then(|| 2.0 * std::f64::consts::PI / (frequency * turn))

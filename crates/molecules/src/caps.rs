@@ -65,8 +65,8 @@ impl Caps {
             .turns
             .last()?
             .as_ref()
-            .map(|own| (own, if is_alone { Bound::Turn } else { Bound::SlowTurn }));
-        let third = self.third.as_ref().map(|own| (own, Bound::Third));
+            .map(|turns| (turns, if is_alone { Bound::Turn } else { Bound::SlowTurn }));
+        let third = self.third.as_ref().map(|third| (third, Bound::Third));
         third.into_iter().chain(turn).min_by(|a, b| a.0.cmp(b.0))
     }
 

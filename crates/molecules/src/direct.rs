@@ -160,7 +160,7 @@ impl Direct {
             let points = multiples(scheme, fastest).len() as u64 + OF_A_SCHEME;
             Ok(points.saturating_mul(self.at(scheme.steps())?.cost()))
         };
-        schemes.iter().map(of).try_fold(0, |sum: u64, own: Result<u64>| Ok(sum.saturating_add(own?)))
+        schemes.iter().map(of).try_fold(0, |sum: u64, count: Result<u64>| Ok(sum.saturating_add(count?)))
     }
 
     /// The findings at each scheme.
@@ -203,7 +203,7 @@ impl Direct {
     /// T of the fastest motion of the forces of the innermost step alone, in fs, rounded.
     fn fastest(&self) -> Result<f64> {
         let found = self.jacobians.highest_fast_frequency();
-        let period = found.map(|own| 2.0 * std::f64::consts::PI / own * to_f64(&self.unit));
+        let period = found.map(|found| 2.0 * std::f64::consts::PI / found * to_f64(&self.unit));
         period.ok_or_else(|| {
             let remedy =
                 "nothing vibrates under the forces of the shortest step: ask `kickdrift system FILE`";
@@ -228,7 +228,7 @@ impl Direct {
     fn adds(&self, at: &Jacobians, asked: &Asked) -> Result<[Adds; 2]> {
         let longer = at.slowed(&(Rational::one() - asked.band).recip())?;
         let slow = SLOW * to_f64(&self.unit);
-        Ok([at, &longer].map(|own| adds(own.growth_rate(), asked.without, slow)))
+        Ok([at, &longer].map(|jacobians| adds(jacobians.growth_rate(), asked.without, slow)))
     }
 
     fn is_damped(&self, at: &Jacobians, friction: Option<&Rational>) -> Option<bool> {
@@ -246,7 +246,7 @@ impl Direct {
         let at = self.at(&steps)?;
         let [adds, in_band] = self.adds(&at, asked)?;
         let (rate, is_damped) = (at.growth_rate(), self.is_damped(&at, asked.friction));
-        Ok(Rung { multiple, outer, rate: rate.map(|own| self.per_fs(own)), adds, in_band, is_damped })
+        Ok(Rung { multiple, outer, rate: rate.map(|rate| self.per_fs(rate)), adds, in_band, is_damped })
     }
 
     fn find(&self, scheme: &Scheme, asked: &Asked) -> Result<DirectFinding> {
@@ -254,20 +254,20 @@ impl Direct {
         let multiples = multiples(scheme, asked.fastest);
         let ladder = number::parallel::try_map(&multiples, |&multiple| self.rung(scheme, multiple, asked))?;
         let up_to = |holds: fn(&Rung) -> bool| {
-            ladder.iter().take_while(|own| holds(own)).last().map(|own| own.outer.clone())
+            ladder.iter().take_while(|rung| holds(rung)).last().map(|rung| rung.outer.clone())
         };
-        let largest = up_to(|own| own.adds == Adds::Little && own.in_band == Adds::Little);
+        let largest = up_to(|rung| rung.adds == Adds::Little && rung.in_band == Adds::Little);
         // Only the fastest of all motions is known.
         let mut periods = vec![None; scheme.steps().len()];
         periods[0] = Some(asked.fastest * (1.0 - 1e-9));
         let caps = Caps::new(&periods, self.harmonic);
         let safe =
-            if ladder.is_empty() { None } else { caps.safe(scheme, largest.as_ref()).map(|own| own.0) };
+            if ladder.is_empty() { None } else { caps.safe(scheme, largest.as_ref()).map(|pair| pair.0) };
         let [adds, in_band] = self.adds(&at, asked)?;
-        let rate = at.growth_rate().map(|own| self.per_fs(own));
-        let added = rate.zip(asked.without.map(|own| self.per_fs(own)));
+        let rate = at.growth_rate().map(|pair| self.per_fs(pair));
+        let added = rate.zip(asked.without.map(|without| self.per_fs(without)));
         let tenfold = |rate: f64| std::f64::consts::LN_10 / (rate * to_f64(scheme.outer()));
-        let tenfold_steps = rate.filter(|own| own.0 > 0.0).map(|(lo, hi)| {
+        let tenfold_steps = rate.filter(|rate| rate.0 > 0.0).map(|(lo, hi)| {
             // ln 10, the step, two products.
             (tenfold(hi) * (1.0 - 1e-15), tenfold(lo) * (1.0 + 1e-15))
         });
@@ -283,22 +283,22 @@ impl Direct {
             adds,
             in_band,
             added: added.map(|((lo, hi), (least, most))| outward((lo - most, hi - least))),
-            within_accuracy: at.within_accuracy().map(|own| self.per_fs(own)),
+            within_accuracy: at.within_accuracy().map(|pair| self.per_fs(pair)),
             tenfold_steps,
-            atoms: at.fastest().filter(|_| tenfold_steps.is_some()).map(|own| self.atoms(&own)),
+            atoms: at.fastest().filter(|_| tenfold_steps.is_some()).map(|values| self.atoms(&values)),
             is_damped: self.is_damped(&at, asked.friction),
-            masking: at.masking_friction().map(|own| own / to_f64(&self.unit)),
+            masking: at.masking_friction().map(|value| value / to_f64(&self.unit)),
             within_run,
             largest,
             safe,
-            masked: up_to(|own| own.is_damped == Some(true)),
+            masked: up_to(|rung| rung.is_damped == Some(true)),
             ladder,
         })
     }
 
     /// Who moves, by kinetic energy.
     fn atoms(&self, [re, im]: &[Vec<f64>; 2]) -> String {
-        let root = |i: usize| self.jacobians.body().masses.as_ref().map_or(1.0, |own| own[i].sqrt());
+        let root = |i: usize| self.jacobians.body().masses.as_ref().map_or(1.0, |values| values[i].sqrt());
         let amplitudes = re.iter().zip(im).enumerate().map(|(i, (re, im))| root(i) * re.hypot(*im));
         self.names.atoms(&amplitudes.collect::<Vec<_>>())
     }
@@ -309,9 +309,9 @@ fn multiples(scheme: &Scheme, fastest: f64) -> Vec<u64> {
     if scheme.steps().len() < 2 {
         return Vec::new();
     }
-    let own = (scheme.outer() / scheme.last_but_one()).ceil().to_u64().unwrap_or(MOST_RUNGS);
+    let count = (scheme.outer() / scheme.last_but_one()).ceil().to_u64().unwrap_or(MOST_RUNGS);
     let period = (fastest / to_f64(scheme.last_but_one())).floor() as u64;
-    (1..=period.max(own).min(MOST_RUNGS)).collect()
+    (1..=period.max(count).min(MOST_RUNGS)).collect()
 }
 
 fn adds(rate: Option<(f64, f64)>, without: Option<(f64, f64)>, slow: f64) -> Adds {

@@ -118,8 +118,9 @@ impl<'a> Edges<'a> {
         let [a, b, c, d] = half.counts;
         let last = (2 * a.min(d)).saturating_sub(1).max(2 * b.min(c));
         let outer = to_f64(self.levels.scheme.outer());
-        let found =
-            (1..=last).filter_map(|m| self.get(m, most)).take_while(|own| own.lower.0 <= reach * outer);
+        let found = (1..=last)
+            .filter_map(|m| self.get(m, most))
+            .take_while(|unstable| unstable.lower.0 <= reach * outer);
         found.take(count).collect()
     }
 

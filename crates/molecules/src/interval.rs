@@ -84,7 +84,7 @@ impl<'a> Intervals<'a> {
     /// The tongues `from` ..= `upto`, for ρ rounded down and up.
     fn gaps(&self, from: u64, upto: u64) -> Result<Vec<[Gap; 2]>> {
         let low = self.low.gaps(from, upto)?;
-        let high = self.high.as_ref().map_or_else(|| Ok(low.clone()), |own| own.gaps(from, upto))?;
+        let high = self.high.as_ref().map_or_else(|| Ok(low.clone()), |tongues| tongues.gaps(from, upto))?;
         Ok(low.into_iter().zip(high).map(|(low, high)| [low, high]).collect())
     }
 

@@ -176,7 +176,7 @@ impl Levels<'_> {
     pub fn masking(&self) -> Option<Masked> {
         // Any friction: the answer on those that mask is the same.
         match self.with_friction(&self.scheme.inner().recip())?.masking {
-            Mask::At(own) => Some(own),
+            Mask::At(masked) => Some(masked),
             _ => None,
         }
     }
@@ -207,8 +207,8 @@ impl Levels<'_> {
         let schedule = Schedule::new(steps, &vec![Rational::zero(); steps.len()]).ok()?;
         let tick = Ball::from_rational(schedule.tick(), BITS);
         let strengths = steps.iter().zip(&self.stiffness).map(|(step, stiffness)| {
-            let own = Ball::from_rational(step, BITS).mul(&stiffness.enclosure(BITS), BITS);
-            own.mul(factor, BITS)
+            let ball = Ball::from_rational(step, BITS).mul(&stiffness.enclosure(BITS), BITS);
+            ball.mul(factor, BITS)
         });
         let kicks = Kicks::of_clocks(strengths, |k| [k.clone(), k.scale2(-1)]);
         let (zero, one) = (Ball::zero(), Ball::one());

@@ -233,7 +233,7 @@ impl Question {
         let one_clock = scheme.steps().len() == 1;
         let step = match self.caps().safe(scheme, largest.as_ref()) {
             Some((step, bound)) if one_clock => multiple(&step, &self.least()).map(|step| (step, bound)),
-            own => own,
+            pair => pair,
         };
         let (first, band_edge) = match &step {
             Some((step, _)) if !one_clock && step == scheme.last_but_one() => {
@@ -278,7 +278,7 @@ impl Question {
             .modes
             .iter()
             .cloned()
-            .map(|mode| Mode { clock: mode.clock.map(|own| own.min(last)), ..mode });
+            .map(|mode| Mode { clock: mode.clock.map(|clock| clock.min(last)), ..mode });
         Ok(Question { modes: modes.collect(), schemes, ..self.clone() })
     }
 
@@ -367,10 +367,10 @@ impl Question {
     fn other_methods(&self, all: &mut Levers) {
         let shorter = Rational::one() - &self.band;
         let factor = Laurent::from_rational((&shorter * &shorter).recip());
-        let of: Vec<&Laurent> =
+        let values: Vec<&Laurent> =
             self.stiffest().into_iter().flatten().map(|i| &self.modes[i].stiffness).collect();
-        let [fast, slow] = of[..] else { return };
-        let corner = [fast, slow].map(|own| own * &factor);
+        let [fast, slow] = values[..] else { return };
+        let corner = [fast, slow].map(|value| value * &factor);
         // Of the stiffest slow mode over every fast one: the longest fast period with the shortest slow one.
         let softest = self.faster().into_iter().map(|i| &self.modes[i].stiffness).min();
         let widest = (Rational::one() + &self.band) / &shorter;
@@ -382,8 +382,9 @@ impl Question {
             let Way::Molly(method) = way else { continue };
             let is_free = rho.as_ref().is_some_and(|rho| method.is_free(rho));
             let turn = 2.0 * beyond_verlet.1;
-            let of_mode =
-                |i: usize| method.unstable(&self.modes[i].stiffness, slow, turn).first().map(|own| own[0]);
+            let of_mode = |i: usize| {
+                method.unstable(&self.modes[i].stiffness, slow, turn).first().map(|pairs| pairs[0])
+            };
             let first = self.faster().into_iter().filter_map(of_mode);
             let first = first.reduce(|a, b| (a.0.min(b.0), a.1.min(b.1)));
             let Some(band_edge) = method.coupled_edge(&corner[0], &corner[1]) else { continue };
@@ -486,7 +487,7 @@ pub(super) fn multiple(limit: &Rational, unit: &Rational) -> Option<Rational> {
 /// The longest multiple of `unit` below the band's edge and the slow force's own bound.
 pub(super) fn bounded(edge: f64, caps: &Caps, unit: &Rational) -> Option<(Rational, Bound)> {
     let edge = (from_f64_exact(edge).unwrap_or_default(), Bound::Band);
-    let slow = caps.slow().map(|own| (own.clone(), Bound::SlowTurn));
+    let slow = caps.slow().map(|value| (value.clone(), Bound::SlowTurn));
     let (limit, bound) = slow.into_iter().chain([edge]).min_by(|a, b| a.0.cmp(&b.0))?;
     multiple(&limit, unit).map(|step| (step, bound))
 }
@@ -494,11 +495,11 @@ pub(super) fn bounded(edge: f64, caps: &Caps, unit: &Rational) -> Option<(Ration
 impl Levers {
     /// Sets each gain: against the longest step of kicks and drifts as they are today, at any ratio.
     pub fn compare(&mut self) {
-        let today = self.rows.iter().filter(|own| matches!(own.way, Way::Verlet | Way::Respa));
-        let longest = today.filter_map(|own| own.step.as_ref()).map(|(step, _)| step.clone()).max();
-        for own in &mut self.rows {
-            let step = own.step.as_ref().map(|(step, _)| step);
-            own.gain = step.zip(longest.as_ref()).map(|(step, longest)| step / longest);
+        let today = self.rows.iter().filter(|lever| matches!(lever.way, Way::Verlet | Way::Respa));
+        let longest = today.filter_map(|today| today.step.as_ref()).map(|(step, _)| step.clone()).max();
+        for row in &mut self.rows {
+            let step = row.step.as_ref().map(|(step, _)| step);
+            row.gain = step.zip(longest.as_ref()).map(|(step, longest)| step / longest);
         }
     }
 }

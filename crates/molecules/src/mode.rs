@@ -38,7 +38,7 @@ impl Origin {
         match self {
             Origin::Period => "period",
             Origin::Wavenumber => "wavenumber",
-            Origin::Typical(own) => own.origin,
+            Origin::Typical(typical) => typical.origin,
             Origin::Half => "k of E = k x^2/2",
             Origin::Whole => "K of E = K x^2",
         }
@@ -197,13 +197,13 @@ impl Mode {
 
     /// Whether it is called slow, or known as a period of slow forces: then it is on no fast clock unless it is put there.
     pub fn is_called_slow(&self) -> bool {
-        let by_origin = matches!(self.origin, Origin::Typical(own) if !own.is_fast);
+        let by_origin = matches!(self.origin, Origin::Typical(typical) if !typical.is_fast);
         by_origin || self.name.to_lowercase().starts_with("slow")
     }
 
     /// The same of the fastest clock.
     pub fn is_called_fast(&self) -> bool {
-        let by_origin = matches!(self.origin, Origin::Typical(own) if own.is_fast);
+        let by_origin = matches!(self.origin, Origin::Typical(typical) if typical.is_fast);
         by_origin || self.name.to_lowercase().starts_with("fast")
     }
 

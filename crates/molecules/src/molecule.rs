@@ -213,14 +213,14 @@ impl Molecule {
         for scheme in schemes {
             self.source.check(&self.steps(scheme))?;
             let ratios: Vec<Rational> = scheme.steps().iter().map(|step| step / scheme.inner()).collect();
-            if known.iter().all(|(own, _)| *own != ratios) {
+            if known.iter().all(|(values, _)| *values != ratios) {
                 known.push((ratios.clone(), self.at_ratio(scheme, to_f64(band))?));
             }
-            let (_, at) = known.iter().find(|(own, _)| *own == ratios).expect("just put there");
+            let (_, at) = known.iter().find(|(values, _)| *values == ratios).expect("just put there");
             found.push(self.find(scheme, &caps, band, (length, friction), at)?);
         }
         let mut slower: Vec<f64> =
-            self.source.slower_frequencies().into_iter().map(|own| self.period(own * own)).collect();
+            self.source.slower_frequencies().into_iter().map(|value| self.period(value * value)).collect();
         Ok(Findings {
             slow: slower.pop().unwrap_or(f64::INFINITY),
             between: slower,
@@ -321,10 +321,10 @@ impl Molecule {
             first_upper,
             growing,
             rate,
-            is_damped: friction.map(damping).transpose()?.flatten().map(|own| own == Damping::Damped),
-            masking: friction.filter(|_| grows).map(masking).transpose()?.flatten().map(|own| own / unit),
+            is_damped: friction.map(damping).transpose()?.flatten().map(|damping| damping == Damping::Damped),
+            masking: friction.filter(|_| grows).map(masking).transpose()?.flatten().map(|value| value / unit),
             name: decided.growing.as_ref().and_then(|[re, im]| self.names.motion(&[vec![re, im]])),
-            atoms: decided.growing.as_ref().map(|own| self.names.atoms(&amplitudes(own))),
+            atoms: decided.growing.as_ref().map(|growing| self.names.atoms(&amplitudes(growing))),
             band_edge,
             safe,
             bound,
@@ -400,7 +400,7 @@ impl Molecule {
     /// proven, and of other than two levels.
     pub fn method(&self, name: &str, way: Way, scheme: &Scheme, band: &Rational) -> Option<Lever> {
         let method = match way {
-            Way::Molly(own) => Method::Trigonometric(own),
+            Way::Molly(trigonometric) => Method::Trigonometric(trigonometric),
             Way::ImplicitExplicit => Method::ImplicitExplicit,
             _ => return None,
         };
@@ -438,7 +438,7 @@ impl Molecule {
     /// What bounds the steps beside linear theory: periods are rounded, so they are taken a little shorter.
     fn caps(&self) -> Caps {
         let shorter = |square: f64| (square > 0.0).then(|| self.period(square) * (1.0 - 1e-9));
-        let slower = self.source.slower_frequencies().into_iter().map(|own| shorter(own * own));
+        let slower = self.source.slower_frequencies().into_iter().map(|value| shorter(value * value));
         let fastest = self.source.fast_squares().last().copied().and_then(shorter);
         let levels: Vec<Option<f64>> = [fastest].into_iter().chain(slower).collect();
         Caps::new(&levels, self.harmonic)
@@ -454,11 +454,11 @@ impl Molecule {
         let upper = self.source.unstable_up_to(&steps, begins, LEAST)?;
         let growing = self.source.growing(&steps, begins, (upper / begins - 1.0).max(LEAST_SAMPLE))?;
         let fs = |step: Option<f64>| step.map(|step| step * unit);
-        let in_fs = |own: Growing| Growing {
-            lower: own.lower * unit,
-            upper: fs(own.upper),
-            stable_again: fs(own.stable_again),
-            worst: (own.worst.0 * unit, own.worst.1 / unit),
+        let in_fs = |growing: Growing| Growing {
+            lower: growing.lower * unit,
+            upper: fs(growing.upper),
+            stable_again: fs(growing.stable_again),
+            worst: (growing.worst.0 * unit, growing.worst.1 / unit),
         };
         let growing = growing.into_iter().map(in_fs).collect();
         let first = Some((stable * unit, begins * unit));
@@ -470,7 +470,7 @@ impl Molecule {
     fn largest(&self, scheme: &Scheme, band: f64, edge: Option<f64>) -> Result<Option<Rational>> {
         if scheme.steps().len() == 1 {
             let digits = |edge: f64| Rational::new(((edge * 1e5).floor() as i64).into(), 100_000.into());
-            return Ok(edge.map(digits).filter(|own| *own > Rational::zero()));
+            return Ok(edge.map(digits).filter(|value| *value > Rational::zero()));
         }
         let holds =
             |count: u64| self.source.covers_band(&self.with_multiple(scheme, count).1, band, self.accuracy);

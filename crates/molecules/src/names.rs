@@ -89,15 +89,15 @@ impl Names {
         }
         let element = |i: usize| {
             let symbol = elements.get(i).map(String::as_str);
-            let named = ELEMENTS.iter().find(|own| symbol == Some(own.0)).map(|own| own.0);
+            let named = ELEMENTS.iter().find(|triple| symbol == Some(triple.0)).map(|triple| triple.0);
             let weighed = || {
                 let mass = given.get(i).copied().unwrap_or(masses[i]);
-                ELEMENTS.iter().find(|own| (own.1 - mass).abs() < ISOTOPES).map(|own| own.0)
+                ELEMENTS.iter().find(|triple| (triple.1 - mass).abs() < ISOTOPES).map(|triple| triple.0)
             };
             // Heavy hydrogens and what gave them mass: their names begin with what they are.
             let initial = || {
                 let label = labels.get(i)?;
-                ["H", "C", "N", "O", "S", "P"].into_iter().find(|own| label.starts_with(own))
+                ["H", "C", "N", "O", "S", "P"].into_iter().find(|text| label.starts_with(text))
             };
             named.or_else(weighed).or_else(initial).unwrap_or("atom")
         };
@@ -117,16 +117,16 @@ impl Names {
     /// Who has most of the kinetic energy: up to three names, as long as they have a tenth of it and the first ones not nine.
     pub fn atoms(&self, shape: &[f64]) -> String {
         let each = if shape.len().is_multiple_of(3) && self.labels.len() != shape.len() { 3 } else { 1 };
-        let share = |own: &[f64]| own.iter().map(|x| x * x).sum::<f64>();
+        let share = |values: &[f64]| values.iter().map(|x| x * x).sum::<f64>();
         let mut shares: Vec<(usize, f64)> = shape.chunks(each).map(share).enumerate().collect();
-        let whole: f64 = shares.iter().map(|(_, own)| own).sum();
+        let whole: f64 = shares.iter().map(|(_, value)| value).sum();
         shares.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
         let (mut sum, mut names) = (0.0, Vec::new());
-        for (i, own) in shares.into_iter().take(3) {
-            if sum > 0.9 * whole || own < 0.1 * whole {
+        for (i, value) in shares.into_iter().take(3) {
+            if sum > 0.9 * whole || value < 0.1 * whole {
                 break;
             }
-            sum += own;
+            sum += value;
             names.push(self.labels.get(i).cloned().unwrap_or_else(|| format!("atom {}", i + 1)));
         }
         names.join(", ")
@@ -141,18 +141,18 @@ impl Names {
                 has_others = true;
                 continue;
             };
-            let place = found.iter().position(|own| own.word == word).unwrap_or(found.len());
+            let place = found.iter().position(|motion| motion.word == word).unwrap_or(found.len());
             if place == found.len() {
                 found.push(Motion { word, ..Motion::default() });
             }
-            let own = &mut found[place];
-            own.modes += 1;
+            let motion = &mut found[place];
+            motion.modes += 1;
             for Share { kind, atom, energy, .. } in shares {
-                *own.kinds.entry(kind).or_default() += energy;
-                *own.residues.entry(self.residue(structure, atom)).or_default() += energy;
+                *motion.kinds.entry(kind).or_default() += energy;
+                *motion.residues.entry(self.residue(structure, atom)).or_default() += energy;
             }
         }
-        found.sort_by_key(|own| std::cmp::Reverse(own.modes));
+        found.sort_by_key(|found| std::cmp::Reverse(found.modes));
         let mut names: Vec<String> = found.iter().map(Motion::name).collect();
         if has_others && !names.is_empty() {
             names.push("others".into());
@@ -166,9 +166,9 @@ impl Names {
         let words: Vec<&str> = label.split_whitespace().collect();
         match words[..] {
             [_, kind, number] => (kind.into(), number.into()),
-            [_, own] if own.contains(char::is_alphabetic) => {
-                let kind = own.trim_end_matches(|c: char| c.is_ascii_digit());
-                (kind.into(), own[kind.len()..].into())
+            [_, text] if text.contains(char::is_alphabetic) => {
+                let kind = text.trim_end_matches(|c: char| c.is_ascii_digit());
+                (kind.into(), text[kind.len()..].into())
             }
             _ => (structure.formula(atom), String::new()),
         }
@@ -187,16 +187,16 @@ struct Motion {
 /// The keys that have a part of the largest value, the largest first.
 fn most<K: Clone + Ord>(all: &BTreeMap<K, f64>) -> Vec<K> {
     let largest = all.values().fold(0.0, |a: f64, x| a.max(*x));
-    let mut kept: Vec<_> = all.iter().filter(|own| *own.1 >= LEAST_PART * largest).collect();
+    let mut kept: Vec<_> = all.iter().filter(|pair| *pair.1 >= LEAST_PART * largest).collect();
     kept.sort_by(|a, b| b.1.total_cmp(a.1));
-    kept.into_iter().map(|own| own.0.clone()).collect()
+    kept.into_iter().map(|pair| pair.0.clone()).collect()
 }
 
 impl Motion {
     /// "HIS 12 N-H stretch", "O-H stretch of HOH".
     fn name(&self) -> String {
         let mut words: Vec<String> = most(&self.kinds).into_iter().take(MOST_LISTED).collect();
-        words.retain(|own| !own.is_empty());
+        words.retain(|words| !words.is_empty());
         let name = format!("{} {}", words.join(", "), self.word);
         let name = name.trim_start();
         let mut residues = most(&self.residues);
@@ -252,8 +252,8 @@ impl Structure {
         let [libration, translation] = self.rigid(&moved);
         let all = [self.stretches(&moved), self.bends(&moved), libration, translation];
         let has_half = |shares: &Vec<Share>| {
-            let own = shares.iter().map(|share| share.energy).sum::<f64>();
-            own > 0.0 && 2.0 * own >= whole
+            let value = shares.iter().map(|share| share.energy).sum::<f64>();
+            value > 0.0 && 2.0 * value >= whole
         };
         all.into_iter().find(has_half).unwrap_or_default()
     }
@@ -323,7 +323,7 @@ impl Structure {
     /// Rotations and translations of whole molecules, among others.
     fn rigid(&self, moved: &[Vec<[f64; 3]>]) -> [Vec<Share>; 2] {
         let mut atoms: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-        self.molecule.iter().enumerate().for_each(|(i, &own)| atoms.entry(own).or_default().push(i));
+        self.molecule.iter().enumerate().for_each(|(i, &index)| atoms.entry(index).or_default().push(i));
         if atoms.len() < 2 {
             return Default::default();
         }
@@ -359,16 +359,16 @@ impl Structure {
         let mut basis: Vec<Vec<(usize, [f64; 3])>> = Vec::new();
         for mut motion in motions {
             let size = product(&motion, &motion);
-            for own in &basis {
-                let part = product(&motion, own) / product(own, own);
-                motion.iter_mut().zip(own).for_each(|(x, &(_, s))| x.1 = minus(x.1, times(s, part)));
+            for pairs in &basis {
+                let part = product(&motion, pairs) / product(pairs, pairs);
+                motion.iter_mut().zip(pairs).for_each(|(x, &(_, s))| x.1 = minus(x.1, times(s, part)));
             }
             // A rotation about the line of two atoms moves them by roundings alone.
             if product(&motion, &motion) > 1e-12 * size && size > 0.0 {
                 basis.push(motion);
             }
         }
-        basis.iter().map(|own| self.energy(own, moved)).sum()
+        basis.iter().map(|pairs| self.energy(pairs, moved)).sum()
     }
 
     /// The atoms of its molecule counted, carbon and hydrogen first (Hill).
@@ -394,7 +394,8 @@ impl Structure {
 
 /// Who is near enough to be bonded; a hydrogen to the nearest alone.
 fn neighbours(positions: &[[f64; 3]], elements: &[&str]) -> Vec<[usize; 2]> {
-    let radius = |i: usize| ELEMENTS.iter().find(|own| own.0 == elements[i]).map_or(0.0, |own| own.2);
+    let radius =
+        |i: usize| ELEMENTS.iter().find(|triple| triple.0 == elements[i]).map_or(0.0, |triple| triple.2);
     let radii: Vec<f64> = (0..elements.len()).map(radius).collect();
     let part = |i: usize, j: usize| {
         let apart = minus(positions[i], positions[j]);
@@ -404,10 +405,10 @@ fn neighbours(positions: &[[f64; 3]], elements: &[&str]) -> Vec<[usize; 2]> {
     let pairs = || some.iter().enumerate().flat_map(|(k, &i)| some[..k].iter().map(move |&j| [j, i]));
     let least = pairs().map(|[i, j]| part(i, j)).fold(f64::INFINITY, f64::min);
     let near: Vec<[usize; 2]> = pairs().filter(|&[i, j]| part(i, j) < BONDED * least).collect();
-    let is_nearest = |i: usize, own: [usize; 2]| {
+    let is_nearest = |i: usize, indexes: [usize; 2]| {
         let of = |pair: &&[usize; 2]| pair.contains(&i);
         let first = near.iter().filter(of).min_by(|a, b| part(a[0], a[1]).total_cmp(&part(b[0], b[1])));
-        elements[i] != "H" || first == Some(&own)
+        elements[i] != "H" || first == Some(&indexes)
     };
     near.iter().copied().filter(|&[i, j]| is_nearest(i, [i, j]) && is_nearest(j, [i, j])).collect()
 }
@@ -442,15 +443,15 @@ mod tests {
     /// The mass-weighted, normalized shape of displacements.
     fn shape(moved: &[[f64; 3]]) -> Vec<f64> {
         let roots = [15.999f64, 1.008, 1.008].repeat(2);
-        let own: Vec<f64> = moved.iter().zip(roots).flat_map(|(x, m)| x.map(|x| x * m.sqrt())).collect();
-        let size = own.iter().map(|x| x * x).sum::<f64>().sqrt();
-        own.into_iter().map(|x| x / size).collect()
+        let values: Vec<f64> = moved.iter().zip(roots).flat_map(|(x, m)| x.map(|x| x * m.sqrt())).collect();
+        let size = values.iter().map(|x| x * x).sum::<f64>().sqrt();
+        values.into_iter().map(|x| x / size).collect()
     }
 
     #[test]
     fn motions_of_water_have_the_names_that_spectroscopy_gives_them() {
         let still = [[0.0; 3]; 3];
-        let one = |own: [[f64; 3]; 3]| shape(&[own, still].concat());
+        let one = |values: [[f64; 3]; 3]| shape(&[values, still].concat());
         let (u, v) = ([0.79, 0.61, 0.0], [-0.79, 0.61, 0.0]);
         let stretch = one([[0.0, -0.077, 0.0], u, v]);
         let bend = one([[0.0, -0.1, 0.0], [-0.61, 0.79, 0.0], [0.61, 0.79, 0.0]]);
@@ -458,7 +459,7 @@ mod tests {
         let turn = one([[0.0, 0.0, -0.0066], [0.0, 0.0, 0.052], [0.0, 0.0, 0.052]]);
         let shift = one([[1.0, 0.0, 0.0]; 3]);
         let names = waters(&["O HOH 7", "H1 HOH 7", "H2 HOH 7", "O HOH 8", "H1 HOH 8", "H2 HOH 8"]);
-        let name = |own: &Vec<f64>| names.motion(&[vec![own]]);
+        let name = |values: &Vec<f64>| names.motion(&[vec![values]]);
         assert_eq!(name(&stretch).as_deref(), Some("HOH 7 O-H stretch"));
         assert_eq!(name(&bend).as_deref(), Some("HOH 7 H-O-H bend"));
         assert_eq!(name(&turn).as_deref(), Some("HOH 7 libration"));
@@ -480,7 +481,7 @@ mod tests {
         let names = Names::new(told(&masses), &positions, masses.clone());
         assert_eq!(names.structure.unwrap().bonds, [[0, 1]]);
         // In Å, and with a heavy hydrogen that its label names.
-        let far = positions.map(|own| times(own, 10.0));
+        let far = positions.map(|positions| times(positions, 10.0));
         let heavy = vec![13.983, 3.024, 15.999, 22.990];
         let labels = ["OW", "HW", "OW", "NA"].map(String::from).to_vec();
         let names = Names::new(Told { labels, ..told(&heavy) }, &far, heavy.clone());

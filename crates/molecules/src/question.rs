@@ -206,7 +206,7 @@ impl Question {
     /// Asks about ring polymers of so many beads.
     #[must_use]
     pub fn with_beads(self, beads: Option<Beads>) -> Question {
-        Question { beads: beads.filter(|own| own.count > 1), ..self }
+        Question { beads: beads.filter(|beads| beads.count > 1), ..self }
     }
 
     /// States the unit of all times.

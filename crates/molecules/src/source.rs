@@ -121,7 +121,8 @@ impl Source for Kernel {
             is_in_first_region: self.is_in_first_region(&outer, accuracy),
             margin: measured.margin.filter(|_| analysis.is_stable()),
             rate: growth(&analysis),
-            growing: fastest_instability(&analysis).map(|own| [own.shape.clone(), own.quadrature.clone()]),
+            growing: fastest_instability(&analysis)
+                .map(|instability| [instability.shape.clone(), instability.quadrature.clone()]),
         })
     }
 
@@ -182,14 +183,14 @@ impl Source for Nested {
 
     fn decide(&self, steps: &[Rational], accuracy: f64) -> Result<Decided> {
         let (at, outer) = (self.at(steps)?, outermost(steps));
-        let own = at.decide(outer, accuracy);
-        let margin = (own.rate == Some(0.0)).then(|| at.margin(outer)).flatten();
+        let at_step = at.decide(outer, accuracy);
+        let margin = (at_step.rate == Some(0.0)).then(|| at.margin(outer)).flatten();
         Ok(Decided {
-            holds: own.holds,
-            is_in_first_region: own.is_in_first_region,
+            holds: at_step.holds,
+            is_in_first_region: at_step.is_in_first_region,
             margin,
-            rate: own.rate,
-            growing: own.growing,
+            rate: at_step.rate,
+            growing: at_step.growing,
         })
     }
 
@@ -228,7 +229,8 @@ fn outermost(steps: &[Rational]) -> f64 {
 
 /// The largest growth rate, per unit of time, rounded; `None` where it is not decided whether anything grows.
 fn growth(analysis: &Analysis) -> Option<f64> {
-    let largest = instabilities(analysis).map(|own| own.multiplier.size().ln()).fold(0.0, f64::max);
+    let largest =
+        instabilities(analysis).map(|instability| instability.multiplier.size().ln()).fold(0.0, f64::max);
     analysis.is_proof().then(|| largest / analysis.period.to_f64())
 }
 

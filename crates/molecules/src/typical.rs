@@ -97,7 +97,7 @@ impl Typical {
     /// The period that this name means where a mode is called `mode`: with `fast=` those of the fastest clock, else the slow ones first.
     pub fn of(mode: &str, name: &str) -> Option<&'static Typical> {
         let plain = name.split(',').map(str::trim).collect::<Vec<_>>().join(",");
-        let found = |all: &'static [Typical]| all.iter().find(|own| own.name == plain);
+        let found = |all: &'static [Typical]| all.iter().find(|typical| typical.name == plain);
         if mode.trim() == "fast" { found(&FAST) } else { found(&SLOW).or_else(|| found(&FAST)) }
     }
 

@@ -39,8 +39,8 @@ pub trait NumberField: Clone + fmt::Debug + PartialEq + Send + Sync + 'static {
             }
             // g^k = −Σ ψ_j g^(k − degree + j), ψ being monic.
             let at = rest.len() - degree;
-            for (own, c) in rest[at..].iter_mut().zip(self.minimal()).filter(|(_, c)| !c.is_zero()) {
-                *own -= &top * c;
+            for (value, c) in rest[at..].iter_mut().zip(self.minimal()).filter(|(_, c)| !c.is_zero()) {
+                *value -= &top * c;
             }
         }
         Element::made(Some(self.clone()), Polynomial::new(rest))

@@ -160,7 +160,7 @@ mod tests {
             let long = (BigUint::from(1u8) << 64) + 1u8;
             let short = around_quotient(&n.into(), &d.into());
             let other = around_quotient(&(&long * n), &(&long * d));
-            let bits = |own: &Around| [own.down, own.up, own.nearest].map(f64::to_bits);
+            let bits = |around: &Around| [around.down, around.up, around.nearest].map(f64::to_bits);
             prop_assert_eq!(bits(&short), bits(&other));
             // In two doubles: n/d = hi + lo to within 2^-104.
             let (hi, lo) = short_quotient(n, d);

@@ -106,8 +106,8 @@ impl Laurent {
     /// a / b if that is rational (b ≠ 0 and the coefficients of a and b are proportional), else `None`.
     pub fn ratio(a: &Laurent, b: &Laurent) -> Option<Rational> {
         let (_, leading) = b.terms.first()?;
-        let Some((_, own)) = a.terms.first() else { return Some(Rational::zero()) };
-        let ratio = own / leading;
+        let Some((_, value)) = a.terms.first() else { return Some(Rational::zero()) };
+        let ratio = value / leading;
         let proportional = a.terms.len() == b.terms.len()
             && a.terms.iter().zip(&b.terms).all(|((j, c), (k, d))| j == k && *c == &ratio * d);
         proportional.then_some(ratio)
@@ -119,11 +119,11 @@ impl Laurent {
     }
 
     fn sum(&self, other: &Laurent) -> Laurent {
-        self.merged(other, |own, c| *own += c)
+        self.merged(other, |value, c| *value += c)
     }
 
     fn difference(&self, other: &Laurent) -> Laurent {
-        self.merged(other, |own, c| *own -= c)
+        self.merged(other, |value, c| *value -= c)
     }
 
     /// The terms of both, those of `other` entered by `combine` (which starts from 0 where self has none).

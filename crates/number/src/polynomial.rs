@@ -105,7 +105,7 @@ impl<R: Ring> Polynomial<R> {
 
     /// c times the polynomial.
     pub fn scale(&self, c: &R) -> Self {
-        self.map(|own| R::product(own, c))
+        self.map(|number| R::product(number, c))
     }
 
     /// The polynomial with each coefficient c replaced by f(c).
@@ -123,8 +123,8 @@ impl<R: Ring> Polynomial<R> {
     fn sum(&self, other: &Self) -> Self {
         let (mut longer, shorter) =
             if self.degree() >= other.degree() { (self.clone(), other) } else { (other.clone(), self) };
-        for (own, c) in longer.coefficients.iter_mut().zip(&shorter.coefficients) {
-            *own += c.clone();
+        for (number, c) in longer.coefficients.iter_mut().zip(&shorter.coefficients) {
+            *number += c.clone();
         }
         Polynomial::new(longer.coefficients)
     }
@@ -132,8 +132,8 @@ impl<R: Ring> Polynomial<R> {
     fn difference(&self, other: &Self) -> Self {
         let mut coefficients = self.coefficients.clone();
         coefficients.resize_with(self.coefficients.len().max(other.coefficients.len()), R::zero);
-        for (own, c) in coefficients.iter_mut().zip(&other.coefficients) {
-            *own -= c.clone();
+        for (number, c) in coefficients.iter_mut().zip(&other.coefficients) {
+            *number -= c.clone();
         }
         Polynomial::new(coefficients)
     }
@@ -144,8 +144,8 @@ impl<R: Ring> Polynomial<R> {
         }
         let mut coefficients = vec![R::zero(); self.coefficients.len() + other.coefficients.len() - 1];
         for (i, a) in self.coefficients.iter().enumerate().filter(|(_, a)| !a.is_zero()) {
-            for (own, b) in coefficients[i..].iter_mut().zip(&other.coefficients) {
-                own.add_product(a, b);
+            for (number, b) in coefficients[i..].iter_mut().zip(&other.coefficients) {
+                number.add_product(a, b);
             }
         }
         Polynomial::new(coefficients)

@@ -152,8 +152,8 @@ impl PrimeField {
         while a.len() >= b.len() {
             let factor = self.mul(a.pop().expect("not empty"), inverse);
             let k = a.len() + 1 - b.len();
-            for (own, &c) in a[k..].iter_mut().zip(b) {
-                *own = self.sub(*own, self.mul(factor, c));
+            for (count, &c) in a[k..].iter_mut().zip(b) {
+                *count = self.sub(*count, self.mul(factor, c));
             }
         }
         while a.last() == Some(&0) {
@@ -178,8 +178,8 @@ impl PrimeField {
     fn times_modulo(&self, a: &[u64], b: &[u64], f: &[u64]) -> Vec<u64> {
         let mut product = vec![0; (a.len() + b.len()).saturating_sub(1)];
         for (i, &x) in a.iter().enumerate() {
-            for (own, &y) in product[i..].iter_mut().zip(b) {
-                *own = self.add(*own, self.mul(x, y));
+            for (count, &y) in product[i..].iter_mut().zip(b) {
+                *count = self.add(*count, self.mul(x, y));
             }
         }
         self.reduce(&mut product, f);

@@ -57,14 +57,15 @@ pub fn from_f64_meant(x: f64) -> Option<Rational> {
     let (exact, sign) = (from_f64_exact(x.abs())?, if x < 0.0 { -1 } else { 1 });
     let off = &exact / Rational::from_integer(BigInt::one() << 51);
     let (lo, hi) = (&exact - &off, &exact + &off);
-    let short =
-        (0..12).map(|digits| decimal(&format!("{:.digits$e}", x.abs()))).find(|own| lo <= *own && *own <= hi);
+    let short = (0..12)
+        .map(|digits| decimal(&format!("{:.digits$e}", x.abs())))
+        .find(|value| lo <= *value && *value <= hi);
     let fraction = || {
-        let own = simplest(&lo, &hi);
-        (own.numer().bits() + own.denom().bits() <= 40).then_some(own)
+        let value = simplest(&lo, &hi);
+        (value.numer().bits() + value.denom().bits() <= 40).then_some(value)
     };
-    let own = short.or_else(fraction).unwrap_or_else(|| decimal(&format!("{:e}", x.abs())));
-    Some(own * Rational::from_integer(sign.into()))
+    let value = short.or_else(fraction).unwrap_or_else(|| decimal(&format!("{:e}", x.abs())));
+    Some(value * Rational::from_integer(sign.into()))
 }
 
 /// `1.25e-3`, as Rust writes doubles.

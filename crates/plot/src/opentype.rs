@@ -114,11 +114,11 @@ mod tests {
             let bytes = font(face, &numbers, &letters);
             let found = ttf_parser::Face::parse(&bytes, 0).unwrap();
             for (&glyph, &letter) in &letters {
-                let own = found.glyph_index(letter).unwrap();
+                let glyph_id = found.glyph_index(letter).unwrap();
                 let advance =
-                    f64::from(found.glyph_hor_advance(own).unwrap()) / f64::from(found.units_per_em());
+                    f64::from(found.glyph_hor_advance(glyph_id).unwrap()) / f64::from(found.units_per_em());
                 assert_eq!(advance, face.advance(glyph), "{letter}");
-                assert_eq!(curves(&found, own.0), face.outline(glyph), "{letter}");
+                assert_eq!(curves(&found, glyph_id.0), face.outline(glyph), "{letter}");
             }
             assert_eq!(found.glyph_index('Z'), None, "a letter that is not in use");
         }

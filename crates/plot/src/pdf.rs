@@ -145,10 +145,11 @@ impl<'a> Drawing<'a> {
             let mut line = self.content.show_positioned();
             let mut items = line.items();
             let mut bytes = Vec::new();
-            for (n, own) in run.iter().enumerate() {
-                bytes.extend(self.fonts.find(own.face, own.glyph).1.to_be_bytes());
+            for (n, placed) in run.iter().enumerate() {
+                bytes.extend(self.fonts.find(placed.face, placed.glyph).1.to_be_bytes());
                 // Where the next letter is not where this one's advance ends: thousandths, counted leftwards.
-                let back = |next: &Placed| own.face.advance(own.glyph) - (next.x - own.x) / own.scale;
+                let back =
+                    |next: &Placed| placed.face.advance(placed.glyph) - (next.x - placed.x) / placed.scale;
                 let back = run.get(n + 1).map(back).filter(|back| back.abs() > 1e-6);
                 if n + 1 == run.len() || back.is_some() {
                     items.show(Str(&std::mem::take(&mut bytes)));
@@ -166,20 +167,20 @@ impl<'a> Drawing<'a> {
         prepare: impl Fn(&mut Self),
         paint: impl Fn(&mut Content) -> &mut Content,
     ) {
-        for own in &words.glyphs {
+        for glyph in &words.glyphs {
             self.content.save_state();
             prepare(self);
-            self.content.transform(placed(words, own, words.set.size / 1000.0 * own.scale));
-            outline::glyph(&own.face.outline(own.glyph), &mut self.content);
+            self.content.transform(placed(words, glyph, words.set.size / 1000.0 * glyph.scale));
+            outline::glyph(&glyph.face.outline(glyph.glyph), &mut self.content);
             paint(&mut self.content).restore_state();
         }
     }
 }
 
 /// From a glyph's own plane, whose unit is so many points, to the page.
-fn placed(words: &Words, own: &Placed, unit: f64) -> [f32; 6] {
+fn placed(words: &Words, placed: &Placed, unit: f64) -> [f32; 6] {
     let (sin, cos) = (-words.set.turn).to_radians().sin_cos();
-    let (em, [x, y]) = (words.set.size / 1000.0, words.offset(own));
+    let (em, [x, y]) = (words.set.size / 1000.0, words.offset(placed));
     let at = [words.at[0] + em * (cos * x - sin * y), words.at[1] + em * (sin * x + cos * y)];
     [unit * cos, unit * sin, -unit * sin, unit * cos, at[0], at[1]].map(|x| x as f32)
 }

@@ -226,7 +226,7 @@ mod tests {
     fn cells_meet_without_seam_or_blend() {
         for dpi in [72.0, 100.0, 131.7, 300.0] {
             let (width, pixels) = cells(dpi);
-            let count = |colour: Colour| pixels.iter().filter(|&&own| own == colour).count() as f64;
+            let count = |colour: Colour| pixels.iter().filter(|&&pixel| pixel == colour).count() as f64;
             let (left, right) = (count(Colour(200, 0, 0)), count(Colour(0, 0, 200)));
             assert_eq!(left + right + count(WHITE), pixels.len() as f64, "{dpi}");
             // Each side is off by half a pixel at most, so each length by one.

@@ -70,7 +70,9 @@ impl ImplicitExplicit {
 /// Other than two, or phases.
 pub(super) fn two_clocks(plain: &System) -> Result<[&Potential; 2]> {
     match plain.clocks() {
-        [fast, slow] if [fast, slow].iter().all(|own| own.phase == Rational::default()) => Ok([fast, slow]),
+        [fast, slow] if [fast, slow].iter().all(|potential| potential.phase == Rational::default()) => {
+            Ok([fast, slow])
+        }
         all => Err(Error::input(
             "method",
             format!("{} clock{}", all.len(), if all.len() == 1 { "" } else { "s" }),

@@ -55,8 +55,8 @@ pub struct PiPotential {
 /// # Errors
 /// As [`System::new`]; a power of π beyond ±64; a common null vector of all potentials at ϖ that none is of the true ones.
 pub fn beside_pi(mass: Symmetric, potentials: &[PiPotential]) -> Result<System> {
-    for (k, own) in potentials.iter().enumerate() {
-        let powers = own.stiffness.values().flat_map(|x| x.terms()).map(|(power, _)| *power);
+    for (k, pi_potential) in potentials.iter().enumerate() {
+        let powers = pi_potential.stiffness.values().flat_map(|x| x.terms()).map(|(power, _)| *power);
         if let Some(power) = powers.into_iter().find(|power| power.unsigned_abs() > HIGHEST) {
             let remedy = format!("powers of pi may be -{HIGHEST} to {HIGHEST}: choose other units");
             return Err(Error::input(&format!("potentials[{k}].stiffness"), format!("pi^{power}"), remedy));
@@ -69,14 +69,14 @@ pub fn beside_pi(mass: Symmetric, potentials: &[PiPotential]) -> Result<System> 
         bits *= 2;
         pi = Ball::pi(bits).lower();
     }
-    let at = |own: &PiPotential| {
-        let mut stiffness = Symmetric::zero(own.size);
-        own.stiffness.iter().for_each(|(&(i, j), x)| stiffness.add(i, j, &x.at(&pi)));
-        Potential { stiffness, step: own.step.clone(), phase: own.phase.clone() }
+    let at = |pi_potential: &PiPotential| {
+        let mut stiffness = Symmetric::zero(pi_potential.size);
+        pi_potential.stiffness.iter().for_each(|(&(i, j), x)| stiffness.add(i, j, &x.at(&pi)));
+        Potential { stiffness, step: pi_potential.step.clone(), phase: pi_potential.phase.clone() }
     };
     let system = System::new(mass, potentials.iter().map(at).collect())?;
     // π is transcendental: of a rational vector all is known.
-    let is_rigid = |v: &[Rational]| potentials.iter().all(|own| vanishes(&own.stiffness, v));
+    let is_rigid = |v: &[Rational]| potentials.iter().all(|potential| vanishes(&potential.stiffness, v));
     if !system.rigid_modes().iter().all(|(_, v)| is_rigid(v)) {
         let remedy = "choose coordinates in which the vector that no potential sees is rational";
         return Err(Error::input("stiffness", "all potentials have a null vector that involves pi", remedy));
@@ -89,9 +89,9 @@ type Entries = BTreeMap<(usize, usize), Laurent>;
 /// What kicks at one step and phase together.
 fn clocks(potentials: &[PiPotential]) -> Vec<Entries> {
     let mut clocks: BTreeMap<(&Rational, &Rational), Entries> = BTreeMap::new();
-    for own in potentials {
-        let clock = clocks.entry((&own.step, &own.phase)).or_default();
-        for (&at, x) in &own.stiffness {
+    for potential in potentials {
+        let clock = clocks.entry((&potential.step, &potential.phase)).or_default();
+        for (&at, x) in &potential.stiffness {
             *clock.entry(at).or_insert_with(Laurent::zero) += x.clone();
         }
     }

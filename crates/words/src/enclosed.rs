@@ -89,15 +89,15 @@ impl Steps {
 
     /// sin x / x, and about 0 the bounds 1 − x²/6 ≤ sinc x ≤ 1, −x/3 ≤ sinc' x ≤ 0 for x ≥ 0.
     fn sinc(&self, x: &Jet) -> Jet {
-        let own = &x.value;
-        if own.is_away_from_zero() {
-            let sinc = self.over(&own.sin(BITS), own);
-            let slope = self.over(&own.cos(BITS).sub(&sinc, BITS), own);
+        let ball = &x.value;
+        if ball.is_away_from_zero() {
+            let sinc = self.over(&ball.sin(BITS), ball);
+            let slope = self.over(&ball.cos(BITS).sub(&sinc, BITS), ball);
             return x.chained(sinc, &slope);
         }
         let sixth = Ball::from_rational(&Rational::new(1.into(), 6.into()), BITS);
-        let least = Ball::one().sub(&own.square(BITS).mul(&sixth, BITS), BITS);
-        let slope = own.mul(&sixth, BITS).scale2(1).neg();
+        let least = Ball::one().sub(&ball.square(BITS).mul(&sixth, BITS), BITS);
+        let slope = ball.mul(&sixth, BITS).scale2(1).neg();
         x.chained(least.union(&Ball::one(), BITS), &slope.union(&Ball::zero(), BITS))
     }
 }
@@ -124,13 +124,13 @@ impl Setting<Jet> for Steps {
         }
         let half = Jet::product(&self.h, &self.constant(self.frequency(Force::First).scale2(-1)));
         let power = |x: Jet, n: i32| {
-            let own = (0..n.unsigned_abs()).fold(Jet::one(), |product, _| Jet::product(&product, &x));
+            let jet = (0..n.unsigned_abs()).fold(Jet::one(), |product, _| Jet::product(&product, &x));
             if n >= 0 {
-                return own;
+                return jet;
             }
-            let inverse = self.over(&Ball::one(), &own.value);
+            let inverse = self.over(&Ball::one(), &jet.value);
             let slope = inverse.square(BITS).neg();
-            own.chained(inverse, &slope)
+            jet.chained(inverse, &slope)
         };
         Jet::product(&power(Steps::cos(&half), filter.cos), &power(self.sinc(&half), filter.sinc))
     }
@@ -202,7 +202,7 @@ impl<'a> Enclosed<'a> {
         let q = &product.denominator.value;
         let trace = product.trace().value.div(q, BITS)?;
         let determinant = product.damping.value.clone();
-        let [above, below] = Self::margins(&product).map(|own| own.value.sign());
+        let [above, below] = Self::margins(&product).map(|margin| margin.value.sign());
         let damped = determinant.compare(&Ball::one()) == Some(std::cmp::Ordering::Less);
         let stable = stable(&product, [above, below]);
         let mut found = At {
@@ -260,7 +260,7 @@ fn stable(product: &Product<Jet>, margins: [Option<Sign>; 2]) -> Option<bool> {
     // A negative denominator turns both.
     let margins = match product.denominator.value.sign()? {
         Sign::Positive => margins,
-        Sign::Negative => margins.map(|own| own.map(|own| own * Sign::Negative)),
+        Sign::Negative => margins.map(|margins| margins.map(|sign| sign * Sign::Negative)),
         Sign::Zero => return None,
     };
     match margins {
@@ -276,10 +276,10 @@ pub(super) fn pieces(lo: f64, hi: f64, mut verdict: impl FnMut(f64, f64) -> Opti
     let mut cells: Vec<(f64, Option<bool>)> = Vec::new();
     let mut open = vec![(lo, hi, 0)];
     while let Some((lo, hi, depth)) = open.pop() {
-        let own = verdict(lo, hi);
-        if own.is_some() || depth == HALVINGS {
-            if cells.last().is_none_or(|last| last.1 != own) {
-                cells.push((lo, own));
+        let flag = verdict(lo, hi);
+        if flag.is_some() || depth == HALVINGS {
+            if cells.last().is_none_or(|last| last.1 != flag) {
+                cells.push((lo, flag));
             }
         } else {
             let middle = lo + (hi - lo) / 2.0;

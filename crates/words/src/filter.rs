@@ -34,10 +34,10 @@ impl Filter {
         // cos(x/2) = Σ (−x²/4)^k/(2k)!, sinc(x/2) = Σ (−x²/4)^k/(2k+1)!.
         let function = |from: u64| {
             let next = |term: &mut Rational, k: u64| {
-                let own = term.clone();
+                let value = term.clone();
                 let (a, b) = (2 * k + 1 + from, 2 * k + 2 + from);
                 *term *= Rational::new((-1).into(), (4 * a * b).into());
-                Some(own)
+                Some(value)
             };
             (0..n as u64).scan(Rational::one(), next).collect::<Vec<_>>()
         };
@@ -45,18 +45,18 @@ impl Filter {
             (0..n).map(|k| (0..=k).map(|j| &a[j] * &b[k - j]).sum()).collect()
         };
         let inverse = |a: &[Rational]| {
-            let mut own: Vec<Rational> = vec![Rational::one()];
+            let mut values: Vec<Rational> = vec![Rational::one()];
             for k in 1..n {
-                own.push(-(0..k).map(|j| &own[j] * &a[k - j]).sum::<Rational>());
+                values.push(-(0..k).map(|j| &values[j] * &a[k - j]).sum::<Rational>());
             }
-            own
+            values
         };
         let mut all = one;
         for (power, from) in [(self.cos, 0), (self.sinc, 1)] {
             let own = function(from);
-            let own = if power < 0 { inverse(&own) } else { own };
+            let values = if power < 0 { inverse(&own) } else { own };
             for _ in 0..power.unsigned_abs() {
-                all = product(&all, &own);
+                all = product(&all, &values);
             }
         }
         all

@@ -127,14 +127,14 @@ impl Reader {
             if sign == 0 {
                 return self.expect(']', "after a filter").map(|()| all);
             }
-            let own = self.factor()?;
-            if own.zero && sign < 0 {
+            let filter = self.factor()?;
+            if filter.zero && sign < 0 {
                 return self.wrong(at, "divides by zero");
             }
             all = Filter {
-                cos: all.cos + sign * own.cos,
-                sinc: all.sinc + sign * own.sinc,
-                zero: all.zero || own.zero,
+                cos: all.cos + sign * filter.cos,
+                sinc: all.sinc + sign * filter.sinc,
+                zero: all.zero || filter.zero,
             };
             if all.cos.abs().max(all.sinc.abs()) > MAX_FILTER {
                 return self.wrong(at, format!("choose powers up to {MAX_FILTER}"));
@@ -157,10 +157,10 @@ impl Reader {
         let mut power = 1;
         if self.skip('^') {
             let digits = self.taken(|c| c.is_ascii_digit());
-            let Some(own) = digits.parse().ok().filter(|own| (0..=MAX_FILTER).contains(own)) else {
+            let Some(number) = digits.parse().ok().filter(|digits| (0..=MAX_FILTER).contains(digits)) else {
                 return self.wrong(at, format!("the power of a filter is 0 to {MAX_FILTER}"));
             };
-            power = own;
+            power = number;
         }
         let (cos, sinc) = match name.as_str() {
             "0" if power > 0 => return Ok(Filter { zero: true, ..Filter::default() }),

@@ -36,7 +36,7 @@ impl Integrator {
     pub fn named(text: &str) -> Result<Integrator> {
         let text = text.trim();
         match (method(text), text.parse()) {
-            (Ok(own), _) => Ok(Integrator::of(own.word())),
+            (Ok(method), _) => Ok(Integrator::of(method.word())),
             (_, Ok(word)) => Ok(Integrator::of(word)),
             (Err(unknown), _) => {
                 let remedy = format!("write a word, or a method: {}", unknown.remedy());
@@ -69,18 +69,18 @@ impl Integrator {
                 let one = Laurent::from_integer(1);
                 let at = |s| Enclosed::scaled(word, s, rho).at(&one);
                 let answer =
-                    |own: At| if own.kind == "edge" { Bounded::Edge } else { bounded(own.is_stable()) };
+                    |place: At| if place.kind == "edge" { Bounded::Edge } else { bounded(place.is_stable()) };
                 all.iter().map(|s| at(s).map_or(Bounded::Edge, answer)).collect()
             }
             Integrator::Word(word) => {
                 let product = word.polynomials(&Forces::ratio(rho));
                 // At a pole of a midpoint there is no step at all; forces that attract have none.
                 all.iter()
-                    .map(|s| at(&product, s).map_or(Bounded::Unstable, |own| bounded(own.is_stable())))
+                    .map(|s| at(&product, s).map_or(Bounded::Unstable, |place| bounded(place.is_stable())))
                     .collect()
             }
-            Integrator::Trigonometric(own) => {
-                all.iter().map(|s| own.stable_at(s, rho).map_or(Bounded::Edge, bounded)).collect()
+            Integrator::Trigonometric(shape) => {
+                all.iter().map(|s| shape.stable_at(s, rho).map_or(Bounded::Edge, bounded)).collect()
             }
         }
     }

@@ -129,8 +129,8 @@ fn in_one_field(numbers: &mut [&mut Radical]) -> Option<()> {
     let mut largest = Radical::zero();
     for _ in 0..2 {
         for number in numbers.iter_mut() {
-            let (own, known) = Radical::together(number, &largest)?;
-            (**number, largest) = (own, known);
+            let (element, known) = Radical::together(number, &largest)?;
+            (**number, largest) = (element, known);
             if largest.field().is_none() {
                 largest = number.clone();
             }
@@ -369,7 +369,8 @@ fn join(all: &mut Vec<Letter>, letter: Letter) {
     if letter.is_nothing() {
         return;
     }
-    let place = all.iter().rposition(|own| !matches!(own, Letter::Kick { .. })).map_or(0, |last| last + 1);
+    let place =
+        all.iter().rposition(|letter| !matches!(letter, Letter::Kick { .. })).map_or(0, |last| last + 1);
     match &letter {
         Letter::Drift(time) | Letter::Friction(time) | Letter::Flow { time, .. } => {
             // Flows of one force over two times are one over their sum.
@@ -377,26 +378,28 @@ fn join(all: &mut Vec<Letter>, letter: Letter) {
                 std::mem::discriminant(*own) == std::mem::discriminant(&letter)
                     && own.force() == letter.force()
             });
-            let Some(own) = last.and_then(|own| own.numbers().first_mut()) else { return all.push(letter) };
-            *own += time.clone();
-            if own.is_zero() {
+            let Some(element) = last.and_then(|letter| letter.numbers().first_mut()) else {
+                return all.push(letter);
+            };
+            *element += time.clone();
+            if element.is_zero() {
                 all.pop();
             }
         }
         Letter::Midpoint { .. } => all.push(letter),
         Letter::Kick { force, filter, powers } => {
             let key = (Some(*force), Some(*filter));
-            let of = |own: &Letter| (own.force(), own.filter());
-            let same = all[place..].iter().position(|own| of(own) == key);
+            let of = |letter: &Letter| (letter.force(), letter.filter());
+            let same = all[place..].iter().position(|letter| of(letter) == key);
             let Some(same) = same.map(|same| place + same) else {
-                let at = all[place..].iter().position(|own| of(own) > key);
+                let at = all[place..].iter().position(|letter| of(letter) > key);
                 return all.insert(at.map_or(all.len(), |at| place + at), letter);
             };
-            if let Letter::Kick { powers: own, .. } = &mut all[same] {
-                own.resize(own.len().max(powers.len()), Radical::zero());
-                own.iter_mut().zip(powers).for_each(|(own, c)| *own += c.clone());
-                while own.len() > 1 && own.last().is_some_and(Zero::is_zero) {
-                    own.pop();
+            if let Letter::Kick { powers: elements, .. } = &mut all[same] {
+                elements.resize(elements.len().max(powers.len()), Radical::zero());
+                elements.iter_mut().zip(powers).for_each(|(element, c)| *element += c.clone());
+                while elements.len() > 1 && elements.last().is_some_and(Zero::is_zero) {
+                    elements.pop();
                 }
             }
             if all[same].is_nothing() {

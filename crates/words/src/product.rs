@@ -86,11 +86,11 @@ impl<S: Ring> Setting<S> for Forces<S> {
         let x = S::product(&S::product(&c, &c), &force);
         let terms = |from: u64| {
             let next = |term: &mut Rational, k: u64| {
-                let own = S::from_rational(term);
+                let number = S::from_rational(term);
                 *term /= Rational::from_integer(
                     (-((2 * k + 1 + from) as i128 * (2 * k + 2 + from) as i128)).into(),
                 );
-                Some(own)
+                Some(number)
             };
             (0..TERMS as u64).scan(Rational::one(), next).collect::<Vec<_>>()
         };

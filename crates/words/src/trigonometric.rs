@@ -76,8 +76,8 @@ impl Trigonometric {
     /// (i, k) of the filter c^i (s/y)^k of positions and forces alike: its square is g, beside the c s/y of an exact flow.
     pub fn filter(self) -> (u32, u32) {
         let (i, k) = self.powers();
-        let own = u32::from(!self.is_two_step());
-        ((i - own) / 2, (k - own) / 2)
+        let count = u32::from(!self.is_two_step());
+        ((i - count) / 2, (k - count) / 2)
     }
 
     /// Its trace.
@@ -105,7 +105,7 @@ impl Trigonometric {
     pub fn coupled_edge(self, fast: &Laurent, slow: &Laurent) -> Option<(f64, f64)> {
         let frequency = half_frequency(fast, BITS).scale2(1);
         let turn = Ball::pi(BITS).div(&frequency, BITS)?.to_f64_enclosure();
-        let own = match self {
+        let pair = match self {
             Trigonometric::Impulse | Trigonometric::Short | Trigonometric::Linear => {
                 self.unstable(fast, slow, turn.1).first()?[0]
             }
@@ -114,7 +114,7 @@ impl Trigonometric {
         };
         let rigid =
             Ball::from_integer(&2.into()).div(&slow.enclosure(BITS).sqrt(BITS)?, BITS)?.to_f64_enclosure();
-        Some((own.0.min(rigid.0), own.1.min(rigid.1)))
+        Some((pair.0.min(rigid.0), pair.1.min(rigid.1)))
     }
 
     /// See [`Shape::is_free`].
@@ -240,7 +240,7 @@ impl Shape {
     /// given as `most`.
     pub fn unstable(self, fast: &Laurent, slow: &Laurent, most: f64) -> Vec<[(f64, f64); 2]> {
         let all = self.pieces(fast, slow, 0.0, most).into_iter();
-        all.filter(|own| !own.stable).map(|own| [own.lower, own.upper]).collect()
+        all.filter(|piece| !piece.stable).map(|piece| [piece.lower, piece.upper]).collect()
     }
 
     /// Whether no step at all is unstable, of one mode: proven for i, k ≥ 2 where 0 < ρ < 1, since then ρ y² c^(i−2) (s/y)^k ≤ ρ s² < 1 and
@@ -289,7 +289,7 @@ fn over(slow: &Laurent, fast: &Laurent) -> Ball {
 /// sin y / y of every y of a ball.
 fn sinc(y: &Ball, bits: u32) -> Ball {
     match y.sin(bits).div(y, bits) {
-        Some(own) if y.is_away_from_zero() => own,
+        Some(ball) if y.is_away_from_zero() => ball,
         // 1 − y²/6 ≤ sinc y ≤ 1.
         _ => {
             let square = y.square(bits).upper();

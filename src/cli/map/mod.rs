@@ -50,8 +50,8 @@ impl Args {
         let shown = self.columns.products(format)?;
         let any = |of: fn(&Products) -> bool| of(&coloured) || of(&shown);
         let products = Products {
-            label: self.label || any(|own| own.label),
-            growth: self.growth || any(|own| own.growth),
+            label: self.label || any(|products| products.label),
+            growth: self.growth || any(|products| products.growth),
         };
         let Stiffness { lambda1, lambda2 } = &self.stiffness;
         let (label, growth) = (products.label, products.growth);

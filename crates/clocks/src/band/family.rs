@@ -83,7 +83,7 @@ impl Family {
             for k in 0..ORDERS {
                 let term = by_order.map(|entry| entry[k]);
                 match family.of_mut(k).get_mut(j) {
-                    Some(own) => *own = term,
+                    Some(values) => *values = term,
                     None => family.error += norm(&term) * UP,
                 }
             }
@@ -338,8 +338,8 @@ impl Task for Part<'_> {
         };
         let mut part = Family::zero([0, 1, 2].map(|k| lengths[k].min(MOST[k])));
         for k in 0..ORDERS {
-            for (own, term) in part.of_mut(k).iter_mut().zip(moved.of(k)) {
-                *own = *term;
+            for (values, term) in part.of_mut(k).iter_mut().zip(moved.of(k)) {
+                *values = *term;
             }
         }
         // V(t + Δ) = V + V' Δ + ½ V'' Δ² + ..., F(t + Δ) = F + F' Δ + ..., Δ = (−1 ± t') (r u + ...).

@@ -56,8 +56,8 @@ struct Turning {
 
 impl Frame {
     /// Of the base's step, the other one, and the other one over the base's. `None` where the base's step may be zero.
-    pub fn new(own: &Taylor, other: &Taylor, tau: &Taylor, base: &Base) -> Option<Frame> {
-        let (sine, pull) = (own.times(&base.root), other.times(&base.weight));
+    pub fn new(taylor: &Taylor, other: &Taylor, tau: &Taylor, base: &Base) -> Option<Frame> {
+        let (sine, pull) = (taylor.times(&base.root), other.times(&base.weight));
         let turning = Turning::new(&sine, &pull, tau, &other.times(&base.root));
         Some(Frame { sine, pull, tau: *tau, turning })
     }

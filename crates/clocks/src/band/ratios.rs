@@ -51,14 +51,14 @@ pub fn unstable_ratios(
     let (from, to) = from.zip(to).filter(|(from, to)| *from > 0 && *to < LARGEST * UNIT)?;
     let [first, second] = lambdas;
     let (bases, h1) = ([base(first, second), base(second, first)], enclosed(&h1.enclosure(BITS)));
-    let is_unstable = |from: i64, to: i64, (own, family): Way| {
+    let is_unstable = |from: i64, to: i64, (index, family): Way| {
         let [middle, half] = [from + to, to - from].map(|x| x as f64 / (2 * UNIT) as f64);
         let ratio = Taylor::constant(middle, 2.0 * U * (middle + half)).with_slope(half);
         let steps = [h1, h1.times(&ratio)];
-        let range = [[(from, UNIT), (to, UNIT)], [(UNIT, to), (UNIT, from)]][own];
+        let range = [[(from, UNIT), (to, UNIT)], [(UNIT, to), (UNIT, from)]][index];
         let frame = || {
-            let tau = if own == 0 { ratio } else { ratio.reciprocal()? };
-            Frame::new(&steps[own], &steps[1 - own], &tau, bases[own].as_ref()?)
+            let tau = if index == 0 { ratio } else { ratio.reciprocal()? };
+            Frame::new(&steps[index], &steps[1 - index], &tau, bases[index].as_ref()?)
         };
         from > 0 && frame().is_some_and(|frame| frame.proves(family, range, FORKS))
     };

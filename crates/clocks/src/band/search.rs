@@ -117,9 +117,9 @@ impl Window {
                 return Err(Error::input(field, format!("{lo}..{hi}"), "give LO..HI with 0 <= LO < HI"));
             }
         }
-        let base = |own: usize, field| {
-            base(&lambdas[own], &lambdas[1 - own]).ok_or_else(|| {
-                Error::input(field, &lambdas[own], "has to be positive, so that larger steps turn further")
+        let base = |index: usize, field| {
+            base(&lambdas[index], &lambdas[1 - index]).ok_or_else(|| {
+                Error::input(field, &lambdas[index], "has to be positive, so that larger steps turn further")
             })
         };
         let bases = [base(0, "lambda1")?, base(1, "lambda2")?];
@@ -465,9 +465,9 @@ fn between([from, to]: [f64; 2], part: [f64; 2]) -> Ratio {
 }
 
 /// √Λ/2 and Λ'/(2 √Λ); `None` unless Λ is positive.
-pub(super) fn base(own: &Laurent, other: &Laurent) -> Option<Base> {
-    let root = own.enclosure(BITS).sqrt(BITS)?.scale2(-1);
-    (own.sign() == Sign::Positive).then_some(())?;
+pub(super) fn base(value: &Laurent, other: &Laurent) -> Option<Base> {
+    let root = value.enclosure(BITS).sqrt(BITS)?.scale2(-1);
+    (value.sign() == Sign::Positive).then_some(())?;
     let weight = other.enclosure(BITS).scale2(-2).div(&root, BITS)?;
     Some(Base { root: enclosed(&root), weight: enclosed(&weight) })
 }

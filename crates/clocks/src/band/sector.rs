@@ -151,8 +151,8 @@ impl Prover {
         let frames = [frame(0), frame(1)];
         let distortion = |base: usize| frames[base].as_ref().map_or(f64::INFINITY, Frame::distortion);
         let base = usize::from(distortion(1) < distortion(0));
-        let own = frames[base].as_ref()?;
-        Way::both(base).into_iter().find(|way| proves(*way, own))
+        let frame = frames[base].as_ref()?;
+        Way::both(base).into_iter().find(|way| proves(*way, frame))
     }
 
     /// Whether both ends of a line are proven to be in the tongue of the family.

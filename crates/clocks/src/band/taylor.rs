@@ -91,7 +91,7 @@ impl Taylor {
 
     pub fn times(&self, other: &Self) -> Self {
         let (x, y) = (self, other);
-        let [x_square, y_square] = [x, y].map(|own| own.square.abs());
+        let [x_square, y_square] = [x, y].map(|taylor| taylor.square.abs());
         let third = x.slope.abs() * y_square + x_square * y.slope.abs() + x_square * y_square;
         let carried = x.size() * y.error + y.size() * x.error;
         let rounding = 5.0 * U * x.size() * y.size();
@@ -209,7 +209,7 @@ mod tests {
             let (a, b) = (value(&x, at, shares[0]), value(&y, at, shares[1]));
             let [sine, cosine] = y.sine_cosine().unwrap();
             let mut pairs = vec![(x.plus(&y), a + b), (x.minus(&y), a - b), (x.times(&y), a * b), (sine, b.sin()), (cosine, b.cos())];
-            pairs.extend(x.reciprocal().map(|own| (own, 1.0 / a)));
+            pairs.extend(x.reciprocal().map(|taylor| (taylor, 1.0 / a)));
             if let Some([angle, root, quotient]) = x.arcsine() {
                 pairs.extend([(angle, a.asin()), (root, (1.0 - a * a).sqrt()), (quotient, a.asin() / a)]);
             }

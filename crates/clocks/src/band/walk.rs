@@ -49,7 +49,7 @@ impl Length {
 
     /// r = short/long, of this length and a shorter one. Their determinant D is ±1, so r(τ) − r(τ₀) = D (τ − τ₀)/(long(τ) long(τ₀)).
     fn share(self, short: Length, tau: &Taylor) -> Option<Taylor> {
-        let [(length, long_off), (rest, rest_off)] = [self, short].map(|own| own.at(tau.center));
+        let [(length, long_off), (rest, rest_off)] = [self, short].map(|length| length.at(tau.center));
         let moved = self.reach(tau);
         let least = (length - long_off - moved) * (1.0 - 4.0 * U);
         if least.is_nan() || least <= 0.0 {

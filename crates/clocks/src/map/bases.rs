@@ -149,9 +149,9 @@ impl InLanes for OnBase<'_> {
         let zero = [0.0; L];
         let (mut kick, mut slope, mut sin) = (zero, zero, zero);
         for i in 0..L {
-            let own = &pairs[i.min(pairs.len() - 1)];
-            (p[i], q[i], common[i]) = (own.p, own.q, own.common);
-            (kick[i], slope[i], sin[i]) = (own.kick, own.base.slope, own.base.sin);
+            let on_base = &pairs[i.min(pairs.len() - 1)];
+            (p[i], q[i], common[i]) = (on_base.p, on_base.q, on_base.common);
+            (kick[i], slope[i], sin[i]) = (on_base.kick, on_base.base.slope, on_base.base.sin);
         }
         // n/common is odd where the lowest bits of both are one.
         let odd = |n: &[u64; L]| -> [f64; L] {
@@ -177,14 +177,14 @@ impl InLanes for OnBase<'_> {
         }
         let (mut tan, mut sine, mut left) = ([zero; 2], [zero; 2], [zero; 2]);
         for i in 0..L {
-            let own = &pairs[i.min(pairs.len() - 1)];
-            let turns = own.base.turns_from(places[i]);
+            let on_base = &pairs[i.min(pairs.len() - 1)];
+            let turns = on_base.base.turns_from(places[i]);
             for (carry, turn) in turns.iter().enumerate() {
                 (tan[carry][i], sine[carry][i]) = (turn.tan, turn.sin);
             }
             [left[0][i], left[1][i]] = turns[usize::from(carried[i] > 0.0)].half;
             if updates[i] == 0.0 && q_odd[i] > 0.0 {
-                [left[0][i], left[1][i]] = own.base.turn(places[i] - 1).half;
+                [left[0][i], left[1][i]] = on_base.base.turn(places[i] - 1).half;
             }
         }
         let left = [
@@ -227,15 +227,15 @@ mod tests {
                 })
                 .collect();
             let (found, left): (Constants<16>, _) = OnBase::constants(&pairs);
-            for (i, own) in pairs.iter().enumerate() {
-                let pair = own.pair();
-                prop_assert_eq!([pair.whole, pair.rest, pair.updates], [own.p / own.q, own.p % own.q, own.q / own.common / 2]);
-                let turn = |n: u64| own.base.turn(n);
+            for (i, on_base) in pairs.iter().enumerate() {
+                let pair = on_base.pair();
+                prop_assert_eq!([pair.whole, pair.rest, pair.updates], [on_base.p / on_base.q, on_base.p % on_base.q, on_base.q / on_base.common / 2]);
+                let turn = |n: u64| on_base.base.turn(n);
                 let turns = [turn(pair.whole), turn(pair.whole + 1)];
                 prop_assert_eq!(found.tan.map(|tan| tan[i]), turns.map(|turn| turn.tan));
                 prop_assert_eq!(found.sine.map(|sine| sine[i]), turns.map(|turn| turn.sin));
                 prop_assert_eq!([found.rest[i], found.modulus[i], found.updates[i]], [pair.rest, pair.modulus, pair.updates].map(|n| n as f64));
-                prop_assert_eq!([found.kick[i], found.slope[i], found.sin[i]], [own.kick, own.base.slope, own.base.sin]);
+                prop_assert_eq!([found.kick[i], found.slope[i], found.sin[i]], [on_base.kick, on_base.base.slope, on_base.base.sin]);
                 prop_assert_eq!(found.last_kick[i], if pair.q_even { 0.5 } else { 1.0 });
                 prop_assert_eq!(left.map(|left| left[i]), pair.left().map_or([1.0, 0.0], |n| turn(n).half));
             }

@@ -140,10 +140,10 @@ impl<'a> Map<'a> {
             return Err(Error::input("verdicts", rest.len(), format!("the slice must hold {pairs}")));
         }
         self.for_each_band(|_, band| {
-            let (own, others) = std::mem::take(&mut rest).split_at_mut(band.verdicts.len());
+            let (verdicts, others) = std::mem::take(&mut rest).split_at_mut(band.verdicts.len());
             rest = others;
-            own.iter_mut().zip(&band.verdicts).for_each(|(to, &n)| *to = Verdict::ALL[usize::from(n)]);
-            done += own.len() as u64;
+            verdicts.iter_mut().zip(&band.verdicts).for_each(|(to, &n)| *to = Verdict::ALL[usize::from(n)]);
+            done += verdicts.len() as u64;
             progress(done);
             Ok(())
         })

@@ -77,8 +77,8 @@ impl<'a> Work<'a> {
     /// Bytes that a band of so many columns takes at most while it is worked on.
     pub fn bytes(grid: &Grid, bases: &Bases, columns: usize) -> u128 {
         let rows = grid.shape().1 as u128;
-        let own = if bases.rows_are_shared() { 0 } else { BYTES_A_ROW as u128 };
-        rows * (BYTES_A_PAIR * columns as u128 + own)
+        let count = if bases.rows_are_shared() { 0 } else { BYTES_A_ROW as u128 };
+        rows * (BYTES_A_PAIR * columns as u128 + count)
     }
 
     pub(super) fn multipliers(&self, n: usize) -> (u64, u64) {
@@ -191,11 +191,11 @@ impl<'a> Work<'a> {
 
     /// The base of a row: of this band or, as a rule, of all.
     fn second(&self, row: u64) -> Option<&Base> {
-        let Some(own) = self.seconds.get((row - self.grid.rows().0) as usize) else {
+        let Some(base) = self.seconds.get((row - self.grid.rows().0) as usize) else {
             return self.bases.row(row);
         };
         let last = self.first + self.firsts.len() as u64 - 1;
-        own.get_or_init(|| self.bases.row_within(row, self.first, last)).as_ref()
+        base.get_or_init(|| self.bases.row_within(row, self.first, last)).as_ref()
     }
 
     fn allow(&self, kicks: u64) -> Result<()> {

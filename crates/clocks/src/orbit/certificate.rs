@@ -149,7 +149,7 @@ impl Certificates {
         let (beta, slope) = (up(hardest.beta, BETAS), up(hardest.slope, SLOPES));
         let harder = Hardest { beta, slope, steps: hardest.steps.next_power_of_two() };
         let place = &mut self.made[(beta * BETAS) as usize % REMEMBERED];
-        if let Some((_, made)) = place.as_ref().filter(|(of, _)| *of == harder) {
+        if let Some((_, made)) = place.as_ref().filter(|(hardest, _)| *hardest == harder) {
             return *made;
         }
         let made = Certificate::new(harder, self.most);

@@ -403,21 +403,21 @@ impl InLanes for Pair<'_> {
         let zero = [0.0; L];
         let (kick, slope, sin, modulus, rest, updates) = (zero, zero, zero, zero, zero, zero);
         let (tan, sine, last_kick) = ([zero; 2], [zero; 2], zero);
-        let mut of = Constants { kick, slope, sin, modulus, rest, tan, sine, updates, last_kick };
+        let mut constants = Constants { kick, slope, sin, modulus, rest, tan, sine, updates, last_kick };
         let mut left = [zero; 2];
         for i in 0..L {
             let pair = &pairs[i.min(pairs.len() - 1)];
             let base = pair.base;
-            (of.kick[i], of.slope[i], of.sin[i]) = (pair.kick, base.slope, base.sin);
-            (of.modulus[i], of.rest[i]) = (double_of(pair.modulus), double_of(pair.rest));
+            (constants.kick[i], constants.slope[i], constants.sin[i]) = (pair.kick, base.slope, base.sin);
+            (constants.modulus[i], constants.rest[i]) = (double_of(pair.modulus), double_of(pair.rest));
             let turns = [base.turn(pair.whole), base.turn(pair.whole + 1)];
-            (of.tan[0][i], of.sine[0][i]) = (turns[0].tan, turns[0].sin);
-            (of.tan[1][i], of.sine[1][i]) = (turns[1].tan, turns[1].sin);
-            of.updates[i] = double_of(pair.updates);
-            of.last_kick[i] = if pair.q_even { 0.5 } else { 1.0 };
+            (constants.tan[0][i], constants.sine[0][i]) = (turns[0].tan, turns[0].sin);
+            (constants.tan[1][i], constants.sine[1][i]) = (turns[1].tan, turns[1].sin);
+            constants.updates[i] = double_of(pair.updates);
+            constants.last_kick[i] = if pair.q_even { 0.5 } else { 1.0 };
             [left[0][i], left[1][i]] = pair.left().map_or([1.0, 0.0], |n| base.turn(n).half);
         }
-        (of, left)
+        (constants, left)
     }
 }
 
@@ -481,30 +481,30 @@ impl<const L: usize> Lanes<L> {
     /// Even start (1, (sin θ + B)/2), odd start (0, −1), in (re, im) and in the scales cos(θ/2) and 1/cos(θ/2),
     /// which are |g| before the half kick; products of the two solutions have the right scale.
     #[inline(always)]
-    pub fn start(&mut self, of: Constants<L>) {
-        let scale: [f64; L] = each(|i| of.kick[i] / (2.0 * of.slope[i]));
+    pub fn start(&mut self, constants: Constants<L>) {
+        let scale: [f64; L] = each(|i| constants.kick[i] / (2.0 * constants.slope[i]));
         let inverse: [f64; L] = each(|i| 1.0 / scale[i]);
-        let secant2: [f64; L] = each(|i| of.slope[i].mul_add(of.slope[i], 1.0));
-        let step: [f64; L] = each(|i| 2.0 * of.rest[i]);
+        let secant2: [f64; L] = each(|i| constants.slope[i].mul_add(constants.slope[i], 1.0));
+        let step: [f64; L] = each(|i| 2.0 * constants.rest[i]);
         *self = Lanes {
             even: Orbits::new(
                 1.0,
-                each(|i| 0.5 * of.sin[i].mul_add(inverse[i], 1.0)),
+                each(|i| 0.5 * constants.sin[i].mul_add(inverse[i], 1.0)),
                 each(|i| 1.0 / secant2[i]),
             ),
             odd: Orbits::new(0.0, each(|i| -inverse[i]), secant2),
-            place: each(|i| -of.modulus[i]),
+            place: each(|i| -constants.modulus[i]),
             step,
             // Places go by twos from -q on: the largest without a carry is q - step - 2.
-            limit: each(|i| of.modulus[i] - step[i] - 1.0),
-            wrap: each(|i| step[i] - 2.0 * of.modulus[i]),
-            tilt: each(|i| scale[i] * of.slope[i] / of.modulus[i]),
-            drift: [each(|i| scale[i] * of.tan[0][i]), each(|i| scale[i] * of.tan[1][i])],
-            kick: [each(|i| inverse[i] * of.sine[0][i]), each(|i| inverse[i] * of.sine[1][i])],
+            limit: each(|i| constants.modulus[i] - step[i] - 1.0),
+            wrap: each(|i| step[i] - 2.0 * constants.modulus[i]),
+            tilt: each(|i| scale[i] * constants.slope[i] / constants.modulus[i]),
+            drift: [each(|i| scale[i] * constants.tan[0][i]), each(|i| scale[i] * constants.tan[1][i])],
+            kick: [each(|i| inverse[i] * constants.sine[0][i]), each(|i| inverse[i] * constants.sine[1][i])],
             scale,
-            slope: of.slope,
-            updates: of.updates,
-            last_kick: of.last_kick,
+            slope: constants.slope,
+            updates: constants.updates,
+            last_kick: constants.last_kick,
             crossings: [[0.0; L]; 4],
             worst: f64::INFINITY,
             strong: true,

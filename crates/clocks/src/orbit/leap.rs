@@ -227,8 +227,8 @@ mod tests {
             if one.signs.0.is_some_and(|sign| sign != Sign::Zero) {
                 assert_eq!(one.signs.0, other.signs.0, "{name}");
             }
-            if let (Some(own), Some(known)) = (one.nodes, other.nodes) {
-                assert_eq!(own, known, "sign changes, {name}");
+            if let (Some(count), Some(known)) = (one.nodes, other.nodes) {
+                assert_eq!(count, known, "sign changes, {name}");
             }
         }
         let base = if p > q { s } else { s * rho * ratio((p * p) as i64, (q * q) as i64) };

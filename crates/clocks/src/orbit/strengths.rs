@@ -114,8 +114,8 @@ impl<const L: usize> Phases<L> {
     #[inline(always)]
     fn or(mut self, other: &Self, n: &[f64; L]) -> Self {
         let odd: [f64; L] = each(|i| parity(n[i]));
-        for (own, other) in self.0.as_flattened_mut().iter_mut().zip(other.0.as_flattened()) {
-            *own = each(|i| chosen(odd[i] > 0.0, other[i], own[i]));
+        for (values, other) in self.0.as_flattened_mut().iter_mut().zip(other.0.as_flattened()) {
+            *values = each(|i| chosen(odd[i] > 0.0, other[i], values[i]));
         }
         self
     }
@@ -178,9 +178,9 @@ impl InLanes for Placed {
         let rest = each(|i| (-whole[i]).mul_add(q[i], p[i]));
         let (mut half, mut back) = (Phases([[[0.0; L]; 2]; 2]), Phases([[[0.0; L]; 2]; 2]));
         for (i, (&hi, &lo)) in s[0].iter().zip(&s[1]).enumerate() {
-            let own = Phase::half(Twofold { hi, lo });
-            half.set(i, own);
-            back.set(i, own.conjugate());
+            let phase = Phase::half(Twofold { hi, lo });
+            half.set(i, phase);
+            back.set(i, phase.conjugate());
         }
         let now = half.power(&whole);
         let after = now.times(&half);

@@ -89,7 +89,7 @@ mod tests {
     /// Kick by kick, in doubles.
     fn summed(ratio: Ratio, m: u64) -> (f64, f64) {
         let (p, q) = ratio.terms();
-        let turn = |n: u64, of: u64| Complex64::cis(std::f64::consts::PI * n as f64 / of as f64);
+        let turn = |n: u64, count: u64| Complex64::cis(std::f64::consts::PI * n as f64 / count as f64);
         let (mut s0, mut s1) = (0.0, Complex64::default());
         for k in 0..q {
             let (n, sigma) = (k * p / q, (k * p % q) as f64 / q as f64);

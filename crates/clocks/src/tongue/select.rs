@@ -130,7 +130,8 @@ impl Selection {
                 })
         };
         let (from, upto) = self.m.as_ref().map_or((first, last), |list| {
-            let (from, upto) = (list.0.iter().map(|own| own.0).min(), list.0.iter().map(|own| own.1).max());
+            let (from, upto) =
+                (list.0.iter().map(|pair| pair.0).min(), list.0.iter().map(|pair| pair.1).max());
             (from.unwrap_or(1).max(first), upto.unwrap_or(0).min(last))
         });
         if upto.saturating_sub(from) > MOST_KICKS {

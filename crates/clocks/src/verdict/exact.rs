@@ -63,8 +63,8 @@ impl Decidable for Laurent {
             return Decidable::exact_cost(&rational, kicks);
         }
         let strengths = [clocks.fast(), clocks.slow()];
-        let powers = strengths.iter().map(|own| own.terms().len()).max().unwrap_or(0) as u64;
-        let words = words(strengths.iter().flat_map(|own| own.terms()).map(|(_, c)| c));
+        let powers = strengths.iter().map(|strength| strength.terms().len()).max().unwrap_or(0) as u64;
+        let words = words(strengths.iter().flat_map(|strength| strength.terms()).map(|(_, c)| c));
         kicks.saturating_pow(3).saturating_mul(powers.saturating_mul(words).saturating_pow(2))
     }
 

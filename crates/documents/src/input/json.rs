@@ -51,8 +51,8 @@ pub fn plain(cause: &serde_json::Error) -> String {
         return format!("no JSON from here on ({words})");
     }
     let found =
-        ["invalid type: ", "invalid value: ", "invalid "].iter().find_map(|own| words.strip_prefix(own));
-    if let Some((found, wanted)) = found.and_then(|own| own.split_once(", expected ")) {
+        ["invalid type: ", "invalid value: ", "invalid "].iter().find_map(|text| words.strip_prefix(text));
+    if let Some((found, wanted)) = found.and_then(|found| found.split_once(", expected ")) {
         return format!("found {} where {} belongs", noun(found), noun(wanted));
     }
     match words.split_once(", expected ") {
@@ -66,7 +66,7 @@ pub fn plain(cause: &serde_json::Error) -> String {
 
 /// What serde calls a part of a document, as JSON calls it.
 fn noun(name: &str) -> String {
-    let own = [
+    let pairs = [
         ("a tuple of size ", "a list of "),
         ("an array of length ", "a list of "),
         ("length ", "a list of "),
@@ -87,7 +87,7 @@ fn noun(name: &str) -> String {
         _ if name.starts_with("struct ") => "an object".into(),
         _ => {
             let renamed =
-                own.iter().find_map(|(serde, json)| Some(format!("{json}{}", name.strip_prefix(serde)?)));
+                pairs.iter().find_map(|(serde, json)| Some(format!("{json}{}", name.strip_prefix(serde)?)));
             renamed.unwrap_or_else(|| name.into()).replace('`', "")
         }
     }

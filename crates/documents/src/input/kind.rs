@@ -11,7 +11,7 @@ const READERS: [(&str, &str); 3] = [
 
 /// The error of a file of another kind than the one that is read: the command that reads it, or what is read.
 pub fn of_another_kind(schema: &str, read: &str) -> Error {
-    let known = READERS.iter().find(|(own, _)| *own == schema).map(|(_, what)| format!("is {what}"));
+    let known = READERS.iter().find(|(text, _)| *text == schema).map(|(_, what)| format!("is {what}"));
     let remedy = known.unwrap_or_else(|| match schema.strip_prefix("kickdrift/") {
         Some(name) if name.ends_with("/1") => {
             "is an answer of kickdrift: kickdrift verify FILE rechecks it".into()
@@ -23,5 +23,5 @@ pub fn of_another_kind(schema: &str, read: &str) -> Error {
 
 /// Whether a schema is one of what is asked, not of an answer.
 pub fn is_asked(schema: &str) -> bool {
-    READERS.iter().any(|(own, _)| *own == schema)
+    READERS.iter().any(|(text, _)| *text == schema)
 }

@@ -158,7 +158,7 @@ impl Question for Advised {
         let scene = work.read(file)?;
         let (length, friction) = (self.length.as_ref(), self.friction.as_ref());
         let size = scene.model().size();
-        if let Some(direct) = scene.direct()?.map(|own| own.with_harmonic_bonds(self.harmonic)) {
+        if let Some(direct) = scene.direct()?.map(|direct| direct.with_harmonic_bonds(self.harmonic)) {
             let limits = Limits { products: work.budget.unwrap_or(MOST_PRODUCTS), ..Limits::default() };
             let seconds = direct.cost(&self.schemes)? as f64 / PRODUCTS_A_SECOND;
             work.announce(&format!("advice on {size} degrees of freedom"), seconds);
@@ -194,8 +194,8 @@ impl Safe {
     fn view(&self) -> report::View<'_> {
         match self {
             Safe::Periods(advice) => report::View::Periods(advice),
-            Safe::Hessians(own) => report::View::Hessians(&own.1),
-            Safe::Direct(own) => report::View::Direct(&own.1),
+            Safe::Hessians(pair) => report::View::Hessians(&pair.1),
+            Safe::Direct(pair) => report::View::Direct(&pair.1),
         }
     }
 }
@@ -205,7 +205,7 @@ impl Safe {
     pub fn levers(&self) -> Option<&Levers> {
         match self {
             Safe::Periods(advice) => advice.levers.as_ref(),
-            Safe::Hessians(own) => own.1.levers.as_ref(),
+            Safe::Hessians(pair) => pair.1.levers.as_ref(),
             Safe::Direct(_) => None,
         }
     }
@@ -298,8 +298,8 @@ impl Question for Advise {
         }
         let safe = asked.answer(work)?;
         let mut notes = Vec::new();
-        if let (Safe::Hessians(own), Some(_)) = (&safe, archive) {
-            let fastest = own.1.groups[0].period.0;
+        if let (Safe::Hessians(pair), Some(_)) = (&safe, archive) {
+            let fastest = pair.1.groups[0].period.0;
             if !PLAUSIBLE.contains(&fastest) {
                 let given = format!("a fastest period of {fastest:.1e} fs");
                 let remedy = "an archive is read as mass-weighted, in 1/ps^2: write a system file that says what it is";
@@ -334,7 +334,7 @@ impl Question for Advise {
 impl Advise {
     /// The levers as a picture; `None` where there are none.
     pub fn levers_figure(&self, answer: &Answer) -> Option<Figure> {
-        let levers = answer.safe.levers().filter(|own| !own.rows.is_empty())?;
+        let levers = answer.safe.levers().filter(|lever| !lever.rows.is_empty())?;
         Some(report::levers_figure(levers, "What would let the outer step grow", answer.asked.unit()))
     }
 
@@ -403,7 +403,7 @@ impl Advise {
             no_levers: self.no_levers,
             all_modes: self.all_modes,
             harmonic: self.harmonic,
-            beads: reading.and_then(|own| own.beads.clone()).filter(|own| own.count > 1),
+            beads: reading.and_then(|reading| reading.beads.clone()).filter(|beads| beads.count > 1),
             plain_time: unit == TimeUnit::Plain,
         })
     }
@@ -445,7 +445,7 @@ impl Advise {
                 "a period has no masses: give the bond, as CH:K=340kcal/mol/A^2,12.011,1.008",
             ));
         }
-        let hydrogen = asked.or_else(|| reading.and_then(|own| own.hydrogen.clone()));
+        let hydrogen = asked.or_else(|| reading.and_then(|reading| reading.hydrogen.clone()));
         let bonds = self.bond.iter().map(|text| Mode::from_bond(text, hydrogen.as_ref()));
         let unit = self.unit(reading);
         if unit == TimeUnit::Plain && !self.bond.is_empty() {
@@ -460,15 +460,16 @@ impl Advise {
         let mut modes = bonds.chain(self.period.iter().map(period)).collect::<Result<Vec<_>>>()?;
         self.on.iter().try_for_each(|entry| place(&mut modes, entry))?;
         // The engine's own scheme first.
-        let own = reading.map(|reading| reading.scheme.clone());
-        let schemes: Vec<Scheme> = own.into_iter().chain(self.given(reading)?).collect();
+        let scheme = reading.map(|reading| reading.scheme.clone());
+        let schemes: Vec<Scheme> = scheme.into_iter().chain(self.given(reading)?).collect();
         // Each on its clock before any is held: what is left of a slow clock stays there.
         schemes.first().into_iter().for_each(|first| molecules::place(&mut modes, first.steps().len()));
         let constraints = self.constraints.as_deref().map(Constraints::parse);
-        let (modes, held) = match constraints.or_else(|| reading.and_then(|own| own.constraints.clone())) {
-            Some(constraints) => constraints.split(modes)?,
-            None => (modes, Vec::new()),
-        };
+        let (modes, held) =
+            match constraints.or_else(|| reading.and_then(|reading| reading.constraints.clone())) {
+                Some(constraints) => constraints.split(modes)?,
+                None => (modes, Vec::new()),
+            };
         let constrained = (!held.is_empty()).then_some(held);
         Ok(Advised { modes: Some(modes), constrained, ..self.of_schemes(schemes, reading)? })
     }
@@ -482,11 +483,11 @@ impl Advise {
         let mass = self.hydrogen()?.map(|mass| decimal(&mass));
         let held = self.constraints.as_deref().map(|which| which.trim().to_string());
         let file = file.with([("hydrogen_mass", mass), ("constraints", held)]);
-        let own = match reading {
+        let scheme = match reading {
             Some(reading) => reading.scheme.clone(),
             None => work.read(&file)?.scheme()?,
         };
-        let asked = self.of_schemes([own].into_iter().chain(self.given(reading)?).collect(), reading)?;
+        let asked = self.of_schemes([scheme].into_iter().chain(self.given(reading)?).collect(), reading)?;
         Ok(Advised { file: self.file.clone(), system: Some(file), ..asked })
     }
 

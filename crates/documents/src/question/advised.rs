@@ -53,10 +53,10 @@ impl Item for Scheme {
 }
 
 notation! {
-    Origin: origin, |own: &Origin| own.name();
-    Beads: beads, |own: &Beads| match &own.kelvin {
-        Some(kelvin) => format!("{} at {kelvin} K", own.count),
-        None => own.count.to_string(),
+    Origin: origin, |origin: &Origin| origin.name();
+    Beads: beads, |beads: &Beads| match &beads.kelvin {
+        Some(kelvin) => format!("{} at {kelvin} K", beads.count),
+        None => beads.count.to_string(),
     };
 }
 
@@ -67,16 +67,16 @@ fn beads(field: &str, text: &str) -> Result<Beads> {
         Some((count, kelvin)) => (count, Some(kelvin.strip_suffix(" K").ok_or_else(form)?)),
         None => (text, None),
     };
-    let kelvin = kelvin.map(|own| parse_rational(field, own)).transpose()?;
+    let kelvin = kelvin.map(|kelvin| parse_rational(field, kelvin)).transpose()?;
     let count = count.parse().map_err(|_| form())?;
-    Ok(Beads { count, kelvin: kelvin.filter(|own| *own > Rational::zero()) })
+    Ok(Beads { count, kelvin: kelvin.filter(|kelvin| *kelvin > Rational::zero()) })
 }
 
 fn origin(field: &str, text: &str) -> Result<Origin> {
     let plain = [Origin::Period, Origin::Wavenumber, Origin::Half, Origin::Whole];
     let all: Vec<Origin> = plain.into_iter().chain(Typical::all().map(Origin::Typical)).collect();
-    let names = all.iter().map(|own| own.name()).collect::<Vec<_>>().join(", ");
-    let found = all.into_iter().find(|own| own.name() == text);
+    let names = all.iter().map(|origin| origin.name()).collect::<Vec<_>>().join(", ");
+    let found = all.into_iter().find(|origin| origin.name() == text);
     found.ok_or_else(|| Error::input(field, text, format!("is none of {names}")))
 }
 
@@ -106,16 +106,16 @@ fn bond(given: &Value) -> Result<Bond> {
     let form = || {
         Error::input("bond", given, "write {\"masses\": [M1, M2], \"hydrogens\": 1 to 4}, positive, in amu")
     };
-    let own = given.as_object().ok_or_else(form)?;
-    super::field::known(own, &["masses", "hydrogens", "heavy"])?;
+    let object = given.as_object().ok_or_else(form)?;
+    super::field::known(object, &["masses", "hydrogens", "heavy"])?;
     let positive = |value: &Value| {
         super::field::parsed::<Rational>("bond", value).ok().filter(|mass| *mass > Rational::zero())
     };
     let masses: Vec<Rational> =
-        own.get("masses").and_then(Value::as_array).into_iter().flatten().filter_map(positive).collect();
+        object.get("masses").and_then(Value::as_array).into_iter().flatten().filter_map(positive).collect();
     let hydrogens =
-        own.get("hydrogens").and_then(Value::as_u64).filter(|n| (1..=4).contains(n)).ok_or_else(form)?;
-    let heavy = own.get("heavy").map(|mass| positive(mass).ok_or_else(form)).transpose()?;
+        object.get("hydrogens").and_then(Value::as_u64).filter(|n| (1..=4).contains(n)).ok_or_else(form)?;
+    let heavy = object.get("heavy").map(|mass| positive(mass).ok_or_else(form)).transpose()?;
     let masses: [Rational; 2] = masses.try_into().map_err(|_| form())?;
     Ok(Bond::new(masses, hydrogens as u8, heavy))
 }
@@ -124,9 +124,9 @@ fn mode(given: &Map<String, Value>) -> Result<Mode> {
     super::field::known(given, &["name", "from", "clock", "stiffness", "bond"])?;
     let clock = match given.get("clock") {
         None | Some(Value::Null) => None,
-        Some(own) => {
-            let place = own.as_u64().and_then(|own| usize::try_from(own).ok()?.checked_sub(1));
-            let counted = || Error::input("clock", own, "clocks are counted from 1");
+        Some(value) => {
+            let place = value.as_u64().and_then(|as_u64| usize::try_from(as_u64).ok()?.checked_sub(1));
+            let counted = || Error::input("clock", value, "clocks are counted from 1");
             Some(place.ok_or_else(counted)?)
         }
     };

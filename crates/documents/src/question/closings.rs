@@ -115,11 +115,11 @@ impl Question for Closings {
     fn show(&self, found: &Vec<Found>) -> Document {
         let ((lo, hi), digits) = (&self.rho_range, self.digits);
         let what = format!("{}, rho in {lo}..{hi}", self.words());
-        let closings = || found.iter().flat_map(|of| &of.closings);
+        let closings = || found.iter().flat_map(|found| &found.closings);
         let ratios = Record::new()
-            .json("p", |of: &Found| of.ratio.p().into())
-            .json("q", |of| of.ratio.q().into())
-            .json("complete", |of| of.complete.into());
+            .json("p", |found: &Found| found.ratio.p().into())
+            .json("q", |found| found.ratio.q().into())
+            .json("complete", |found| found.complete.into());
         let table = |short| {
             let record = record(digits, short);
             record.table("closings", "Closed tongues: Q = I or -I", closings()).captioned(CAPTION)
@@ -139,25 +139,25 @@ type Side = fn(&Closing) -> (&Enclosure, Option<&Rational>);
 /// The row of a closing; in the short form s and ρ are one column each, exact where they are rational.
 fn record(digits: u32, short: bool) -> Record<'static, Closing> {
     let mut record = Record::new()
-        .field(Column::math("p", "p"), |of: &Closing| of.ratio.p().into())
-        .field(Column::math("q", "q"), |of| of.ratio.q().into())
-        .field(Column::math("m", "m"), |of| of.m.into());
+        .field(Column::math("p", "p"), |closing: &Closing| closing.ratio.p().into())
+        .field(Column::math("q", "q"), |closing| closing.ratio.q().into())
+        .field(Column::math("m", "m"), |closing| closing.m.into());
     let sides: [(&str, &str, Side); 2] = [
-        ("s", "s", |of| (&of.s, of.exact.as_ref().map(|(s, _)| s))),
-        ("rho", "\\rho", |of| (&of.rho, of.exact.as_ref().map(|(_, rho)| rho))),
+        ("s", "s", |closing| (&closing.s, closing.exact.as_ref().map(|(s, _)| s))),
+        ("rho", "\\rho", |closing| (&closing.rho, closing.exact.as_ref().map(|(_, rho)| rho))),
     ];
     for (key, formula, side) in sides {
         let column = Column::math(key, formula).enclosure();
-        let exact = move |of: &Closing| side(of).1.map(Cell::exact).unwrap_or(Cell::Missing);
-        let enclosed = move |of: &Closing| Cell::from(side(of).0.to_f64());
+        let exact = move |closing: &Closing| side(closing).1.map(Cell::exact).unwrap_or(Cell::Missing);
+        let enclosed = move |closing: &Closing| Cell::from(side(closing).0.to_f64());
         if short {
-            record = record.field(column, move |of| match exact(of) {
-                Cell::Missing => enclosed(of),
+            record = record.field(column, move |closing| match exact(closing) {
+                Cell::Missing => enclosed(closing),
                 exact => exact,
             });
             continue;
         }
-        let ends = move |of: &Closing| match side(of) {
+        let ends = move |closing: &Closing| match side(closing) {
             (_, Some(x)) => outward(x, x, digits),
             (x, None) => outward(&x.lo, &x.hi, digits),
         };
@@ -165,18 +165,23 @@ fn record(digits: u32, short: bool) -> Record<'static, Closing> {
         record = record
             .field(column, enclosed)
             .at(format!("{key}.exact"), titled("exact", "exact"), exact)
-            .at(format!("{key}.decimal.lo"), titled("decimal_lo", "lo"), move |of| Cell::exact(&ends(of)[0]))
-            .at(format!("{key}.decimal.hi"), titled("decimal_hi", "hi"), move |of| Cell::exact(&ends(of)[1]));
+            .at(format!("{key}.decimal.lo"), titled("decimal_lo", "lo"), move |closing| {
+                Cell::exact(&ends(closing)[0])
+            })
+            .at(format!("{key}.decimal.hi"), titled("decimal_hi", "hi"), move |closing| {
+                Cell::exact(&ends(closing)[1])
+            });
     }
-    record.field(Column::new("below_verlet").titled("s < 4", "$s < 4$"), |of| of.below_verlet.into())
+    record
+        .field(Column::new("below_verlet").titled("s < 4", "$s < 4$"), |closing| closing.below_verlet.into())
 }
 
 fn lines(found: &[Found], what: &str) -> Vec<String> {
-    let closings = || found.iter().flat_map(|of| &of.closings);
+    let closings = || found.iter().flat_map(|found| &found.closings);
     let count = closings().count();
     let exact = closings().filter(|closing| closing.exact.is_some()).count();
     let below = closings().filter(|closing| closing.below_verlet).count();
-    let complete = found.iter().filter(|of| of.complete).count();
+    let complete = found.iter().filter(|found| found.complete).count();
     let plural = if count == 1 { "" } else { "s" };
     vec![
         format!("{count} closed tongue{plural} of {what}"),

@@ -147,21 +147,26 @@ fn lines(tally: &Tally, tolerance: &Rational) -> Vec<String> {
 /// The row of an offender.
 fn record(places: [&str; 2]) -> Record<'static, Offender> {
     let [first, second] = places.map(|name| Column::math(name, formula(name)));
-    let nearest = |of: &Offender| of.comparison.nearest.clone();
+    let nearest = |offender: &Offender| offender.comparison.nearest.clone();
     Record::new()
-        .field(first, |of: &Offender| Cell::exact(&of.place[0]))
-        .field(second, |of| Cell::exact(&of.place[1]))
-        .field(Column::math("p", "p"), |of| of.ratio.p().into())
-        .field(Column::math("q", "q"), |of| of.ratio.q().into())
-        .field(Column::new("offence").left(), |of| offence(&of.comparison).into())
-        .field(Column::new("kind").left().aside(), |of| of.comparison.trace.verdict.kind().name().into())
-        .field(Column::new("tan").in_words("tan criterion").left().aside(), |of| {
-            of.comparison.tan.kind().name().into()
+        .field(first, |offender: &Offender| Cell::exact(&offender.place[0]))
+        .field(second, |offender| Cell::exact(&offender.place[1]))
+        .field(Column::math("p", "p"), |offender| offender.ratio.p().into())
+        .field(Column::math("q", "q"), |offender| offender.ratio.q().into())
+        .field(Column::new("offence").left(), |offender| offence(&offender.comparison).into())
+        .field(Column::new("kind").left().aside(), |offender| {
+            offender.comparison.trace.verdict.kind().name().into()
         })
-        .field(Column::new("m").titled("nearest m", "nearest $m$"), move |of| nearest(of).map(|n| n.m).into())
-        .field(Column::new("distance").titled("q h2/T½ - m", "$q h_2/T_{1/2} - m$").enclosure(), move |of| {
-            nearest(of).map(|n| n.distance.to_f64_enclosure()).into()
+        .field(Column::new("tan").in_words("tan criterion").left().aside(), |offender| {
+            offender.comparison.tan.kind().name().into()
         })
+        .field(Column::new("m").titled("nearest m", "nearest $m$"), move |offender| {
+            nearest(offender).map(|n| n.m).into()
+        })
+        .field(
+            Column::new("distance").titled("q h2/T½ - m", "$q h_2/T_{1/2} - m$").enclosure(),
+            move |offender| nearest(offender).map(|n| n.distance.to_f64_enclosure()).into(),
+        )
 }
 
 fn offence(comparison: &Comparison) -> &'static str {

@@ -110,7 +110,7 @@ impl<T: Field> Field for Option<T> {
     fn of(given: Option<&Value>, name: &str) -> Option<Result<Self>> {
         match given {
             None => Some(Ok(None)),
-            Some(_) => T::of(given, name).map(|own| own.map(Some)),
+            Some(_) => T::of(given, name).map(|number| number.map(Some)),
         }
     }
 
@@ -131,8 +131,8 @@ pub(super) fn parsed<T: Notation>(name: &str, value: &Value) -> Result<T> {
 /// A field, or its default.
 pub fn read<T: Field>(name: &str, from: &Map<String, Value>, default: Option<&str>) -> Result<T> {
     let default = default.map(Value::from);
-    let own = T::of(from.get(name).or(default.as_ref()), name);
-    own.unwrap_or_else(|| Err(Error::missing(name, "the question needs it: add it")))
+    let number = T::of(from.get(name).or(default.as_ref()), name);
+    number.unwrap_or_else(|| Err(Error::missing(name, "the question needs it: add it")))
 }
 
 /// That all fields are among those known.

@@ -37,10 +37,10 @@ struct Entry<'a> {
 /// The row of an entry.
 fn record<'a>() -> Record<'a, Entry<'a>> {
     Record::new()
-        .field(Column::new("entry").left(), |of: &Entry| of.name.into())
-        .field(Column::new("sign"), |of| i64::from(of.value.sign().to_i8()).into())
-        .field(Column::new("value").enclosure(), |of| rational::enclose_f64(of.value).into())
-        .field(Column::new("exact"), |of| Cell::exact(of.value))
+        .field(Column::new("entry").left(), |entry: &Entry| entry.name.into())
+        .field(Column::new("sign"), |entry| i64::from(entry.value.sign().to_i8()).into())
+        .field(Column::new("value").enclosure(), |entry| rational::enclose_f64(entry.value).into())
+        .field(Column::new("exact"), |entry| Cell::exact(entry.value))
 }
 
 impl Question for Half {

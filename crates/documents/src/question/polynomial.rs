@@ -96,7 +96,7 @@ fn trace(half: &HalfPeriod<Bivariate>, q: u64) -> Bivariate {
         for (sum, d) in product[i..].iter_mut().zip(&d) {
             sum.resize(sum.len().max(a.len() + d.len()), BigInt::zero());
             for (k, a) in a.iter().enumerate() {
-                sum[k..].iter_mut().zip(d).for_each(|(own, d)| *own += a * d);
+                sum[k..].iter_mut().zip(d).for_each(|(integer, d)| *integer += a * d);
             }
         }
     }

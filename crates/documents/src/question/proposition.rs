@@ -75,9 +75,9 @@ impl Question for Proposition {
 /// The row of a resonant point.
 fn record() -> Record<'static, Witness> {
     Record::new()
-        .field(Column::math("p", "p"), |of: &Witness| of.ratio.p().into())
-        .field(Column::math("q", "q"), |of| of.ratio.q().into())
-        .field(Column::math("m", "m"), |of| of.m.into())
-        .field(Column::math("a", "a"), |of| of.a.into())
-        .field(Column::math("b", "b"), |of| of.b.into())
+        .field(Column::math("p", "p"), |witness: &Witness| witness.ratio.p().into())
+        .field(Column::math("q", "q"), |witness| witness.ratio.q().into())
+        .field(Column::math("m", "m"), |witness| witness.m.into())
+        .field(Column::math("a", "a"), |witness| witness.a.into())
+        .field(Column::math("b", "b"), |witness| witness.b.into())
 }

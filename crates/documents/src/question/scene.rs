@@ -296,8 +296,8 @@ fn ungrouped(file: Input<String, Value>) -> Result<Input<String, Value>> {
     let mut input = Input::new();
     for (key, value) in file {
         match (key.as_str(), value) {
-            ("grid" | "families" | "window", Value::Object(own)) => {
-                for (inner, value) in own {
+            ("grid" | "families" | "window", Value::Object(object)) => {
+                for (inner, value) in object {
                     let path = format!("{key}.{inner}");
                     let known = GROUPED.iter().find(|(place, _)| *place == path);
                     let (_, field) = known.ok_or_else(|| unknown(&path, &GROUPED.map(|(place, _)| place)))?;
@@ -314,8 +314,8 @@ fn ungrouped(file: Input<String, Value>) -> Result<Input<String, Value>> {
         }
     }
     if let Some(step) = input.shift_remove("step") {
-        for own in ["step1", "step2"] {
-            input.entry(own).or_insert_with(|| step.clone());
+        for text in ["step1", "step2"] {
+            input.entry(text).or_insert_with(|| step.clone());
         }
     }
     Ok(input)

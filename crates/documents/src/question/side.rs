@@ -47,8 +47,8 @@ pub struct Side {
 
 impl Side {
     /// How many points have this answer.
-    pub fn count(&self, of: Bounded) -> u64 {
-        self.rows.iter().flatten().filter(|own| **own == of).count() as u64
+    pub fn count(&self, bounded: Bounded) -> u64 {
+        self.rows.iter().flatten().filter(|own| **own == bounded).count() as u64
     }
 }
 
@@ -65,11 +65,11 @@ impl CompareMethods {
         for c in self.methods.chars() {
             depth += i32::from(c == '(') - i32::from(c == ')');
             match names.last_mut() {
-                Some(own) if c != ',' || depth > 0 => own.push(c),
+                Some(text) if c != ',' || depth > 0 => text.push(c),
                 _ => names.push(String::new()),
             }
         }
-        names.iter().map(|own| own.trim().to_string()).collect()
+        names.iter().map(|name| name.trim().to_string()).collect()
     }
 
     /// The positive multiples of a spacing in a range.
@@ -95,7 +95,7 @@ impl CompareMethods {
             ));
         }
         let mut all = vec![first];
-        while all.last().is_some_and(|own| *own < last) {
+        while all.last().is_some_and(|value| *value < last) {
             let next = all[all.len() - 1].clone() + Rational::from_integer(1.into());
             all.push(next);
         }
@@ -178,7 +178,7 @@ impl Question for CompareMethods {
         let bar = work.count((methods.len() * ups.len()) as u64, "rows");
         let side = |(name, integrator): (&String, Integrator)| {
             let row = |up: &Rational| {
-                let own = if by_ratio {
+                let boundeds = if by_ratio {
                     integrator.along(up, &squares)
                 } else {
                     let points = steps.iter().zip(&squares);
@@ -187,7 +187,7 @@ impl Question for CompareMethods {
                         .collect()
                 };
                 bar.advance(1);
-                Ok(own)
+                Ok(boundeds)
             };
             let rows = try_map(&ups, row)?;
             Ok(Side { name: name.clone(), integrator, rows })
@@ -197,21 +197,23 @@ impl Question for CompareMethods {
 
     fn show(&self, sides: &Vec<Side>) -> Document {
         let cell = self.second().map_or_else(|_| Rational::default(), |(_, step, _)| &self.h_step * step);
-        let points = sides.first().map_or(0, |own| own.rows.iter().map(Vec::len).sum::<usize>() as u64);
-        let area = move |of: &Side, what: Bounded| {
-            Cell::exact(&(Rational::from_integer(of.count(what).into()) * &cell))
+        let points = sides.first().map_or(0, |side| side.rows.iter().map(Vec::len).sum::<usize>() as u64);
+        let area = move |side: &Side, what: Bounded| {
+            Cell::exact(&(Rational::from_integer(side.count(what).into()) * &cell))
         };
         let area_too = area.clone();
-        let share = move |of: &Side| Cell::Float(of.count(Bounded::Stable) as f64 / points as f64);
+        let share = move |side: &Side| Cell::Float(side.count(Bounded::Stable) as f64 / points as f64);
         let table = Record::new()
-            .field(Column::new("method").left(), |of: &Side| of.name.as_str().into())
-            .field(Column::new("stable"), |of| of.count(Bounded::Stable).into())
-            .field(Column::new("unstable"), |of| of.count(Bounded::Unstable).into())
-            .field(Column::new("edge"), |of| of.count(Bounded::Edge).into())
+            .field(Column::new("method").left(), |side: &Side| side.name.as_str().into())
+            .field(Column::new("stable"), |side| side.count(Bounded::Stable).into())
+            .field(Column::new("unstable"), |side| side.count(Bounded::Unstable).into())
+            .field(Column::new("edge"), |side| side.count(Bounded::Edge).into())
             .field(Column::new("share").in_words("share that is stable"), share)
-            .field(Column::new("stable_area").in_words("stable area"), move |of| area(of, Bounded::Stable))
-            .field(Column::new("unstable_area").in_words("unstable area"), move |of| {
-                area_too(of, Bounded::Unstable)
+            .field(Column::new("stable_area").in_words("stable area"), move |side| {
+                area(side, Bounded::Stable)
+            })
+            .field(Column::new("unstable_area").in_words("unstable area"), move |side| {
+                area_too(side, Bounded::Unstable)
             })
             .table("methods", "Integrators side by side, over the same steps", sides);
         let plane = if self.rho_range.is_some() { "(h, lambda2/lambda1)" } else { "(h1, h2)" };
@@ -229,15 +231,15 @@ impl Question for CompareMethods {
         let ends = |all: &[f64], step: f64| (all[0] - step / 2.0, all[all.len() - 1] + step / 2.0);
         let ((left, right), (low, high)) = (ends(&steps, across), ends(&ratios, up));
         let columns = if (5..=6).contains(&sides.len()) { 3 } else { sides.len().min(4) };
-        let panel = |own: &Side| {
+        let panel = |side: &Side| {
             let x = Axis::linear(if by_step { "*h*_1" } else { "*h*" }, left, right).of_time();
             let y = if by_step {
                 Axis::linear("*h*_2", low, high).of_time()
             } else {
                 Axis::linear("*Λ*_2/*Λ*_1", low, high)
             };
-            let share = 100.0 * own.count(Bounded::Stable) as f64 / (steps.len() * ratios.len()) as f64;
-            let panel = Panel::new(x, y).titled(&format!("{}: {share:.1} % stable", literal(&own.name)));
+            let share = 100.0 * side.count(Bounded::Stable) as f64 / (steps.len() * ratios.len()) as f64;
+            let panel = Panel::new(x, y).titled(&format!("{}: {share:.1} % stable", literal(&side.name)));
             let kinds = [
                 (Bounded::Unstable, palette::HYPERBOLIC, "unstable"),
                 (Bounded::Edge, palette::PARABOLIC, "on an edge"),
@@ -245,9 +247,9 @@ impl Question for CompareMethods {
             kinds.into_iter().fold(panel, |panel, (kind, colour, name)| {
                 let mut cells = Cells::new([steps[0], ratios[0]], [across, up], vec![colour]);
                 let all = (0u32..)
-                    .zip(&own.rows)
-                    .flat_map(|(j, row)| (0u32..).zip(row).map(move |(i, own)| (i, j, *own)));
-                let found: Vec<_> = all.filter(|(.., own)| *own == kind).collect();
+                    .zip(&side.rows)
+                    .flat_map(|(j, row)| (0u32..).zip(row).map(move |(i, bounded)| (i, j, *bounded)));
+                let found: Vec<_> = all.filter(|(.., bounded)| *bounded == kind).collect();
                 found.iter().for_each(|&(i, j, _)| cells.push(i, j, 0));
                 if found.is_empty() { panel } else { panel.with(Layer::cells(cells).labelled(name)) }
             })
@@ -256,7 +258,7 @@ impl Question for CompareMethods {
         let sheet = Figure::new(20.0 + 58.0 * columns as f64, 16.0 + 58.0 * rows)
             .named("Integrators side by side")
             .columns(columns);
-        let sheet = sides.iter().fold(sheet, |sheet, own| sheet.with(panel(own).legend(Place::Above)));
+        let sheet = sides.iter().fold(sheet, |sheet, side| sheet.with(panel(side).legend(Place::Above)));
         let mut foot = Foot::default().value("*Λ*_1", &self.lambda1);
         if by_step {
             foot = foot.value("*Λ*_2", self.lambda2.as_ref().unwrap_or(&Laurent::from_integer(1)));

@@ -65,13 +65,13 @@ impl Displacement {
 }
 
 fn ends(field: &str, text: &str) -> Result<Ends> {
-    let known = Ends::ALL.into_iter().find(|own| own.name() == text);
+    let known = Ends::ALL.into_iter().find(|ends| ends.name() == text);
     known.ok_or_else(|| Error::input(field, text, "is symmetric or staggered"))
 }
 
 notation! {
-    Displacement: Displacement::parsed, |own: &Displacement| own.text.clone();
-    Ends: ends, |own: &Ends| own.name();
+    Displacement: Displacement::parsed, |displacement: &Displacement| displacement.text.clone();
+    Ends: ends, |ends: &Ends| ends.name();
 }
 
 /// The most periods: the series is kept in memory, and is written as some 50 MB.
@@ -121,18 +121,19 @@ impl Simulate {
             return Err(Error::input("periods", self.periods, format!("choose 1 to {MOST_PERIODS}")));
         }
         // Without an orbit to be found: about the equilibrium.
-        let own = scene.own_orbit(limits).or_else(|error| match error.kind() {
+        let own_orbit = scene.own_orbit(limits).or_else(|error| match error.kind() {
             Kind::Input => Ok(None),
             _ => Err(error),
         })?;
-        let predicted = match &own {
+        let predicted = match &own_orbit {
             Some(orbit) => orbit.analysis.growth_rate(),
             None => scene.model().decide(Route::Cheapest, limits)?.growth_rate(),
         };
         let predicted = predicted.map_or(f64::NAN, middle);
         let shift = self.displace.of(scene.model().size())?;
         let rest = vec![0.0; shift.len()];
-        let Some(centre) = own.as_ref().map(|orbit| orbit.start.as_slice()).or_else(|| scene.equilibrium())
+        let Some(centre) =
+            own_orbit.as_ref().map(|orbit| orbit.start.as_slice()).or_else(|| scene.equilibrium())
         else {
             let make = || scene.linear_simulation(shift.clone(), rest.clone());
             return self.measure(make, &rest, (predicted, None, true), limits);
@@ -140,7 +141,7 @@ impl Simulate {
         let start: Vec<f64> = centre.iter().zip(&shift).map(|(x, d)| x + d).collect();
         let make =
             || Ok(scene.nonlinear_simulation(start.clone(), rest.clone())?.expect("a system with bonds"));
-        let displacement = own.as_ref().map(|orbit| orbit.displacement);
+        let displacement = own_orbit.as_ref().map(|orbit| orbit.displacement);
         self.measure(make, centre, (predicted, displacement, scene.is_linear()), limits)
     }
 

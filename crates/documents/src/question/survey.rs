@@ -121,27 +121,27 @@ fn spreads(digits: Option<usize>) -> Record<'static, Spread> {
     let float = move |x: f64| Cell::Float(digits.map_or(x, |digits| rounded(x, digits)));
     let titled = |key: &str, title: &str| Column::new(key).titled(title, title);
     Record::new()
-        .field(Column::new("abs_a").titled("|a|", "$|a|$"), |of: &Spread| of.abs_a.into())
-        .field(titled("count", "tongues"), |of| of.count.into())
-        .field(Column::new("least"), move |of| float(of.least))
-        .field(Column::new("lower_quartile").titled("lower quartile", "$25\\,\\%$"), move |of| {
-            float(of.lower_quartile)
+        .field(Column::new("abs_a").titled("|a|", "$|a|$"), |spread: &Spread| spread.abs_a.into())
+        .field(titled("count", "tongues"), |spread| spread.count.into())
+        .field(Column::new("least"), move |spread| float(spread.least))
+        .field(Column::new("lower_quartile").titled("lower quartile", "$25\\,\\%$"), move |spread| {
+            float(spread.lower_quartile)
         })
-        .field(Column::new("median"), move |of| float(of.median))
-        .field(Column::new("upper_quartile").titled("upper quartile", "$75\\,\\%$"), move |of| {
-            float(of.upper_quartile)
+        .field(Column::new("median"), move |spread| float(spread.median))
+        .field(Column::new("upper_quartile").titled("upper quartile", "$75\\,\\%$"), move |spread| {
+            float(spread.upper_quartile)
         })
-        .field(Column::new("largest"), move |of| float(of.largest))
+        .field(Column::new("largest"), move |spread| float(spread.largest))
 }
 
 /// The row of a thin tongue.
 fn thin() -> Record<'static, Thin> {
     Record::new()
-        .field(Column::math("p", "p"), |of: &Thin| of.ratio.p().into())
-        .field(Column::math("q", "q"), |of| of.ratio.q().into())
-        .field(Column::math("m", "m"), |of| of.m.into())
-        .field(Column::math("a", "a"), |of| of.a.into())
-        .field(Column::math("b", "b"), |of| of.b.into())
-        .field(Column::math("s", "s"), |of| of.s.into())
-        .field(Column::new("width").enclosure(), |of| of.width.into())
+        .field(Column::math("p", "p"), |thin: &Thin| thin.ratio.p().into())
+        .field(Column::math("q", "q"), |thin| thin.ratio.q().into())
+        .field(Column::math("m", "m"), |thin| thin.m.into())
+        .field(Column::math("a", "a"), |thin| thin.a.into())
+        .field(Column::math("b", "b"), |thin| thin.b.into())
+        .field(Column::math("s", "s"), |thin| thin.s.into())
+        .field(Column::new("width").enclosure(), |thin| thin.width.into())
 }

@@ -225,10 +225,10 @@ impl Question for System {
     fn show(&self, Answer { scene, found }: &Answer) -> Document {
         match found {
             Found::Map(map) => map.document(),
-            Found::Intervals(own) => report::intervals(own),
-            Found::Verdict(own) => {
+            Found::Intervals(intervals) => report::intervals(intervals),
+            Found::Verdict(verdict) => {
                 let Verdict { analysis, friction, orbit, is_orbit_missing, nearest, no_gradient, local } =
-                    own.as_ref();
+                    verdict.as_ref();
                 let local = local.as_ref();
                 let (friction, orbit, nearest) = (friction.as_ref(), orbit.as_ref(), nearest.as_ref());
                 let (unit, labels, is_orbit_missing) = (scene.time_unit(), scene.labels(), *is_orbit_missing);
@@ -267,7 +267,7 @@ impl System {
     /// # Errors
     /// Where the file places no points, where nothing grows, of maps and intervals.
     pub fn in_space(&self, answer: &Answer, format: Format) -> Result<String> {
-        let Found::Verdict(own) = &answer.found else {
+        let Found::Verdict(verdict) = &answer.found else {
             return Err(Error::input(
                 "output",
                 format.name(),
@@ -276,8 +276,8 @@ impl System {
         };
         let geometry = answer.scene.geometry()?;
         match format {
-            Format::Vtu => report::vtu(&own.analysis, &geometry),
-            _ => report::xyz(&own.analysis, &geometry),
+            Format::Vtu => report::vtu(&verdict.analysis, &geometry),
+            _ => report::xyz(&verdict.analysis, &geometry),
         }
     }
 }
@@ -297,13 +297,14 @@ impl System {
                 let numbers: Vec<_> = map.names.iter().map(|path| scene.number(path)).collect();
                 (map.figure(colouring, title, &numbers), varied)
             }
-            (Found::Intervals(own), Some(span)) => {
-                let steps = report::sampled(&own.stretches);
+            (Found::Intervals(intervals), Some(span)) => {
+                let steps = report::sampled(&intervals.stretches);
                 let rates = scene.growth_rates(span, &steps, &work.products())?;
-                let figure = report::intervals_figure(own, &rates, title, &scene.number(&own.number));
+                let figure =
+                    report::intervals_figure(intervals, &rates, title, &scene.number(&intervals.number));
                 (figure, varied.words(&span.to_string()))
             }
-            (Found::Verdict(own), _) => (report::figure(&own.analysis, title), varied),
+            (Found::Verdict(verdict), _) => (report::figure(&verdict.analysis, title), varied),
             (Found::Intervals(_), None) => unreachable!("intervals are those of a number"),
         };
         let foot = Foot::default().words(title).part(varied.to_string());

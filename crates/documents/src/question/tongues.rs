@@ -68,13 +68,13 @@ impl Colour {
     }
 
     fn read(field: &str, text: &str) -> Result<Colour> {
-        let known = Colour::ALL.into_iter().find(|own| own.name() == text);
+        let known = Colour::ALL.into_iter().find(|colour| colour.name() == text);
         known.ok_or_else(|| Error::input(field, text, "choose family or growth"))
     }
 }
 
 notation! {
-    Colour: Colour::read, |own: &Colour| own.name().to_string();
+    Colour: Colour::read, |colour: &Colour| colour.name().to_string();
 }
 
 /// Digits beyond this are a slip of the keyboard.

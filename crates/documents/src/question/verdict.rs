@@ -40,8 +40,8 @@ const DAMPED_KICK: f64 = 5e-5;
 impl Verdict {
     /// The question about an oscillator with its steps.
     pub fn of(oscillator: &Oscillator) -> Verdict {
-        let own = [oscillator.lambda1(), oscillator.lambda2(), oscillator.h1(), oscillator.h2()];
-        let [lambda1, lambda2, h1, h2] = own.map(Clone::clone);
+        let values = [oscillator.lambda1(), oscillator.lambda2(), oscillator.h1(), oscillator.h2()];
+        let [lambda1, lambda2, h1, h2] = values.map(Clone::clone);
         Verdict { lambda1, lambda2, h1, h2, friction: None, exact: false }
     }
 
@@ -106,8 +106,8 @@ impl Question for Verdict {
         if let Some(exact) = &answer.exact_trace {
             document = document.entry("trace.exact", exact.to_string());
         }
-        if let Some(own) = &answer.friction {
-            document = document.entry("friction", friction::value(own));
+        if let Some(friction) = &answer.friction {
+            document = document.entry("friction", friction::value(friction));
         }
         document
             .long_rows(record.table("verdict", CAPTION, [answer]).captioned(CAPTION_LATEX))
@@ -175,24 +175,24 @@ impl Decided {
 fn record() -> Record<'static, Decided> {
     type Of<'a> = &'a Decided;
     Record::new()
-        .column(Column::math("h1", "h_1").aside(), |of: Of| Cell::exact(of.oscillator.h1()))
-        .column(Column::math("h2", "h_2").aside(), |of| Cell::exact(of.oscillator.h2()))
-        .field(Column::math("p", "p"), |of| Cell::whole(of.oscillator.ratio().numer()))
-        .field(Column::math("q", "q"), |of| Cell::whole(of.oscillator.ratio().denom()))
-        .field(Column::new("kind").left(), |of| of.decision.verdict.kind().name().into())
-        .field(Column::new("stable").aside(), |of| of.decision.verdict.is_stable().into())
-        .field(Column::new("side").aside(), |of| i64::from(of.decision.verdict.side()).into())
-        .field(Column::math("trace", "\\operatorname{Tr} Q").enclosure(), |of| {
-            of.growth.trace.to_f64_enclosure().into()
+        .column(Column::math("h1", "h_1").aside(), |decided: Of| Cell::exact(decided.oscillator.h1()))
+        .column(Column::math("h2", "h_2").aside(), |decided| Cell::exact(decided.oscillator.h2()))
+        .field(Column::math("p", "p"), |decided| Cell::whole(decided.oscillator.ratio().numer()))
+        .field(Column::math("q", "q"), |decided| Cell::whole(decided.oscillator.ratio().denom()))
+        .field(Column::new("kind").left(), |decided| decided.decision.verdict.kind().name().into())
+        .field(Column::new("stable").aside(), |decided| decided.decision.verdict.is_stable().into())
+        .field(Column::new("side").aside(), |decided| i64::from(decided.decision.verdict.side()).into())
+        .field(Column::math("trace", "\\operatorname{Tr} Q").enclosure(), |decided| {
+            decided.growth.trace.to_f64_enclosure().into()
         })
-        .field(Column::new("growth_rate").titled("growth rate", "$\\ln\\mu/T$").enclosure(), |of| {
-            of.growth_rate().into()
+        .field(Column::new("growth_rate").titled("growth rate", "$\\ln\\mu/T$").enclosure(), |decided| {
+            decided.growth_rate().into()
         })
-        .at("resonance.m", Column::math("m", "m"), |of| of.resonance().map(|(m, ..)| m).into())
-        .at("resonance.a", Column::math("a", "a"), |of| of.resonance().map(|(_, a, _)| a).into())
-        .at("resonance.b", Column::math("b", "b"), |of| of.resonance().map(|(.., b)| b).into())
-        .field(Column::new("decided_by").in_words("decided by").left().aside(), |of| {
-            of.decision.decided_by.name().into()
+        .at("resonance.m", Column::math("m", "m"), |decided| decided.resonance().map(|(m, ..)| m).into())
+        .at("resonance.a", Column::math("a", "a"), |decided| decided.resonance().map(|(_, a, _)| a).into())
+        .at("resonance.b", Column::math("b", "b"), |decided| decided.resonance().map(|(.., b)| b).into())
+        .field(Column::new("decided_by").in_words("decided by").left().aside(), |decided| {
+            decided.decision.decided_by.name().into()
         })
 }
 

@@ -69,7 +69,7 @@ impl Want {
             Some(format) => {
                 let known = Format::MAP.map(Format::extension).join(", ");
                 Format::of_extension(format)
-                    .filter(|own| Format::MAP.contains(own))
+                    .filter(|format| Format::MAP.contains(format))
                     .ok_or_else(|| unknown(text, "the formats are", &known))?
             }
             None => default,

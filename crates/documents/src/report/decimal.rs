@@ -65,7 +65,7 @@ pub fn enclosure(lo: f64, hi: f64) -> Shown {
 
 /// Whether the difference of two numbers is 0 but for their rounding, the larger of them being enclosed in `beside`.
 pub(crate) fn is_nothing((lo, hi): (f64, f64), beside: Option<(f64, f64)>) -> bool {
-    lo <= 0.0 && 0.0 <= hi && hi - lo <= 1e-12 * beside.map_or(0.0, |own| own.1)
+    lo <= 0.0 && 0.0 <= hi && hi - lo <= 1e-12 * beside.map_or(0.0, |pair| pair.1)
 }
 
 /// An enclosure in doubles, in so many significant digits at most.

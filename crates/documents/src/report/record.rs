@@ -89,8 +89,8 @@ impl<'a, T> Record<'a, T> {
     }
 
     /// The row of one thing: a cell for each column.
-    pub fn row(&self, of: &T) -> Vec<Cell> {
-        self.fields.iter().filter(|field| field.column.is_some()).map(|field| (field.find)(of)).collect()
+    pub fn row(&self, number: &T) -> Vec<Cell> {
+        self.fields.iter().filter(|field| field.column.is_some()).map(|field| (field.find)(number)).collect()
     }
 
     /// The rows of many things.
@@ -99,16 +99,16 @@ impl<'a, T> Record<'a, T> {
         T: 'b,
     {
         let mut table = Table::new(name, caption, self.columns());
-        all.into_iter().for_each(|of| table.push(self.row(of)));
+        all.into_iter().for_each(|number| table.push(self.row(number)));
         table
     }
 
     /// The entries of one thing, as in JSON.
-    pub fn entries(&self, of: &T) -> Value {
+    pub fn entries(&self, number: &T) -> Value {
         let mut entries = Map::new();
         for field in &self.fields {
             if let Some(path) = &field.path {
-                put(&mut entries, path, serde_json::to_value((field.find)(of)).expect("a cell is JSON"));
+                put(&mut entries, path, serde_json::to_value((field.find)(number)).expect("a cell is JSON"));
             }
         }
         entries.into()
@@ -119,12 +119,12 @@ impl<'a, T> Record<'a, T> {
     where
         T: 'b,
     {
-        all.into_iter().map(|of| self.entries(of)).collect()
+        all.into_iter().map(|number| self.entries(number)).collect()
     }
 
     /// Adds the entries of one thing to a document.
-    pub fn document(&self, document: Document, of: &T) -> Document {
-        let Value::Object(entries) = self.entries(of) else { unreachable!("entries are an object") };
+    pub fn document(&self, document: Document, number: &T) -> Document {
+        let Value::Object(entries) = self.entries(number) else { unreachable!("entries are an object") };
         entries.into_iter().fold(document, |document, (key, value)| document.entry(&key, value))
     }
 }

@@ -319,15 +319,16 @@ impl Choice {
     /// # Errors
     /// A name that no column has.
     pub fn new(columns: &[Column], names: &[String]) -> Result<Choice> {
-        let whole = columns.iter().enumerate().map(|(i, own)| (own.key.clone(), (i, Part::Whole)));
-        let ends = columns.iter().enumerate().filter(|(_, own)| own.enclosed).flat_map(|(i, own)| {
-            let name = |end: &str| format!("{}_{end}", own.key);
-            [(name("lo"), (i, Part::Lower)), (name("hi"), (i, Part::Upper))]
-        });
+        let whole = columns.iter().enumerate().map(|(i, column)| (column.key.clone(), (i, Part::Whole)));
+        let ends =
+            columns.iter().enumerate().filter(|(_, column)| column.enclosed).flat_map(|(i, column)| {
+                let name = |end: &str| format!("{}_{end}", column.key);
+                [(name("lo"), (i, Part::Lower)), (name("hi"), (i, Part::Upper))]
+            });
         let known: Vec<(String, (usize, Part))> = whole.chain(ends).collect();
         let place = |name: &String| {
-            let found = known.iter().find(|(own, _)| own == name.trim()).map(|(_, place)| *place);
-            found.ok_or_else(|| Error::unknown("columns", name, known.iter().map(|(own, _)| own.as_str())))
+            let found = known.iter().find(|(text, _)| text == name.trim()).map(|(_, place)| *place);
+            found.ok_or_else(|| Error::unknown("columns", name, known.iter().map(|(text, _)| text.as_str())))
         };
         let picks = names.iter().map(place).collect::<Result<Vec<_>>>()?;
         let columns = picks.iter().map(|&(i, part)| columns[i].part(part)).collect();

@@ -65,11 +65,15 @@ pub fn compare(written: &Map<String, Value>, again: Value, table: &str, left: &[
     if let (Some(written), Some(again)) = (written["input"].as_object_mut(), again["input"].as_object()) {
         written.retain(|key, _| again.contains_key(key));
     }
-    let rows = |whole: &mut Value| whole.as_object_mut().and_then(|own| own.shift_remove(table));
-    let (own, truth) = (rows(&mut written), rows(&mut again));
-    let mut failures = match (&own, &truth) {
-        (Some(Value::Array(own)), Some(Value::Array(truth))) => rows_apart(table, own, truth),
-        _ => different(own.as_ref(), truth.as_ref()).map(|own| own.of(0, table)).into_iter().collect(),
+    let rows =
+        |whole: &mut Value| whole.as_object_mut().and_then(|as_object_mut| as_object_mut.shift_remove(table));
+    let (value, truth) = (rows(&mut written), rows(&mut again));
+    let mut failures = match (&value, &truth) {
+        (Some(Value::Array(values)), Some(Value::Array(truth))) => rows_apart(table, values, truth),
+        _ => different(value.as_ref(), truth.as_ref())
+            .map(|different| different.of(0, table))
+            .into_iter()
+            .collect(),
     };
     // A document without rows is one row itself.
     let row = u64::from(table.is_empty());
@@ -80,18 +84,20 @@ pub fn compare(written: &Map<String, Value>, again: Value, table: &str, left: &[
 /// Takes out what lies at a path, and says whether something did.
 fn take(value: &mut Value, path: &[&str]) -> bool {
     match (path, value) {
-        ([last], Value::Object(own)) => own.shift_remove(*last).is_some(),
+        ([last], Value::Object(object)) => object.shift_remove(*last).is_some(),
         (["*", rest @ ..], Value::Array(items)) => {
             items.iter_mut().filter_map(|item| take(item, rest).then_some(())).count() > 0
         }
-        ([first, rest @ ..], Value::Object(own)) => own.get_mut(*first).is_some_and(|own| take(own, rest)),
+        ([first, rest @ ..], Value::Object(object)) => {
+            object.get_mut(*first).is_some_and(|get_mut| take(get_mut, rest))
+        }
         _ => false,
     }
 }
 
 fn rows_apart(table: &str, written: &[Value], again: &[Value]) -> Vec<Failure> {
     let apart = (1..).zip(written.iter().zip(again)).filter_map(|(row, (written, again))| {
-        different(Some(written), Some(again)).map(|own| own.of(row, &place(written)))
+        different(Some(written), Some(again)).map(|different| different.of(row, &place(written)))
     });
     let count = (written.len() != again.len()).then(|| {
         let why = format!("{table} has {} rows, not {}", again.len(), written.len());
@@ -106,7 +112,7 @@ fn parts_apart(written: &Value, again: &Value, row: u64) -> Vec<Failure> {
     let keys = b.keys().chain(a.keys().filter(|key| !b.contains_key(*key)));
     let apart = keys.filter_map(|key| {
         let place = if row == 0 { key.clone() } else { place(written) };
-        different(a.get(key), b.get(key)).map(|own| own.below(key).of(row, &place))
+        different(a.get(key), b.get(key)).map(|different| different.below(key).of(row, &place))
     });
     apart.collect()
 }
@@ -118,7 +124,8 @@ fn place(row: &Value) -> String {
     let values = row.as_object().into_iter().flatten().filter(|(key, _)| !head.contains(&key.as_str()));
     let plain = values.take_while(|(_, value)| value.is_string() || value.is_i64() || value.is_u64());
     let text = |value: &Value| value.as_str().map_or_else(|| value.to_string(), String::from);
-    let named: Vec<String> = plain.take(NAMES).map(|(key, own)| format!("{key} = {}", text(own))).collect();
+    let named: Vec<String> =
+        plain.take(NAMES).map(|(key, value)| format!("{key} = {}", text(value))).collect();
     named.join(", ")
 }
 

@@ -106,20 +106,20 @@ impl Watch for Context<'_> {
     fn announce(&self, _: &str, _: f64) {}
 
     fn count(&self, length: u64, _: &str) -> Box<dyn Progress + '_> {
-        Box::new(Done { see: self.see, done: AtomicU64::new(0), of: length })
+        Box::new(Done { see: self.see, done: AtomicU64::new(0), count: length })
     }
 }
 
 struct Done<'a> {
     see: Option<See<'a>>,
     done: AtomicU64,
-    of: u64,
+    count: u64,
 }
 
 impl Progress for Done<'_> {
     fn advance(&self, more: u64) {
         let done = self.done.fetch_add(more, Ordering::Relaxed) + more;
-        self.see.inspect(|see| see(done, self.of));
+        self.see.inspect(|see| see(done, self.count));
     }
 }
 
@@ -150,11 +150,11 @@ impl Context<'_> {
 
     /// Checks all rows, side by side: what does not hold, in their order.
     pub fn rows<T: Place>(&self, rows: &[T], check: impl Fn(&T) -> Checked + Sync) -> Result<Vec<Failure>> {
-        let (done, of) = (AtomicU64::new(0), rows.len() as u64);
+        let (done, count) = (AtomicU64::new(0), rows.len() as u64);
         let one = |&(i, row): &(usize, &T)| {
             let failure = self.failure(i as u64 + 1, || row.place(), check(row));
             let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-            self.see.inspect(|see| see(done, of));
+            self.see.inspect(|see| see(done, count));
             failure
         };
         let found: Vec<_> = try_map(&rows.iter().enumerate().collect::<Vec<_>>(), one)?;

@@ -39,9 +39,9 @@ impl Recheck for Claim {
 
 impl Claim {
     fn whole(&self) -> Checked {
-        let names: Vec<&str> = self.entries.iter().map(|own| own.entry.as_str()).collect();
+        let names: Vec<&str> = self.entries.iter().map(|entry| entry.entry.as_str()).collect();
         let [a, b, c, d] = match &self.entries[..] {
-            [a, b, c, d] if names == ["A", "B", "C", "D"] => [a, b, c, d].map(|own| &own.exact.0),
+            [a, b, c, d] if names == ["A", "B", "C", "D"] => [a, b, c, d].map(|entry| &entry.exact.0),
             _ => return holds(false, || "its entries are not A, B, C, D".into()),
         };
         let (diagonal, rest) = (a * d, b * c);

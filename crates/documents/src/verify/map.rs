@@ -79,9 +79,9 @@ impl Recheck for Claim {
         let (mut next, mut done) = (drawn.as_slice(), 0);
         self.input.each(&grid, &context.work(), |band| {
             let pairs = band.verdicts.len() as u64;
-            let (own, rest) = next.split_at(next.partition_point(|&n| n < done + pairs));
+            let (counts, rest) = next.split_at(next.partition_point(|&n| n < done + pairs));
             let one = |&n: &u64| kick_by_kick(&grid, &band, (n - done) as usize, context);
-            failures.extend(try_map(own, one)?.into_iter().flatten());
+            failures.extend(try_map(counts, one)?.into_iter().flatten());
             tally.add(&grid, &band);
             for growing in &band.growing {
                 let (i, j) = band.multipliers(&grid, growing.position as usize);

@@ -285,9 +285,9 @@ fn recheck<R: Recheck>(
     Ok(Outcome { rows, route: "computed again", sample: None, failures, not_rechecked: left })
 }
 
-fn again<R: Recheck>(rows: &R, own: &Map<String, Value>, context: &Context) -> Result<Option<Again>> {
+fn again<R: Recheck>(rows: &R, object: &Map<String, Value>, context: &Context) -> Result<Option<Again>> {
     let by_input = (!R::READS_ROWS).then(|| rows.again(context)).transpose()?;
-    Ok(by_input.map(|(document, _)| Again { document, head: asked_in(own), compare: compared::<R> }))
+    Ok(by_input.map(|(document, _)| Again { document, head: asked_in(object), compare: compared::<R> }))
 }
 
 fn asked_in(document: &Map<String, Value>) -> [Option<Value>; 2] {
@@ -303,9 +303,9 @@ const QUESTION: &str = "that this was the question, where another one has the sa
 
 /// That the head is one that kickdrift writes: which version and which command, and an input without nulls.
 fn head(document: &Map<String, Value>) -> Result<()> {
-    let own = document.get("kickdrift").and_then(Value::as_object);
-    let text = |key: &str| own.and_then(|own| own.get(key)).is_some_and(Value::is_string);
-    if !(text("version") && text("command") && own.is_some_and(|own| own.len() == 2)) {
+    let object = document.get("kickdrift").and_then(Value::as_object);
+    let text = |key: &str| object.and_then(|object| object.get(key)).is_some_and(Value::is_string);
+    if !(text("version") && text("command") && object.is_some_and(|object| object.len() == 2)) {
         let given = document.get("kickdrift").cloned().unwrap_or_default();
         return Err(Error::input("kickdrift", given, format!("holds version and command; {REMEDY}")));
     }

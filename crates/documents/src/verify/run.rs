@@ -31,7 +31,7 @@ impl Recheck for Claim {
     fn again(&self, _: &Context) -> Result<(Value, ())> {
         self.input.check()?;
         // The folder is a place, one for all files.
-        let folder = self.products.first().and_then(|own| Path::new(&own.file).parent());
+        let folder = self.products.first().and_then(|products| Path::new(&products.file).parent());
         Ok((self.input.written(folder.unwrap_or(Path::new(""))).value(), ()))
     }
 

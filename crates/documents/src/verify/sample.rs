@@ -1,9 +1,9 @@
 //! A sample that depends on the document alone.
 
 /// So many different numbers below `of`, increasing, drawn by the text's own seed; all of them where there are no more.
-pub fn sample(text: &str, of: u64, most: u64) -> Vec<u64> {
-    if of <= most {
-        return (0..of).collect();
+pub fn sample(text: &str, count: u64, most: u64) -> Vec<u64> {
+    if count <= most {
+        return (0..count).collect();
     }
     // FNV-1a of the text, then splitmix64 (Steele, Lea, Flood 2014).
     let seed = text
@@ -15,7 +15,7 @@ pub fn sample(text: &str, of: u64, most: u64) -> Vec<u64> {
         let mut z = states.next().expect("endless");
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        drawn.insert(((u128::from(z ^ (z >> 31)) * u128::from(of)) >> 64) as u64);
+        drawn.insert(((u128::from(z ^ (z >> 31)) * u128::from(count)) >> 64) as u64);
     }
     drawn.into_iter().collect()
 }

@@ -47,36 +47,36 @@ impl Recheck for Claim {
             })
             .collect();
         context.outcome(ROUTE, ("the grid", Ok(())), &self.methods, |row| {
-            let own = sides.iter().find(|own| own.name == row.method);
-            holds(own.is_some(), || format!("{} is not among the methods", row.method))?;
-            own.map_or(Ok(()), |own| row.holds(own, &points))
+            let side = sides.iter().find(|side| side.name == row.method);
+            holds(side.is_some(), || format!("{} is not among the methods", row.method))?;
+            side.map_or(Ok(()), |side| row.holds(side, &points))
         })
     }
 }
 
 impl Row {
-    fn holds(&self, own: &Side, points: &[(f64, f64)]) -> Checked {
+    fn holds(&self, side: &Side, points: &[(f64, f64)]) -> Checked {
         let (mut stable, mut unstable) = (0u64, 0u64);
         for (s, rho) in points {
-            let excess = trace(&own.integrator, *s, *rho).abs() - 2.0;
+            let excess = trace(&side.integrator, *s, *rho).abs() - 2.0;
             stable += u64::from(excess < -NEAR);
             unstable += u64::from(excess > NEAR);
         }
         let points = points.len() as u64;
         holds(self.stable + self.unstable + self.edge == points, || format!("there are {points} points"))?;
         let right =
-            self.stable >= stable && self.unstable >= unstable && own.count(Bounded::Stable) == self.stable;
+            self.stable >= stable && self.unstable >= unstable && side.count(Bounded::Stable) == self.stable;
         holds(right, || format!("{stable} points are stable and {unstable} are not, away from edges"))
     }
 }
 
 fn trace(integrator: &Integrator, s: f64, rho: f64) -> f64 {
     match integrator {
-        Integrator::Trigonometric(own) => {
+        Integrator::Trigonometric(shape) => {
             let x = s.sqrt();
             let (cos, sinc) = ((x / 2.0).cos(), sinc(x / 2.0));
-            let g = cos.powi(own.cos as i32) * sinc.powi(own.sinc as i32);
-            2.0 * x.cos() - if own.felt { s * rho * g } else { 0.0 }
+            let g = cos.powi(shape.cos as i32) * sinc.powi(shape.sinc as i32);
+            2.0 * x.cos() - if shape.felt { s * rho * g } else { 0.0 }
         }
         Integrator::Word(word) => step(word, s, rho, 0.0).0,
     }

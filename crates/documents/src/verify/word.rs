@@ -110,7 +110,8 @@ impl Recheck for Claim {
             return context.outcome(ROUTE, ("the word", whole), &self.intervals, |row| row.holds(word, &rho));
         };
         let whole = holds(self.word.0 == *word, || format!("the word is {word}"));
-        let friction = self.input.friction.as_ref().map_or(0.0, |own| own.to_f64()) / pieces.root.mid_f64();
+        let friction =
+            self.input.friction.as_ref().map_or(0.0, |value| value.to_f64()) / pieces.root.mid_f64();
         context.outcome(ROUTE, ("the word", whole), &self.intervals, |row| {
             row.holds_in_doubles(word, rational::to_f64(&rho), friction)
         })
@@ -169,8 +170,8 @@ fn order(word: &words::Word, rho: &Rational) -> u64 {
 
 impl Row {
     fn holds(&self, word: &words::Word, rho: &Rational) -> Checked {
-        let lower = self.lower.map_or(0.0, |own| own.hi);
-        let upper = self.upper.map_or(2.0 * lower + 1.0, |own| own.lo);
+        let lower = self.lower.map_or(0.0, |ends| ends.hi);
+        let upper = self.upper.map_or(2.0 * lower + 1.0, |ends| ends.lo);
         let ends = rational::from_f64_exact(lower).zip(rational::from_f64_exact(upper));
         // Ends that are one double leave no step between them to try.
         let Some((lo, hi)) = ends.filter(|(lo, hi)| lo < hi) else { return Ok(()) };
@@ -182,8 +183,8 @@ impl Row {
 
     /// The trace in the middle against 1 + the determinant; γ in units of √Λ1.
     fn holds_in_doubles(&self, word: &words::Word, rho: f64, friction: f64) -> Checked {
-        let lower = self.lower.map_or(0.0, |own| own.hi);
-        let omega_h = self.upper.map_or(lower + 0.01, |own| (lower + own.lo) / 2.0);
+        let lower = self.lower.map_or(0.0, |ends| ends.hi);
+        let omega_h = self.upper.map_or(lower + 0.01, |ends| (lower + ends.lo) / 2.0);
         let (trace, determinant) = step(word, omega_h * omega_h, rho, friction * omega_h);
         let margin = 1.0 + determinant - trace.abs();
         holds(margin.abs() < NEAR || (margin > 0.0) == self.stable, || verdict_at(omega_h, margin > 0.0))

@@ -30,7 +30,7 @@ impl<'de, T: Notation> Deserialize<'de> for Written<T> {
         // The path and the text itself are named by who reads the document.
         T::parsed("value", &String::deserialize(deserializer)?)
             .map(Written)
-            .map_err(|own| D::Error::custom(own.remedy()))
+            .map_err(|error| D::Error::custom(error.remedy()))
     }
 }
 

@@ -44,13 +44,13 @@ pub(super) struct Evidence {
 }
 
 impl Evidence {
-    fn of(Known(vocabulary, [own, shared]): &Known, text: &str) -> Evidence {
+    fn of(Known(vocabulary, [texts, shared]): &Known, text: &str) -> Evidence {
         let mut found = Evidence { engine: vocabulary.engine, own: 0, known: 0, unknown: vec![], strange: 0 };
         let mut seen = HashSet::new();
         for line in lines(text, &vocabulary.notation) {
             let word = (vocabulary.plain)(line.key());
             let begins = vocabulary.prefixes.iter().any(|prefix| word.starts_with(prefix));
-            if own.contains(word.as_str()) || (vocabulary.is_own)(&line) {
+            if texts.contains(word.as_str()) || (vocabulary.is_own)(&line) {
                 found.own += 1;
             } else if shared.contains(word.as_str()) || begins {
                 found.known += 1;
@@ -71,6 +71,6 @@ impl Evidence {
 
 /// The engine of these that most words speak of.
 pub(super) fn evidence(text: &str, all: &[Known]) -> Option<Evidence> {
-    let speaking = all.iter().map(|own| Evidence::of(own, text)).filter(Evidence::speaks);
-    speaking.max_by_key(|own| (own.own, std::cmp::Reverse(own.strange)))
+    let speaking = all.iter().map(|known| Evidence::of(known, text)).filter(Evidence::speaks);
+    speaking.max_by_key(|speaking| (speaking.own, std::cmp::Reverse(speaking.strange)))
 }

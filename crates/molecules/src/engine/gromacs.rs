@@ -50,7 +50,7 @@ fn plain(word: &str) -> String {
 }
 
 fn is_integrator(line: &Line) -> bool {
-    let known = |word: &Word| INTEGRATORS.iter().chain(&TIMELESS).any(|own| plain(word.0) == *own);
+    let known = |word: &Word| INTEGRATORS.iter().chain(&TIMELESS).any(|text| plain(word.0) == *text);
     line.key().eq_ignore_ascii_case("integrator") && line.words.get(1).is_some_and(known)
 }
 
@@ -92,8 +92,8 @@ pub(super) fn of_log(text: &str) -> Option<Result<Reading>> {
     let own = &text[head..];
     let end = own.find("\n\n").unwrap_or(own.len());
     // Blocks of other things, as "grpopts:", end what is read.
-    let own = &own[..own.find("grpopts:").unwrap_or(end).min(own.len())];
-    Some(read(own).map(|mut reading| {
+    let text = &own[..own.find("grpopts:").unwrap_or(end).min(own.len())];
+    Some(read(text).map(|mut reading| {
         reading.stays = Some("this is what grompp understood of an .mdp file: change that one".into());
         let bonds = "which bonds are held stands in the .mdp file and the topology alone: say so by --constraints, as h-bonds";
         reading.remarks.push(bonds.into());
@@ -182,7 +182,7 @@ fn two_levels(text: &str, keys: &Keys, inner: &Rational) -> Result<Reading> {
         reading.stays = Some(why.clone());
         reading.remarks.push(why);
     }
-    if slow.iter().all(|own| own.eq_ignore_ascii_case("longrange-nonbonded")) && !is_full(keys) {
+    if slow.iter().all(|text| text.eq_ignore_ascii_case("longrange-nonbonded")) && !is_full(keys) {
         let why = "without PME, Ewald or P3M there is no longrange-nonbonded force: then no force is on the second level, and all move with dt";
         reading.remarks.push(why.into());
     }
@@ -202,7 +202,7 @@ fn two_levels(text: &str, keys: &Keys, inner: &Rational) -> Result<Reading> {
 /// Whether a sum over a mesh or over waves is there.
 fn is_full(keys: &Keys) -> bool {
     let [coulomb, vdw] = ["coulombtype", "vdwtype"].map(|key| keys.text(key, "cutoff"));
-    ["pme", "ewald", "p3m", "fmm"].iter().any(|own| coulomb.starts_with(own)) || vdw == "pme"
+    ["pme", "ewald", "p3m", "fmm"].iter().any(|text| coulomb.starts_with(text)) || vdw == "pme"
 }
 
 /// Why grompp refuses two levels here.
@@ -212,10 +212,10 @@ fn refusals(keys: &Keys, n: u64, slow: &[&str]) -> Vec<String> {
     if integrator != "md" {
         all.push(format!("mts is for integrator = md, not {integrator}"));
     }
-    if is_full(keys) && !slow.iter().any(|own| own.eq_ignore_ascii_case(GROUPS[0])) {
+    if is_full(keys) && !slow.iter().any(|text| text.eq_ignore_ascii_case(GROUPS[0])) {
         all.push("with PME, Ewald or P3M longrange-nonbonded has to stand in mts-level2-forces".into());
     }
-    let known = |own: &&&str| !GROUPS.iter().any(|group| own.eq_ignore_ascii_case(group));
+    let known = |text: &&&str| !GROUPS.iter().any(|group| text.eq_ignore_ascii_case(group));
     all.extend(slow.iter().filter(known).map(|own| format!("{own} is no group of mts-level2-forces")));
     if n == 1 {
         all.push("mts-level2-factor has to be larger than 1: write mts = no".into());
@@ -225,12 +225,12 @@ fn refusals(keys: &Keys, n: u64, slow: &[&str]) -> Vec<String> {
 
 /// Intervals that grompp wants to be multiples of the factor, where they are not 0.
 fn multiples(keys: &Keys, slow: &[&str]) -> Vec<(std::ops::Range<usize>, Place)> {
-    let is_slow = |group: &str| slow.iter().any(|own| own.eq_ignore_ascii_case(group));
+    let is_slow = |group: &str| slow.iter().any(|text| text.eq_ignore_ascii_case(group));
     let is_free = keys.text("free-energy", "no") != "no";
     // grompp lowers the first to the others.
     let lower = |key: &str, default: u64| {
-        let own = keys.word(key).map_or(Some(default), |word| word.0.parse::<u64>().ok());
-        own.filter(|n| *n > 0).unwrap_or(100)
+        let count = keys.word(key).map_or(Some(default), |word| word.0.parse::<u64>().ok());
+        count.filter(|n| *n > 0).unwrap_or(100)
     };
     let least = lower("nstenergy", 1000).min(if is_free { lower("nstdhdl", 50) } else { 100 }).min(100);
     let mut tied = vec![("nstcalcenergy", least), ("nstenergy", 1000), ("nstlog", 1000), ("nstfout", 0)];
@@ -249,7 +249,8 @@ fn multiples(keys: &Keys, slow: &[&str]) -> Vec<(std::ops::Range<usize>, Place)>
     if keys.text("pull", "no") != "no" && is_slow("pull") {
         alone.extend([("pull-nstxout", 50), ("pull-nstfout", 50)]);
     }
-    let own = alone.into_iter().filter_map(|(key, default)| interval(&keys.lines, keys.end, key, default));
-    places.extend(own.map(|(range, own)| (range, Place::Interval(own))));
+    let filter_map =
+        alone.into_iter().filter_map(|(key, default)| interval(&keys.lines, keys.end, key, default));
+    places.extend(filter_map.map(|(range, interval)| (range, Place::Interval(interval))));
     places
 }

@@ -33,13 +33,13 @@ const MODES: [&str; 4] = ["nve", "nvt", "npt", "nst"];
 pub(super) fn ipi(text: &str) -> Result<Reading> {
     let document = parse(text)?;
     let root = document.root_element();
-    let own = dynamics(root)?;
-    let mut reading = one(own[0], text)?;
-    for &other in &own[1..] {
+    let nodes = dynamics(root)?;
+    let mut reading = one(nodes[0], text)?;
+    for &other in &nodes[1..] {
         let other = one(other, text)?;
         if other.scheme != reading.scheme || other.forces != reading.forces {
             let remedy = "take different steps: give a file with one of them";
-            return Err(Error::input("dynamics", format!("{} of them", own.len()), remedy));
+            return Err(Error::input("dynamics", format!("{} of them", nodes.len()), remedy));
         }
         reading.places.extend(other.places);
     }
@@ -102,9 +102,9 @@ fn one<'a>(node: Node<'a, 'a>, text: &'a str) -> Result<Reading> {
     let weights = weights(node, text)?;
     let levels = child(node, "nmts").map(|nmts| iterations(nmts, text)).transpose()?;
     let asked = levels.as_ref().map_or(1, Vec::len);
-    if let Some((name, own)) = weights.iter().find(|(_, own)| own.len() != asked) {
+    if let Some((name, texts)) = weights.iter().find(|(_, texts)| texts.len() != asked) {
         let remedy = format!("i-PI refuses this: nmts has {asked} of them");
-        return Err(Error::input("mts_weights", format!("{name}: {} levels", own.len()), remedy));
+        return Err(Error::input("mts_weights", format!("{name}: {} levels", texts.len()), remedy));
     }
     if let Some(levels) = levels {
         reading.used.push(format!("nmts {}", shown_list(&levels)));
@@ -131,9 +131,9 @@ fn iterations(nmts: Node, text: &str) -> Result<Vec<Iterations>> {
         if levels.len() == MOST_LEVELS {
             return Err(Error::input("nmts", list, "there are at most 16 levels"));
         }
-        let own = part.trim();
+        let text = part.trim();
         let start = at + (part.len() - part.trim_start().len());
-        levels.push((count("nmts", own)?, start..start + own.len()));
+        levels.push((count("nmts", text)?, start..start + text.len()));
         at += part.len() + 1;
     }
     Ok(levels)
@@ -142,8 +142,8 @@ fn iterations(nmts: Node, text: &str) -> Result<Vec<Iterations>> {
 /// The steps of each level that has forces, and where they stand.
 fn nested(reading: &mut Reading, levels: &[Iterations], weights: &[(&str, Vec<String>)]) -> Result<()> {
     let on = |level: usize| {
-        let own = weights.iter().map(|(name, own)| (name, own[level].as_str()));
-        let named = own.filter(|(_, weight)| *weight != "0").map(|(name, weight)| {
+        let object = weights.iter().map(|(name, texts)| (name, texts[level].as_str()));
+        let named = object.filter(|(_, weight)| *weight != "0").map(|(name, weight)| {
             if weight == "1" { (*name).to_string() } else { format!("{weight} {name}") }
         });
         named.collect::<Vec<_>>().join(", ")
@@ -190,8 +190,10 @@ fn weights<'a>(node: Node<'a, 'a>, text: &'a str) -> Result<Vec<(&'a str, Vec<St
     let forces = system.and_then(|system| child(system, "forces"));
     let forces = forces.into_iter().flat_map(|forces| forces.children());
     let own = |node: Node<'a, 'a>| {
-        let list =
-            child(node, "mts_weights").map(|own| words(own, text)).transpose()?.map_or("[1]", |own| own.0);
+        let list = child(node, "mts_weights")
+            .map(|node| words(node, text))
+            .transpose()?
+            .map_or("[1]", |pair| pair.0);
         let inside = list.trim_start_matches('[').trim_end_matches(']').split(',');
         let short = |part: &str| {
             let part = part.trim();
@@ -216,7 +218,7 @@ fn unread(node: Node) -> Option<String> {
 fn direct<'a>(root: Node<'a, 'a>, text: &'a str) -> Vec<&'a str> {
     let is_direct = |node: &Node<'a, 'a>| {
         let parameters = named(*node, "parameters").and_then(|node| words(node, text).ok());
-        let parameters = parameters.map_or("", |(own, _)| own).chars();
+        let parameters = parameters.map_or("", |(text, _)| text).chars();
         let squeezed: String = parameters.filter(|c| !c.is_whitespace() && !"'\"".contains(*c)).collect();
         squeezed.to_ascii_lowercase().contains("non_conservative:true")
     };
@@ -229,7 +231,7 @@ fn beads(root: Node, text: &str) -> Result<Option<(Beads, String)>> {
     let given =
         root.descendants().filter(|node| node.has_tag_name("initialize") || node.has_tag_name("beads"));
     let given: Vec<&str> = given.filter_map(|node| node.attribute("nbeads")).collect();
-    let count = given.iter().filter_map(|own| own.trim().parse::<u32>().ok()).max().unwrap_or(1);
+    let count = given.iter().filter_map(|text| text.trim().parse::<u32>().ok()).max().unwrap_or(1);
     let beads = Beads { count: count.into(), kelvin: kelvin(root, text) };
     if count < 2 {
         return Ok(None);
@@ -238,8 +240,9 @@ fn beads(root: Node, text: &str) -> Result<Option<(Beads, String)>> {
     let how = match modes.and_then(|modes| modes.attribute("propagator")).unwrap_or("exact") {
         "cayley" => "propagator cayley is stable for them at any step".to_string(),
         "bab" => {
-            let own = modes.and_then(|modes| child(modes, "nmts")).map(|own| words(own, text)).transpose()?;
-            let n = own.map_or("10", |own| own.0);
+            let pair =
+                modes.and_then(|modes| child(modes, "nmts")).map(|node| words(node, text)).transpose()?;
+            let n = pair.map_or("10", |pair| pair.0);
             format!("propagator bab takes them by kicks and drifts, {n} times in an innermost step")
         }
         _ => "propagator exact resonates where an outer step is near a multiple of half their period".into(),
@@ -255,7 +258,7 @@ fn beads(root: Node, text: &str) -> Result<Option<(Beads, String)>> {
 /// The temperature of the rings in kelvin, where their frequencies are those of RPMD and it is given.
 fn kelvin(root: Node, text: &str) -> Option<Rational> {
     let modes = named(root, "normal_modes").and_then(|modes| child(modes, "frequencies"));
-    let is_physical = modes.is_none_or(|own| own.attribute("style").is_none_or(|style| style == "rpmd"));
+    let is_physical = modes.is_none_or(|modes| modes.attribute("style").is_none_or(|style| style == "rpmd"));
     let given = root.descendants().find(|node| {
         node.has_tag_name("temperature") && node.attribute("units").map(str::trim) == Some("kelvin")
     });

@@ -208,8 +208,8 @@ fn respa(text: &str, commands: &Commands, words: &[Word], outer: Rational) -> Re
     let there = |force: &str| is_open || commands.has(&[&format!("{force}_style")]);
     let all = on_levels(&words[2 + levels..], &commands.lines, &there, &styles, levels)?;
     let on = |level: usize| {
-        let own = all.iter().filter(|(_, at)| *at == level);
-        own.map(|(force, _)| force.as_str()).collect::<Vec<_>>().join(", ")
+        let filter = all.iter().filter(|(_, at)| *at == level);
+        filter.map(|(force, _)| force.as_str()).collect::<Vec<_>>().join(", ")
     };
     refuse_order(&all, &shown)?;
     let forces: Vec<String> = (1..=levels).map(on).collect();
@@ -253,7 +253,7 @@ fn notes(commands: &Commands, reading: &mut Reading) {
         held(line, reading);
     }
     let bonded =
-        reading.scheme.steps().len() > 1 && reading.forces[0].split(", ").all(|own| BONDED.contains(&own));
+        reading.scheme.steps().len() > 1 && reading.forces[0].split(", ").all(|text| BONDED.contains(&text));
     if bonded && !commands.is_open() && !BONDED.iter().any(|own| commands.has(&[&format!("{own}_style")])) {
         let why = "the innermost level has bonded forces alone, and the text no bond_style: without bonds it is no clock, and all forces have the outer steps";
         reading.remarks.push(why.into());
@@ -336,7 +336,7 @@ fn of_screen(text: &str) -> Result<Reading> {
     let unit = units(named)?.0;
     let levels = value("Time steps");
     let steps: Vec<&str> = match levels {
-        Some(all) => all.split_whitespace().map(|own| own.rsplit(':').next().unwrap_or(own)).collect(),
+        Some(all) => all.split_whitespace().map(|text| text.rsplit(':').next().unwrap_or(text)).collect(),
         None => vec![value("Time step").ok_or_else(missing)?],
     };
     let steps =
@@ -344,10 +344,10 @@ fn of_screen(text: &str) -> Result<Reading> {
     let table = text.rfind("Respa levels:").map_or("", |at| &text[at..]);
     let fixes = value("r-RESPA fixes").unwrap_or_default();
     let on = |level: usize| {
-        let own = table.lines().nth(level).and_then(|line| line.split_once('=')).map_or("", |own| own.1);
+        let text = table.lines().nth(level).and_then(|line| line.split_once('=')).map_or("", |pair| pair.1);
         let fixed = fixes.split_whitespace().filter_map(|fix| fix.strip_prefix(&format!("{level}:")));
         let fixed = fixed.map(|fix| format!("fix {fix}"));
-        own.split_whitespace().map(String::from).chain(fixed).collect::<Vec<_>>().join(", ")
+        text.split_whitespace().map(String::from).chain(fixed).collect::<Vec<_>>().join(", ")
     };
     let forces =
         if levels.is_some() { (1..=steps.len()).map(on).collect() } else { vec!["all forces".into()] };

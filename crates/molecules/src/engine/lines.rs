@@ -51,19 +51,19 @@ pub(super) fn lines<'a>(text: &'a str, notation: &Notation) -> Vec<Line<'a>> {
     let mut all: Vec<Line<'a>> = Vec::new();
     let (mut goes_on, mut depth) = (false, 0_usize);
     for (from, line) in commands(text, notation) {
-        let own = line.split(notation.comment).next().unwrap_or_default();
-        let (own, more) = match notation.goes_on.and_then(|sign| own.trim_end().strip_suffix(sign)) {
-            Some(own) => (own, true),
-            None => (own, false),
+        let text = line.split(notation.comment).next().unwrap_or_default();
+        let (text, more) = match notation.goes_on.and_then(|sign| text.trim_end().strip_suffix(sign)) {
+            Some(text) => (text, true),
+            None => (text, false),
         };
-        let words = words(own, from, notation.equals);
+        let words = words(text, from, notation.equals);
         match all.last_mut().filter(|_| goes_on) {
             Some(last) => last.words.extend(words),
             None if !words.is_empty() => all.push(Line { words, depth }),
             None => {}
         }
         if notation.braces {
-            depth = (depth + own.matches('{').count()).saturating_sub(own.matches('}').count());
+            depth = (depth + text.matches('{').count()).saturating_sub(text.matches('}').count());
         }
         goes_on = more;
     }
@@ -147,9 +147,9 @@ pub(super) fn interval(
 ) -> Option<(Range<usize>, Interval)> {
     let given = last(lines, key).and_then(|line| line.words.get(1));
     // Below 0 is the default, too.
-    let own = given
+    let count = given
         .map_or(Some(default), |word| Some(u64::try_from(word.0.parse::<i64>().ok()?).unwrap_or(default)));
-    let steps = own.filter(|n| (1..=MOST_COUNT * MOST_COUNT).contains(n))?;
+    let steps = count.filter(|n| (1..=MOST_COUNT * MOST_COUNT).contains(n))?;
     let range = given.map_or(end..end, |word| word.1.clone());
     Some((range, Interval { name: key, key: given.is_none().then_some(key), steps, of: 1, or_part: false }))
 }
@@ -163,11 +163,11 @@ pub(super) fn intervals(
     let mut places = Vec::new();
     let mut first = 1;
     for (k, &(key, default)) in keys.iter().enumerate() {
-        let Some((range, mut own)) = interval(lines, end, key, default) else { continue };
-        first = if k == 0 { own.steps } else { first };
-        own.of = if own.steps % first == 0 { first } else { 1 };
-        own.of = if k == 0 { 1 } else { own.of };
-        places.push((range, Place::Interval(own)));
+        let Some((range, mut interval)) = interval(lines, end, key, default) else { continue };
+        first = if k == 0 { interval.steps } else { first };
+        interval.of = if interval.steps % first == 0 { first } else { 1 };
+        interval.of = if k == 0 { 1 } else { interval.of };
+        places.push((range, Place::Interval(interval)));
     }
     places
 }

@@ -47,10 +47,10 @@ impl<'a> Systems<'a> {
             arguments
                 .into_iter()
                 .find(|(name, _)| *name == Some(key))
-                .map(|(_, own)| self.script.followed(own))
+                .map(|(_, range)| self.script.followed(range))
         };
         let mut values: Vec<Option<Range<usize>>> = self.calls.iter().map(own).collect();
-        let shown = |own: &Option<Range<usize>>| own.clone().map(|own| &self.text[own]);
+        let shown = |range: &Option<Range<usize>>| range.clone().map(|range| &self.text[range]);
         values.dedup_by(|a, b| shown(a) == shown(b));
         values
     }
@@ -58,9 +58,9 @@ impl<'a> Systems<'a> {
     fn bonds(&self, reading: &mut Reading) {
         let values = self.values("constraints");
         let last =
-            |own: &Range<usize>| self.script.code()[own.clone()].rsplit('.').next().unwrap_or_default();
+            |range: &Range<usize>| self.script.code()[range.clone()].rsplit('.').next().unwrap_or_default();
         let held = match &values[..] {
-            [Some(own)] => Some(last(own)),
+            [Some(range)] => Some(last(range)),
             _ => None,
         };
         reading.constraints = match held {
@@ -80,7 +80,7 @@ impl<'a> Systems<'a> {
             _ => {}
         }
         let is_flexible =
-            |own: &Option<Range<usize>>| own.clone().is_some_and(|own| &self.text[own] == "False");
+            |range: &Option<Range<usize>>| range.clone().is_some_and(|range| &self.text[range] == "False");
         if !self.calls.is_empty() && !self.values("rigidWater").iter().all(is_flexible) {
             let remark =
                 "water is rigid unless rigidWater=False: leave out the periods of its bonds and bends";
@@ -92,17 +92,17 @@ impl<'a> Systems<'a> {
         let values = self.values("hydrogenMass");
         let given = match &values[..] {
             [] | [None] => None,
-            [Some(own)] => Some(own),
+            [Some(range)] => Some(range),
             _ => return reading.remarks.push(UNREAD.into()),
         };
-        let own = given.filter(|own| &self.script.code()[(*own).clone()] != "None");
-        match own.map(|own| mass(self.script, own.clone())) {
+        let range = given.filter(|given| &self.script.code()[(*given).clone()] != "None");
+        match range.map(|range| mass(self.script, range.clone())) {
             Some(Some(size)) => {
                 reading.used.push(format!("hydrogenMass={}", decimal(&size)));
                 reading.hydrogen = Some(size);
             }
             None if given.is_some()
-                || !["hydrogenMass", "setParticleMass"].iter().any(|own| self.text.contains(own)) => {}
+                || !["hydrogenMass", "setParticleMass"].iter().any(|text| self.text.contains(text)) => {}
             _ => reading.remarks.push(UNREAD.into()),
         }
     }

@@ -141,8 +141,7 @@ pub(super) fn read(text: &str) -> Result<Reading> {
         let outermost = full.filter(|_| m >= n).into_iter().chain(nonbonded.filter(|_| n >= m));
         reading.places = outermost.map(|(_, range)| (range, Place::OuterOverInner)).collect();
         let intervals = multiples(&keys);
-        let cycle =
-            |(_, place): &&(_, Place)| matches!(place, Place::Interval(own) if own.name == "stepspercycle");
+        let cycle = |(_, place): &&(_, Place)| matches!(place, Place::Interval(interval) if interval.name == "stepspercycle");
         let cycles: Vec<_> = intervals.iter().filter(cycle).cloned().collect();
         for outer in [n, m].iter().take(if n == m { 1 } else { 2 }) {
             reading.note_intervals("NAMD", &cycles, *outer);
@@ -150,7 +149,7 @@ pub(super) fn read(text: &str) -> Result<Reading> {
         if is_full {
             let energies: Vec<_> = intervals
                 .iter()
-                .filter(|(_, place)| matches!(place, Place::Interval(own) if own.or_part))
+                .filter(|(_, place)| matches!(place, Place::Interval(interval) if interval.or_part))
                 .cloned()
                 .collect();
             reading.note_intervals("NAMD", &energies, m);
@@ -185,7 +184,7 @@ fn better(error: Error, given: &str) -> Error {
 }
 
 fn refuse_naive(algorithm: &str) -> Result<()> {
-    if ["constant", "naive"].iter().any(|own| algorithm.eq_ignore_ascii_case(own)) {
+    if ["constant", "naive"].iter().any(|text| algorithm.eq_ignore_ascii_case(text)) {
         let remedy = "repeats the slow force at every step instead of kicking with it: not symplectic, so energy drifts at any step; write impulse";
         return Err(Error::input("MTSAlgorithm", algorithm, remedy));
     }
@@ -222,9 +221,9 @@ fn multiples(keys: &Keys) -> Vec<(std::ops::Range<usize>, Place)> {
         .collect();
     let mut places = intervals(&keys.lines, keys.end, &top);
     for key in ["outputEnergies", "computeEnergies"] {
-        if let Some((range, mut own)) = interval(&keys.lines, keys.end, key, 0) {
-            own.or_part = true;
-            places.push((range, Place::Interval(own)));
+        if let Some((range, mut interval)) = interval(&keys.lines, keys.end, key, 0) {
+            interval.or_part = true;
+            places.push((range, Place::Interval(interval)));
         }
     }
     places
@@ -279,7 +278,7 @@ fn logged<'a>(text: &str, value: &dyn Fn(&str) -> Option<&'a str>) -> Result<Rea
         .ok_or_else(|| Error::missing("timestep", "the log has none: it ends before NAMD's parameters"))?;
     let inner = number("timestep", step)?;
     let each = |head: &str| {
-        value(head).map(|own| count(head, own.split_whitespace().next().unwrap_or_default())).transpose()
+        value(head).map(|text| count(head, text.split_whitespace().next().unwrap_or_default())).transpose()
     };
     let n = each("NONBONDED FORCES EVALUATED EVERY ")?.unwrap_or(1);
     let full = each("FULL ELECTROSTATIC EVALUATION FREQUENCY ")?;

@@ -27,7 +27,7 @@ pub(super) fn is_python(text: &str) -> bool {
     let script = Script::new(text);
     let has = |names: &[&str]| script.words().any(|(name, _)| names.contains(&name));
     has(&["import"]) && has(&["openmm", "simtk"])
-        || script.calls(|name| GROUPED.iter().any(|(own, _)| *own == name)).next().is_some()
+        || script.calls(|name| GROUPED.iter().any(|(text, _)| *text == name)).next().is_some()
 }
 
 pub(super) fn read(texts: &[&str]) -> Result<Reading> {
@@ -103,9 +103,9 @@ fn integrator(text: &str, script: &Script, call: &Call) -> Result<Reading> {
     let arguments = script.arguments(call);
     let grouped = GROUPED.iter().find(|(name, _)| *name == call.name).map(|(_, first)| *first);
     let positional: Vec<&Range<usize>> =
-        arguments.iter().filter(|(key, _)| key.is_none()).map(|(_, own)| own).collect();
+        arguments.iter().filter(|(key, _)| key.is_none()).map(|(_, range)| range).collect();
     let keyword = |names: &[&str]| {
-        arguments.iter().find(|(key, _)| key.is_some_and(|key| names.contains(&key))).map(|(_, own)| own)
+        arguments.iter().find(|(key, _)| key.is_some_and(|key| names.contains(&key))).map(|(_, range)| range)
     };
     let shown = || text[call.inside.clone()].split_whitespace().collect::<Vec<_>>().join(" ");
     let used = format!("{}({})", call.name, shown());
@@ -209,20 +209,20 @@ fn entries(script: &Script, list: &Range<usize>) -> Result<Vec<Entry>> {
     let code = script.code();
     let mut entries: Vec<Entry> = Vec::new();
     for pair in script.split(list.start + 1..list.end - 1) {
-        let own = &code[pair.clone()];
+        let text = &code[pair.clone()];
         let bad =
-            || Error::input("groups", own, "write each entry as (group, evaluations in an outermost step)");
-        if !(own.starts_with(['(', '[']) && script.is_bracketed(&pair)) {
+            || Error::input("groups", text, "write each entry as (group, evaluations in an outermost step)");
+        if !(text.starts_with(['(', '[']) && script.is_bracketed(&pair)) {
             return Err(bad());
         }
         let parts = script.split(pair.start + 1..pair.end - 1);
         let [group, n] = <[Range<usize>; 2]>::try_from(parts).map_err(|_| bad())?;
         let group = code[script.followed(group)].parse::<u64>().ok().filter(|g| *g < 32);
-        let range = || Error::input("groups", own, "a force group is a whole number from 0 to 31");
+        let range = || Error::input("groups", text, "a force group is a whole number from 0 to 31");
         let group = group.ok_or_else(range)?;
         if entries.iter().any(|(_, _, known)| *known == group) {
             let remedy = format!("group {group} is listed twice, and would kick twice");
-            return Err(Error::input("groups", own, remedy));
+            return Err(Error::input("groups", text, remedy));
         }
         let value = script.followed(n.clone());
         entries.push((count("groups", &code[value.clone()])?, Some(n).filter(|n| *n == value), group));

@@ -56,7 +56,7 @@ pub(super) fn refusal(text: &str) -> Option<Error> {
         plain.to_ascii_lowercase()
     });
     for line in squeezed {
-        let begins = |own: &&Other| own.begins.iter().any(|begin| line.starts_with(begin));
+        let begins = |other: &&Other| other.begins.iter().any(|begin| line.starts_with(begin));
         if let Some(Other { name, steps, .. }) = OTHERS.iter().find(begins) {
             let remedy = format!("is not read here: give the steps themselves, as --steps 1fs,4fs ({steps})");
             return Some(Error::input("engine", format!("an input of {name}"), remedy));

@@ -85,24 +85,24 @@ impl Product {
         let code = script.code();
         let factors = script.factors(range.clone());
         if factors.len() > 1 {
-            return factors.into_iter().try_for_each(|(divides, own)| {
-                self.take(script, own, if divides { -sign } else { sign }, unit)
+            return factors.into_iter().try_for_each(|(divides, range)| {
+                self.take(script, range, if divides { -sign } else { sign }, unit)
             });
         }
-        let own = &code[range.clone()];
+        let text = &code[range.clone()];
         if let Some(inside) = script.call_of(range.clone(), "Quantity") {
             return script.split(inside).into_iter().try_for_each(|part| {
                 let value = part.start + code[part.clone()].find('=').map_or(0, |at| at + 1);
                 self.take(script, value..part.end, sign, unit)
             });
         }
-        let size = match unit(own.rsplit('.').next().unwrap_or(own)) {
+        let size = match unit(text.rsplit('.').next().unwrap_or(text)) {
             Some(size) => {
                 self.power += sign;
                 size
             }
             None => {
-                let size = number("dt", own).ok()?;
+                let size = number("dt", text).ok()?;
                 self.numbers.push((range, size.clone()));
                 size
             }

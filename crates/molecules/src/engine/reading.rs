@@ -187,7 +187,7 @@ impl Reading {
     /// Notes intervals that the engine, or a program of its, refuses beside an outermost step of so many innermost ones.
     pub(super) fn note_intervals(&mut self, by: &str, places: &[(Range<usize>, Place)], outer: u64) {
         let wrong = places.iter().filter_map(|(_, place)| match place {
-            Place::Interval(own) => own.amiss(outer),
+            Place::Interval(interval) => interval.amiss(outer),
             _ => None,
         });
         let wrong: Vec<String> = wrong.collect();
@@ -271,14 +271,15 @@ impl Reading {
                 Place::Switch => if is_off { "no" } else { "yes" }.into(),
                 Place::LastRatio => whole(before)?,
                 Place::OuterOverInner => whole(self.scheme.inner())?,
-                Place::Interval(own) => {
+                Place::Interval(interval) => {
                     let outer = whole(self.scheme.inner())?.parse().ok().filter(|n| *n <= MOST_COUNT);
                     let remedy = "that is too many inner steps: choose a shorter one";
-                    let steps = own.written(outer.ok_or_else(|| Error::input("outer step", &shown, remedy))?);
+                    let steps =
+                        interval.written(outer.ok_or_else(|| Error::input("outer step", &shown, remedy))?);
                     let added = |key: &str| {
                         steps.map_or_else(String::new, |n| at_end(&text, &range, &format!("{key} = {n}")))
                     };
-                    own.key.map_or_else(|| steps.unwrap_or(own.steps).to_string(), added)
+                    interval.key.map_or_else(|| steps.unwrap_or(interval.steps).to_string(), added)
                 }
                 Place::Append(key) => at_end(&text, &range, &format!("{key} {}", whole(before)?)),
             };

@@ -8,7 +8,8 @@ use number::error::{Error, Result};
 
 /// LAMMPS wants every force on a level at least as far out as that of the one before.
 pub(super) fn refuse_order(forces: &[(String, usize)], shown: &str) -> Result<()> {
-    let at = |key: &&str| forces.iter().find(|own| own.0 == **key).map(|own| (own.0.as_str(), own.1));
+    let at =
+        |key: &&str| forces.iter().find(|force| force.0 == **key).map(|force| (force.0.as_str(), force.1));
     let order: Vec<(&str, usize)> = KEYWORDS.iter().filter(|key| **key != "hybrid").filter_map(at).collect();
     match order.windows(2).find(|pair| pair[1].1 < pair[0].1) {
         Some(pair) => {
@@ -23,17 +24,17 @@ pub(super) fn refuse_order(forces: &[(String, usize)], shown: &str) -> Result<()
 pub(super) fn clocks(steps: Vec<Rational>, forces: Vec<String>) -> (Vec<Rational>, Vec<String>, Vec<String>) {
     let mut found: Vec<(Rational, Vec<String>)> = Vec::new();
     let (mut empty, mut equal) = (Vec::new(), false);
-    for (level, (step, own)) in steps.into_iter().zip(forces).enumerate() {
-        if own.is_empty() {
+    for (level, (step, text)) in steps.into_iter().zip(forces).enumerate() {
+        if text.is_empty() {
             empty.push((level + 1).to_string());
             continue;
         }
         match found.last_mut().filter(|(last, _)| *last == step) {
             Some((_, all)) => {
-                all.push(own);
+                all.push(text);
                 equal = true;
             }
-            None => found.push((step, vec![own])),
+            None => found.push((step, vec![text])),
         }
     }
     let mut remarks = Vec::new();
@@ -44,7 +45,7 @@ pub(super) fn clocks(steps: Vec<Rational>, forces: Vec<String>) -> (Vec<Rational
     if equal {
         remarks.push("levels of equal steps are taken as one".into());
     }
-    let (steps, forces) = found.into_iter().map(|(step, own)| (step, own.join(", "))).unzip();
+    let (steps, forces) = found.into_iter().map(|(step, texts)| (step, texts.join(", "))).unzip();
     (steps, forces, remarks)
 }
 
@@ -66,8 +67,8 @@ pub(super) fn pair_styles<'a>(lines: &[Line<'a>]) -> Vec<PairStyle<'a>> {
     let words: Vec<&str> = style.words[2..].iter().map(|word| word.0).collect();
     let begins: Vec<usize> = (0..words.len()).filter(|&k| names.contains(words[k])).collect();
     let part = |(k, &from): (usize, &usize)| {
-        let own = &words[from..begins.get(k + 1).copied().unwrap_or(words.len())];
-        let is_direct = own.windows(2).any(|pair| pair[0] == "non_conservative" && is_on(pair[1]));
+        let texts = &words[from..begins.get(k + 1).copied().unwrap_or(words.len())];
+        let is_direct = texts.windows(2).any(|pair| pair[0] == "non_conservative" && is_on(pair[1]));
         PairStyle { name: words[from], is_direct }
     };
     begins.iter().enumerate().map(part).collect()
@@ -96,18 +97,19 @@ fn named(rest: &[Word], styles: &[PairStyle], levels: usize) -> Result<Vec<(Stri
         }
         let mut next = || words.next_if(|word| word.parse::<f64>().is_ok());
         if key == "hybrid" {
-            let own = std::iter::from_fn(&mut next).map(str::parse::<usize>);
-            let name =
-                |k: usize| styles.get(k).map_or_else(|| format!("pair {}", k + 1), |own| own.name.into());
-            found.extend(own.enumerate().filter_map(|(k, level)| Some((name(k), level.ok()?))));
+            let object = std::iter::from_fn(&mut next).map(str::parse::<usize>);
+            let name = |k: usize| {
+                styles.get(k).map_or_else(|| format!("pair {}", k + 1), |pair_style| pair_style.name.into())
+            };
+            found.extend(object.enumerate().filter_map(|(k, level)| Some((name(k), level.ok()?))));
         } else {
-            found.retain(|own| own.0 != key);
+            found.retain(|found| found.0 != key);
             found.extend(next().and_then(|level| level.parse().ok()).map(|level| (key.to_string(), level)));
             // The distances of `inner`, `middle` and `outer`.
             std::iter::from_fn(next).for_each(drop);
         }
     }
-    match found.iter().find(|own| own.1 < 1 || own.1 > levels) {
+    match found.iter().find(|pair| pair.1 < 1 || pair.1 > levels) {
         Some((key, level)) => Err(Error::input(
             "run_style",
             format!("{key} {level}"),
@@ -130,10 +132,11 @@ pub(super) fn on_levels(
     levels: usize,
 ) -> Result<Vec<(String, usize)>> {
     let mut found = named(rest, styles, levels)?;
-    let at = |found: &[(String, usize)], key: &str| found.iter().find(|own| own.0 == key).map(|own| own.1);
+    let at =
+        |found: &[(String, usize)], key: &str| found.iter().find(|pair| pair.0 == key).map(|pair| pair.1);
     // With its outermost part, where pairs are several.
-    let parts = |own: &&(String, usize)| !BONDED.contains(&own.0.as_str()) && own.0 != "kspace";
-    let pairs = found.iter().filter(parts).map(|own| own.1).max();
+    let parts = |pair: &&(String, usize)| !BONDED.contains(&pair.0.as_str()) && pair.0 != "kspace";
+    let pairs = found.iter().filter(parts).map(|pair| pair.1).max();
     let mut before = 1;
     for key in BONDED {
         let given = at(&found, key);

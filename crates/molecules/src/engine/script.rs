@@ -103,8 +103,8 @@ impl Script {
         let mut range = self.trimmed(range);
         // A chain of names longer than this is none that a person wrote.
         for _ in 0..8 {
-            let own = &self.code[range.clone()];
-            let wrapped = own.starts_with('(') && self.is_bracketed(&range);
+            let text = &self.code[range.clone()];
+            let wrapped = text.starts_with('(') && self.is_bracketed(&range);
             let inner = (range.start + 1)..range.end.saturating_sub(1);
             // A pair in brackets is a value of its own.
             if wrapped
@@ -112,7 +112,7 @@ impl Script {
                 && !self.code[inner.clone()].trim_end().ends_with(',')
             {
                 range = self.trimmed(inner);
-            } else if let Some(Some(value)) = self.values.get(own) {
+            } else if let Some(Some(value)) = self.values.get(text) {
                 range = value.clone();
             } else {
                 break;
@@ -149,9 +149,9 @@ impl Script {
     }
 
     fn trimmed(&self, range: Range<usize>) -> Range<usize> {
-        let own = &self.code[range.clone()];
-        let start = range.start + (own.len() - own.trim_start().len());
-        start..start + own.trim().len()
+        let text = &self.code[range.clone()];
+        let start = range.start + (text.len() - text.trim_start().len());
+        start..start + text.trim().len()
     }
 
     /// The place of the `=` that parts a target or a keyword from its value; `None` where there is none or more than one.

@@ -177,15 +177,16 @@ fn written_out(reading: &mut Reading, node: Node, text: &str, size: Range<usize>
 /// The loop over the level below the outermost: what stands between the kicks of the outermost level, if that is one turn so many times.
 fn turns(root: Node, text: &str, turns: u64) -> Option<(Range<usize>, Loop)> {
     let all: Vec<Node> = root.descendants().filter(|node| node.attribute(EXPRESSION).is_some()).collect();
-    let is_outermost =
-        |node: &&Node| node.attribute(EXPRESSION).is_some_and(|own| own.starts_with("v+0.5*(dt/1)*f"));
+    let is_outermost = |node: &&Node| {
+        node.attribute(EXPRESSION).is_some_and(|attribute| attribute.starts_with("v+0.5*(dt/1)*f"))
+    };
     let leading = all.iter().position(|node| is_outermost(&node))?;
     let first = leading + all[leading..].iter().take_while(is_outermost).count();
     let last = first + all[first..].iter().position(|node| is_outermost(&node))?;
     let each = (last - first) / usize::try_from(turns).ok()?;
     let expressions: Vec<_> = all[first..last].iter().map(|node| node.attribute(EXPRESSION)).collect();
-    let own = expressions.get(..each).filter(|own| !own.is_empty())?;
-    if each * turns as usize != last - first || !expressions.chunks(each).all(|turn| turn == own) {
+    let texts = expressions.get(..each).filter(|expressions| !expressions.is_empty())?;
+    if each * turns as usize != last - first || !expressions.chunks(each).all(|turn| turn == texts) {
         return None;
     }
     let (begin, end) = (all[first].range().start, all[last - 1].range().end);
@@ -206,13 +207,14 @@ pub(super) fn groups(text: &str, groups: &mut BTreeMap<u64, Vec<String>>) -> Res
         if FORCELESS.contains(&name) {
             continue;
         }
-        let own = force.attribute("forceGroup").unwrap_or("0");
+        let text = force.attribute("forceGroup").unwrap_or("0");
         let field = format!("forceGroup of {name}");
-        let bad = || Error::input(&field, own, "a force group is a whole number from 0 to 31");
-        groups.entry(own.parse().ok().filter(|g| *g < 32).ok_or_else(bad)?).or_default().push(name.into());
+        let bad = || Error::input(&field, text, "a force group is a whole number from 0 to 31");
+        groups.entry(text.parse().ok().filter(|g| *g < 32).ok_or_else(bad)?).or_default().push(name.into());
         // Ewald, PME and PME of dispersion have a part in reciprocal space; -1 leaves it with the rest.
         let has_reciprocal = force.attribute("method").is_none_or(|method| ["3", "4", "5"].contains(&method));
-        let reciprocal = force.attribute("recipForceGroup").and_then(|own| own.parse::<u64>().ok());
+        let reciprocal =
+            force.attribute("recipForceGroup").and_then(|attribute| attribute.parse::<u64>().ok());
         if let Some(group) = reciprocal.filter(|group| has_reciprocal && *group < 32) {
             groups.entry(group).or_default().push(format!("{name}, reciprocal space"));
         }
@@ -238,7 +240,8 @@ pub(super) fn held(text: &str) -> Result<(Option<Constraints>, Option<String>)> 
         .map(|node| node.attribute("mass").and_then(|mass| mass.parse().ok()).unwrap_or(0.0))
         .collect();
     let is_light = |bond: &Node| {
-        let ends = ["p1", "p2"].map(|end| bond.attribute(end).and_then(|own| own.parse::<usize>().ok()));
+        let ends =
+            ["p1", "p2"].map(|end| bond.attribute(end).and_then(|attribute| attribute.parse::<usize>().ok()));
         ends.iter().any(|end| end.and_then(|at| masses.get(at)).is_none_or(|mass| *mass < LIGHT))
     };
     let forces = || inside("Forces");

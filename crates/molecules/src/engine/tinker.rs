@@ -26,9 +26,10 @@ pub(super) const WORDS: Vocabulary = Vocabulary {
     plain: |word| word.to_ascii_lowercase(),
     prefixes: &[],
     is_own: |line| {
-        let own = line.words.get(1).map(|word| word.0.to_ascii_uppercase()).unwrap_or_default();
+        let text = line.words.get(1).map(|word| word.0.to_ascii_uppercase()).unwrap_or_default();
         let lists: [&[&str]; 4] = [&PLAIN, &NEW, &HP_INTEGRATORS, &["RESPA", "GHMC", "RIGIDBODY"]];
-        line.key().eq_ignore_ascii_case("integrator") && lists.iter().any(|list| list.contains(&own.as_str()))
+        line.key().eq_ignore_ascii_case("integrator")
+            && lists.iter().any(|list| list.contains(&text.as_str()))
     },
     is_whole: false,
 };
@@ -61,7 +62,8 @@ pub(super) fn read(text: &str, outer: Option<&Rational>) -> Result<Reading> {
         last(&lines, "integrator").map(|line| line.value("integrator").map(|word| word.0)).transpose()?;
     let integrator = given.map(str::to_ascii_uppercase);
     let has = |keys: &[&str]| keys.iter().any(|key| last(&lines, key).is_some());
-    let is_hp = has(&HP_KEYS) || integrator.as_deref().is_some_and(|own| HP_INTEGRATORS.contains(&own));
+    let is_hp =
+        has(&HP_KEYS) || integrator.as_deref().is_some_and(|integrator| HP_INTEGRATORS.contains(&integrator));
     if is_hp && has(&TINKER_KEYS) {
         let remedy =
             "is a key of Tinker beside keys of Tinker-HP: leave out those of the one that is not run";
@@ -75,14 +77,14 @@ pub(super) fn read(text: &str, outer: Option<&Rational>) -> Result<Reading> {
     let file = Key { text, lines: &lines, outer, engine };
     let mut reading = match integrator.as_deref() {
         None => file.one("BEEMAN or VERLET (the default)")?,
-        Some(own) if PLAIN.contains(&own) => file.one(own)?,
+        Some(text) if PLAIN.contains(&text) => file.one(text)?,
         Some("RESPA") if !is_hp => file.inner()?,
-        Some(own) if NEW.contains(&own) => file.counted(own)?,
-        Some(own @ ("RESPA" | "BAOABRESPA")) => file.short(own)?,
-        Some(own @ ("RESPA1" | "BAOABRESPA1")) => file.three(own)?,
-        Some(own) => {
+        Some(text) if NEW.contains(&text) => file.counted(text)?,
+        Some(text @ ("RESPA" | "BAOABRESPA")) => file.short(text)?,
+        Some(text @ ("RESPA1" | "BAOABRESPA1")) => file.three(text)?,
+        Some(text) => {
             let remedy = "is no integrator whose steps are read here";
-            return Err(Error::input("integrator", own, remedy));
+            return Err(Error::input("integrator", text, remedy));
         }
     };
     file.molecules(&mut reading);
@@ -227,8 +229,8 @@ impl Key<'_> {
                 .push(format!("{} {}", key.to_uppercase(), how.as_deref().unwrap_or("")).trim().into());
         }
         if let Some(line) = last(self.lines, "heavy-hydrogen") {
-            let own = line.words.get(1).and_then(|word| fortran("heavy-hydrogen", word.0).ok());
-            let shown = own.map_or_else(|| "4".into(), |own| crate::unit::decimal(&own));
+            let value = line.words.get(1).and_then(|word| fortran("heavy-hydrogen", word.0).ok());
+            let shown = value.map_or_else(|| "4".into(), |value| crate::unit::decimal(&value));
             reading.remarks.push(format!("HEAVY-HYDROGEN was not read: hydrogens have up to {shown} amu, and no more than the equal share of a group: say so by --hmr"));
         }
         if let Some((beads, _)) = self.value("nbeads").ok().flatten().filter(|(beads, _)| *beads != "1") {

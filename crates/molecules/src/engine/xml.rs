@@ -118,7 +118,7 @@ pub(super) fn words<'a>(node: Node<'a, '_>, text: &'a str) -> Result<(&'a str, R
         let start = child.range().start + (own.len() - own.trim_start().len());
         (own.trim(), start..start + own.trim().len())
     };
-    let mut pieces = node.children().filter(Node::is_text).map(piece).filter(|(own, _)| !own.is_empty());
+    let mut pieces = node.children().filter(Node::is_text).map(piece).filter(|(text, _)| !text.is_empty());
     let first = pieces.next().unwrap_or(("", 0..0));
     match pieces.next() {
         None => Ok(first),

@@ -63,7 +63,8 @@ impl Magnitude {
 
     /// Whether self ≥ other.
     pub(super) fn at_least(self, other: Magnitude) -> bool {
-        let order = |own: Magnitude| (!own.is_zero()).then_some((own.exp, own.mantissa));
+        let order =
+            |magnitude: Magnitude| (!magnitude.is_zero()).then_some((magnitude.exp, magnitude.mantissa));
         order(self) >= order(other)
     }
 

@@ -69,12 +69,12 @@ fn minimal_polynomial(n: u32) -> Vec<BigInt> {
     psi[0] = phi[d].clone();
     let (mut before, mut t) = (vec![BigInt::from(2)], vec![BigInt::zero(), BigInt::one()]);
     for k in 1..=d {
-        for (own, c) in psi.iter_mut().zip(&t) {
-            *own += &phi[d - k] * c;
+        for (integer, c) in psi.iter_mut().zip(&t) {
+            *integer += &phi[d - k] * c;
         }
         // T_{k+1} = c T_k − T_{k−1}.
         let mut next: Vec<BigInt> = std::iter::once(BigInt::zero()).chain(t.iter().cloned()).collect();
-        next.iter_mut().zip(&before).for_each(|(own, c)| *own -= c);
+        next.iter_mut().zip(&before).for_each(|(integer, c)| *integer -= c);
         (before, t) = (t, next);
     }
     psi

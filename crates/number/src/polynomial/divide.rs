@@ -8,8 +8,8 @@ use crate::{Rational, Ring};
 impl<R: Ring> Polynomial<R> {
     /// `self -= c x^k other`.
     fn subtract_shifted(&mut self, c: &R, k: usize, other: &Self) {
-        for (own, d) in self.coefficients[k..].iter_mut().zip(&other.coefficients) {
-            own.sub_product(c, d);
+        for (number, d) in self.coefficients[k..].iter_mut().zip(&other.coefficients) {
+            number.sub_product(c, d);
         }
         while self.coefficients.last().is_some_and(Zero::is_zero) {
             self.coefficients.pop();

@@ -52,7 +52,7 @@ pub fn common(f: &[BigInt], g: &[BigInt]) -> Vec<BigInt> {
         if divisor.last().is_some_and(Signed::is_negative) {
             divisor.iter_mut().for_each(|c| *c = -&*c);
         }
-        if [&f[..], g].iter().all(|own| quotient(own, &divisor).is_some()) {
+        if [&f[..], g].iter().all(|integers| quotient(integers, &divisor).is_some()) {
             return divisor;
         }
     }
@@ -73,8 +73,8 @@ pub fn quotient(f: &[BigInt], divisor: &[BigInt]) -> Option<Vec<BigInt>> {
         if !left.is_zero() {
             return None;
         }
-        for (own, c) in rest[k..].iter_mut().zip(divisor) {
-            *own -= &factor * c;
+        for (integer, c) in rest[k..].iter_mut().zip(divisor) {
+            *integer -= &factor * c;
         }
         quotient[k] = factor;
     }
@@ -166,8 +166,8 @@ fn shift_by_one(f: &mut [BigInt]) {
     let n = f.len();
     for k in 0..n.saturating_sub(1) {
         for j in (k..n - 1).rev() {
-            let [own, next] = &mut f[j..j + 2] else { unreachable!("two neighbours") };
-            *own += &*next;
+            let [integer, next] = &mut f[j..j + 2] else { unreachable!("two neighbours") };
+            *integer += &*next;
         }
     }
 }

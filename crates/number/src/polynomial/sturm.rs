@@ -118,8 +118,8 @@ impl<C: SignAt> Sturm<C> {
         let (mut lo, mut hi) = (over(lo), over(hi));
         while (&hi - &lo) * width.denom() > width.numer() * &denominator {
             if (&lo + &hi).is_odd() {
-                for own in [&mut lo, &mut hi, &mut denominator] {
-                    *own <<= 1;
+                for integer in [&mut lo, &mut hi, &mut denominator] {
+                    *integer <<= 1;
                 }
             }
             let middle: BigInt = (&lo + &hi) >> 1;
@@ -196,8 +196,8 @@ pub(super) fn remainder(a: &[BigInt], b: &[BigInt]) -> Vec<BigInt> {
         let factor = rest.last().expect("not empty") * &sign;
         // |l| rest − sign(l) top(rest) x^k b: the top coefficient vanishes.
         rest.iter_mut().for_each(|c| *c *= &size);
-        for (own, c) in rest[k..].iter_mut().zip(b) {
-            *own -= &factor * c;
+        for (integer, c) in rest[k..].iter_mut().zip(b) {
+            *integer -= &factor * c;
         }
         while rest.last().is_some_and(Zero::is_zero) {
             rest.pop();

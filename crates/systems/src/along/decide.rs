@@ -105,17 +105,20 @@ impl Along {
                 })?
             }
         };
-        let within =
-            spectrum.as_ref().filter(|_| self.accuracy.is_some()).map(|own| own.known_to(&half.blocks(1.0)));
+        let within = spectrum
+            .as_ref()
+            .filter(|_| self.accuracy.is_some())
+            .map(|spectrum| spectrum.known_to(&half.blocks(1.0)));
         let period = Laurent::from_rational(self.clocks.period());
-        let explained = within.as_ref().or(spectrum.as_ref()).map(|own| {
-            let shape = |i| own.shape(i, &given.scales);
-            explained(own.multipliers(), shape, kind, &period, |_, _, _| None)
+        let explained = within.as_ref().or(spectrum.as_ref()).map(|spectrum| {
+            let shape = |i| spectrum.shape(i, &given.scales);
+            explained(spectrum.multipliers(), shape, kind, &period, |_, _, _| None)
         });
         let (multipliers, mut instabilities) = explained.unwrap_or_default();
-        for own in &mut instabilities {
-            (own.shape, own.quadrature) = (half.lifted(&own.shape), half.lifted(&own.quadrature));
-            own.normalize();
+        for instability in &mut instabilities {
+            (instability.shape, instability.quadrature) =
+                (half.lifted(&instability.shape), half.lifted(&instability.quadrature));
+            instability.normalize();
         }
         let mut part = Part::new(given.m, period, (kind, evidence), (multipliers, instabilities));
         (part.dofs, part.roots) = ((0..n).collect(), asked.map(|(_, roots)| roots));
@@ -168,11 +171,11 @@ impl Along {
             let (one, zero) =
                 (DMatrix::identity(self.size(), self.size()), DMatrix::zeros(self.size(), self.size()));
             let (mut x, mut p) = if starts_moving { (zero, one) } else { (one, zero) };
-            for (event, own) in self.schedule.half_period().zip(&self.hessians) {
+            for (event, matrixes) in self.schedule.half_period().zip(&self.hessians) {
                 let time = self.schedule.tick() * Rational::from_integer(event.drift.into());
                 let moved = |i: usize, j: usize| &time * &p[(i, j)] / exact(self.masses[i]);
                 x += DMatrix::from_fn(self.size(), self.size(), moved);
-                for (clock, k) in event.clocks().zip(own) {
+                for (clock, k) in event.clocks().zip(matrixes) {
                     let two = Rational::from_integer(2.into());
                     let mean = |i: usize, j: usize| (exact(k[(i, j)]) + exact(k[(j, i)])) / &two;
                     p -= DMatrix::from_fn(self.size(), self.size(), mean)
@@ -198,18 +201,18 @@ impl Along {
         let (mut x, mut v) = (DMatrix::zeros(n, 2 * n), DMatrix::zeros(n, 2 * n));
         (0..n).for_each(|i| (x[(i, i)], v[(i, n + i)]) = (1.0, 1.0));
         let tick = to_f64(self.schedule.tick());
-        let kick = |x: &DMatrix<f64>, event: &Event, own: &[DMatrix<f64>], v: &mut DMatrix<f64>| {
-            for (clock, k) in event.clocks().zip(own) {
+        let kick = |x: &DMatrix<f64>, event: &Event, matrixes: &[DMatrix<f64>], v: &mut DMatrix<f64>| {
+            for (clock, k) in event.clocks().zip(matrixes) {
                 *v -= weighted(k) * x * (event.weight.share() * to_f64(&self.step(clock)));
             }
         };
         let events: Vec<Event> = self.schedule.half_period().collect();
-        for (event, own) in events.iter().zip(&self.hessians) {
+        for (event, matrixes) in events.iter().zip(&self.hessians) {
             x += &v * (tick * event.drift as f64);
-            kick(&x, event, own, &mut v);
+            kick(&x, event, matrixes, &mut v);
         }
-        for (event, own) in events.iter().zip(&self.hessians).rev() {
-            kick(&x, event, own, &mut v);
+        for (event, matrixes) in events.iter().zip(&self.hessians).rev() {
+            kick(&x, event, matrixes, &mut v);
             x -= &v * (-tick * event.drift as f64);
         }
         let basis = self.motions().map_or_else(|| Mat::identity(n, n), beside);
@@ -238,22 +241,22 @@ impl Along {
         let root: Vec<f64> = self.masses.iter().map(|m| m.sqrt()).collect();
         let events = self.schedule.half_period().zip(&self.hessians);
         let kicks: Vec<(usize, Given)> = events
-            .flat_map(|(event, own)| event.clocks().zip(own))
+            .flat_map(|(event, matrixes)| event.clocks().zip(matrixes))
             .map(|(clock, k)| {
                 let weighted = DMatrix::from_fn(n, n, |i, j| k[(i, j)] / (root[i] * root[j]));
                 (clock, Given::new(self.step(clock), &weighted))
             })
             .collect();
-        kicks.iter().try_for_each(|(clock, own)| {
-            let alike = kicks.iter().filter(|(other, _)| other == clock).map(|(_, own)| own.size());
-            own.leaves_free(motions, alike.fold(0.0, f64::max), self.accuracy.unwrap_or(0.0))
+        kicks.iter().try_for_each(|(clock, given)| {
+            let alike = kicks.iter().filter(|(other, _)| other == clock).map(|(_, given)| given.size());
+            given.leaves_free(motions, alike.fold(0.0, f64::max), self.accuracy.unwrap_or(0.0))
         })
     }
 
     fn rigid_modes(&self) -> Vec<Vec<Rational>> {
         let exact = |x: f64| from_f64_exact(x).unwrap_or_default();
-        let columns = |own: &Mat<f64>| {
-            (0..own.ncols()).map(|k| own.col_as_slice(k).iter().map(|x| exact(*x)).collect()).collect()
+        let columns = |matrix: &Mat<f64>| {
+            (0..matrix.ncols()).map(|k| matrix.col_as_slice(k).iter().map(|x| exact(*x)).collect()).collect()
         };
         self.motions().map(columns).unwrap_or_default()
     }
@@ -277,18 +280,18 @@ impl Along {
             }
         };
         let basis = match &self.rigid {
-            Rigid::Translations(own) => Some(beside(own)),
+            Rigid::Translations(matrix) => Some(beside(matrix)),
             _ => None,
         };
-        let defect = basis.as_ref().map_or(0.0, |own| orthogonality(own).unwrap_or(f64::INFINITY));
+        let defect = basis.as_ref().map_or(0.0, |matrix| orthogonality(matrix).unwrap_or(f64::INFINITY));
         let kept = basis.as_ref().map_or(n, Mat::ncols);
         let shown = if roundings > 8.0 { vec![1.0; kept] } else { scales.clone() };
         let inverse_mass: Vec<_> = (0..kept).map(|i| vec![(i, inverse[i])]).collect();
         let own = |(clock, k): (usize, &DMatrix<f64>)| {
             let factor = tick * tick * self.schedule.clocks()[clock].step() as f64;
-            let own = scaled(k, factor, &scales);
-            let size = self.accuracy.map_or(0.0, |_| own.size(n));
-            (clock, size, own)
+            let scaled = scaled(k, factor, &scales);
+            let size = self.accuracy.map_or(0.0, |_| scaled.size(n));
+            (clock, size, scaled)
         };
         let events = self.schedule.half_period().zip(&self.hessians);
         let all: Vec<Vec<_>> = events.map(|(event, k)| event.clocks().zip(k).map(own).collect()).collect();
@@ -296,23 +299,25 @@ impl Along {
         for (clock, size, _) in all.iter().flatten() {
             largest[*clock] = largest[*clock].max(*size);
         }
-        let stiff = |(clock, _, own): (usize, f64, Scaled)| {
+        let stiff = |(clock, _, scaled): (usize, f64, Scaled)| {
             let known = self.accuracy.map_or(0.0, |accuracy| accuracy * largest[clock]);
             let stiff = match &basis {
-                None => Stiff { off: roundings * U * own.frobenius(), stiffness: own.stiffness(), known },
+                None => {
+                    Stiff { off: roundings * U * scaled.frobenius(), stiffness: scaled.stiffness(), known }
+                }
                 Some(basis) => {
-                    let (image, error) = projected(&own.0, basis, defect);
-                    let off = roundings * U * own.frobenius() + error;
+                    let (image, error) = projected(&scaled.0, basis, defect);
+                    let off = roundings * U * scaled.frobenius() + error;
                     Stiff { stiffness: Stiffness::Whole(image), off, known }
                 }
             };
             (clock, stiff)
         };
         let kicks: Vec<Vec<(usize, Stiff)>> =
-            all.into_iter().map(|own| own.into_iter().map(stiff).collect()).collect();
+            all.into_iter().map(|triples| triples.into_iter().map(stiff).collect()).collect();
         let find = |k: usize, clock: usize| {
-            let own = kicks[k].iter().find(|(other, _)| *other == clock);
-            &own.expect("a Hessian for each clock of each event").1
+            let pair = kicks[k].iter().find(|(other, _)| *other == clock);
+            &pair.expect("a Hessian for each clock of each event").1
         };
         let drifts = Drifts { inverse_mass: &inverse_mass, decay: &Rational::default(), off: 0.0 };
         let propagated = follow(&drifts, self.schedule.half_period(), find);
@@ -320,7 +325,7 @@ impl Along {
             Rigid::Turning(motions) => Some(Frames::new(motions.each_ref().map(beside))),
             _ => None,
         };
-        Half { own: self, propagated, scales: shown, basis, frames }
+        Half { along: self, propagated, scales: shown, basis, frames }
     }
 }
 
@@ -334,7 +339,7 @@ struct Frames {
 
 impl Frames {
     fn new([start, turned]: [Mat<f64>; 2]) -> Frames {
-        let defect = |own: &Mat<f64>| orthogonality(own).unwrap_or(f64::INFINITY);
+        let defect = |matrix: &Mat<f64>| orthogonality(matrix).unwrap_or(f64::INFINITY);
         // Of Householder's factorization of r orthonormal columns: their space turns by some n r roundings (Higham, Theorem 19.4).
         let (n, r) = (start.nrows() as f64, (start.nrows() - start.ncols()) as f64);
         let off = defect(&start) + defect(&turned) + 20.0 * (n + 8.0) * r * U;
@@ -344,7 +349,7 @@ impl Frames {
 
 /// A half period, and what its columns and rows are.
 struct Half<'a> {
-    own: &'a Along,
+    along: &'a Along,
     propagated: Propagated,
     /// Positions are these times those of shapes, which are mass-weighted where these are 1.
     scales: Vec<f64>,
@@ -363,8 +368,8 @@ impl Half<'_> {
         let (n, m) = (whole.m, frames.start.ncols());
         let turned = |rows: &[Vec<f64>]| {
             let block = |first: usize| {
-                let own = Mat::from_fn(n, n, |i, j| rows[i][first + j]);
-                frames.turned.transpose() * own * &frames.start
+                let matrix = Mat::from_fn(n, n, |i, j| rows[i][first + j]);
+                frames.turned.transpose() * matrix * &frames.start
             };
             let (left, right) = (block(0), block(n));
             let row =
@@ -382,22 +387,23 @@ impl Half<'_> {
     /// That some Hessians within the accuracy leave the rigid motions free, C J₀ = 0 and J₁ᵀ C = 0: else what is proven would be so of none. (A J₀ is in
     /// the span of J₁ then, as Cᵀ A = Aᵀ C, and J₁ᵀ D in that of J₀ᵀ.)
     fn check_rigid(&self) -> Result<()> {
-        if let Rigid::Translations(motions) = &self.own.rigid {
-            return self.own.check_translations(motions);
+        if let Rigid::Translations(motions) = &self.along.rigid {
+            return self.along.check_translations(motions);
         }
-        let Rigid::Turning([start, turned]) = &self.own.rigid else { return Ok(()) };
-        let n = self.own.size();
-        let Some(error) = self.propagated.error_within(if self.own.accuracy.is_some() { 1.0 } else { 0.0 })
+        let Rigid::Turning([start, turned]) = &self.along.rigid else { return Ok(()) };
+        let n = self.along.size();
+        let Some(error) = self.propagated.error_within(if self.along.accuracy.is_some() { 1.0 } else { 0.0 })
         else {
             return Ok(());
         };
         let whole = self.propagated.matrix();
         let c = whole.submatrix(n, 0, n, n);
         let pulled = [c * start, c.transpose() * turned];
-        let longest = |own: &Mat<f64>| (0..own.ncols()).map(|k| own.col(k).norm_l2()).fold(0.0, f64::max);
+        let longest =
+            |matrix: &Mat<f64>| (0..matrix.ncols()).map(|k| matrix.col(k).norm_l2()).fold(0.0, f64::max);
         let longest = pulled.iter().map(longest).fold(0.0, f64::max);
         // The positions are known about as well as the Hessians.
-        let known = self.own.accuracy.unwrap_or(0.0).max(n as f64 * U) * norm::frobenius(&whole);
+        let known = self.along.accuracy.unwrap_or(0.0).max(n as f64 * U) * norm::frobenius(&whole);
         if longest <= 1.01 * (error + known) {
             return Ok(());
         }
@@ -413,23 +419,25 @@ impl Half<'_> {
         let signed = signs::proven(&blocks).map(|kind| (kind, Evidence::Signs));
         signed.or_else(|| {
             let own = spectrum?;
-            let own = if times > 0.0 { Cow::Owned(own.known_to(&blocks)) } else { Cow::Borrowed(own) };
-            Some((own.certified(&blocks)?, Evidence::Discs))
+            let spectrum = if times > 0.0 { Cow::Owned(own.known_to(&blocks)) } else { Cow::Borrowed(own) };
+            Some((spectrum.certified(&blocks)?, Evidence::Discs))
         })
     }
 
     /// A shape in the coordinates given.
     fn lifted(&self, y: &[f64]) -> Vec<f64> {
-        let columns = self.frames.as_ref().map(|own| &own.start).or(self.basis.as_ref());
+        let columns = self.frames.as_ref().map(|frames| &frames.start).or(self.basis.as_ref());
         let whole = columns.map_or_else(
             || y.to_vec(),
-            |own| {
-                (0..own.nrows()).map(|i| y.iter().enumerate().map(|(k, y)| own[(i, k)] * y).sum()).collect()
+            |matrix| {
+                (0..matrix.nrows())
+                    .map(|i| y.iter().enumerate().map(|(k, y)| matrix[(i, k)] * y).sum())
+                    .collect()
             },
         );
-        let is_scaled = columns.is_some() || self.own.accuracy.is_some();
+        let is_scaled = columns.is_some() || self.along.accuracy.is_some();
         if is_scaled {
-            whole.iter().zip(&self.own.masses).map(|(x, m)| x / m.sqrt()).collect()
+            whole.iter().zip(&self.along.masses).map(|(x, m)| x / m.sqrt()).collect()
         } else {
             whole
         }

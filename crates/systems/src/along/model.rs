@@ -64,16 +64,16 @@ impl Along {
             return Err(Error::input("potentials", format!("{} of them", kicks.len()), remedy));
         }
         let schedule = Schedule::new(steps, &vec![Rational::zero(); steps.len()])?;
-        let mut left: Vec<_> = kicks.iter().map(|own| own.iter()).collect();
+        let mut left: Vec<_> = kicks.iter().map(|kick| kick.iter()).collect();
         let mut hessians = Vec::new();
         for event in schedule.half_period() {
             hessians.push(event.clocks().filter_map(|clock| left[clock].next().cloned()).collect::<Vec<_>>());
         }
-        for (k, own) in kicks.iter().enumerate() {
+        for (k, matrixes) in kicks.iter().enumerate() {
             let struck =
                 schedule.half_period().filter(|event| event.clocks().any(|clock| clock == k)).count();
-            if own.len() != struck {
-                let found = format!("{} Hessians", own.len());
+            if matrixes.len() != struck {
+                let found = format!("{} Hessians", matrixes.len());
                 let remedy = format!(
                     "this clock kicks {struck} times in half a period, both its ends counted: give as many"
                 );
@@ -91,8 +91,9 @@ impl Along {
     ) -> Result<Along> {
         check(masses, &schedule, &hessians)?;
         let ticks = |ticks: u64| schedule.tick() * Rational::from_integer(ticks.into());
-        let clock =
-            |own: &clocks::schedule::Clock| Potential::new(Symmetric::zero(masses.len()), ticks(own.step()));
+        let clock = |clock: &clocks::schedule::Clock| {
+            Potential::new(Symmetric::zero(masses.len()), ticks(clock.step()))
+        };
         let ones = Symmetric::diagonal(&vec![Rational::from_integer(1.into()); masses.len()]);
         let clocks = System::new(ones, schedule.clocks().iter().map(clock).collect())?;
         let (accuracy, rigid) = (None, Rigid::Nothing);
@@ -136,16 +137,16 @@ impl Along {
     /// Columns of another length than n, of another number at the two ends, that depend on each other or are all there is.
     pub fn free_of(self, ends: &[DMatrix<f64>]) -> Result<Along> {
         let n = self.size();
-        let orthonormal = |own: &DMatrix<f64>| {
-            let columns = Mat::from_fn(own.nrows(), own.ncols(), |i, j| own[(i, j)]);
+        let orthonormal = |matrix: &DMatrix<f64>| {
+            let columns = Mat::from_fn(matrix.nrows(), matrix.ncols(), |i, j| matrix[(i, j)]);
             let split = columns.qr();
-            let lengths = || (0..own.ncols()).map(|k| split.R()[(k, k)].abs());
+            let lengths = || (0..matrix.ncols()).map(|k| split.R()[(k, k)].abs());
             let (least, most) = (lengths().fold(f64::INFINITY, f64::min), lengths().fold(0.0, f64::max));
             // Far above the roundings of the columns.
             (least > 1e-8 * most).then(|| split.compute_thin_Q())
         };
-        let fits = |own: &DMatrix<f64>| {
-            own.nrows() == n && (1..n).contains(&own.ncols()) && own.ncols() == ends[0].ncols()
+        let fits = |matrix: &DMatrix<f64>| {
+            matrix.nrows() == n && (1..n).contains(&matrix.ncols()) && matrix.ncols() == ends[0].ncols()
         };
         if let [start, turned] = ends
             && ends.iter().all(fits)
@@ -170,8 +171,8 @@ impl Along {
     /// The mass of each atom.
     fn of_atoms(&self) -> Result<Vec<f64>> {
         let atoms = self.masses.chunks(3);
-        if atoms.clone().all(|own| own.len() == 3 && own.iter().all(|m| *m == own[0])) {
-            return Ok(atoms.map(|own| own[0]).collect());
+        if atoms.clone().all(|atoms| atoms.len() == 3 && atoms.iter().all(|m| *m == atoms[0])) {
+            return Ok(atoms.map(|atoms| atoms[0]).collect());
         }
         let remedy = "rigid motions are those of atoms of three coordinates each: say \"keep_rigid\": true";
         Err(Error::input("masses", "not of atoms", remedy))
@@ -196,7 +197,7 @@ impl Along {
     pub(super) fn motions(&self) -> Option<&Mat<f64>> {
         match &self.rigid {
             Rigid::Nothing => None,
-            Rigid::Translations(own) => Some(own),
+            Rigid::Translations(matrix) => Some(matrix),
             Rigid::Turning([start, _]) => Some(start),
         }
     }
@@ -225,8 +226,8 @@ fn check(masses: &[f64], schedule: &Schedule, hessians: &[Vec<DMatrix<f64>>]) ->
         let remedy = format!("give one a kick of the half period, event by event: {events:?}");
         return Err(Error::input("hessians", format!("{given:?}"), remedy));
     }
-    for (k, own) in hessians.iter().enumerate() {
-        for (c, matrix) in own.iter().enumerate() {
+    for (k, matrixes) in hessians.iter().enumerate() {
+        for (c, matrix) in matrixes.iter().enumerate() {
             let field = format!("hessians[{k}][{c}]");
             if matrix.shape() != (n, n) || matrix.iter().any(|x| !x.is_finite()) {
                 let given = format!("{} x {}", matrix.nrows(), matrix.ncols());

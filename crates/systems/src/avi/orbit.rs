@@ -117,7 +117,7 @@ impl Clocked<'_> {
     fn at(&self, clock: usize, x: &DVector<f64>) -> (DVector<f64>, DMatrix<f64>) {
         let n = x.len();
         let (mut force, mut hessian) = (DVector::zeros(n), DMatrix::zeros(n, n));
-        for (bond, _) in self.bonds.iter().zip(self.clock_of).filter(|(_, own)| **own == clock) {
+        for (bond, _) in self.bonds.iter().zip(self.clock_of).filter(|(_, index)| **index == clock) {
             bond.add_to(x.as_slice(), &mut force, &mut hessian);
         }
         (force, hessian)
@@ -127,14 +127,14 @@ impl Clocked<'_> {
 impl Bond {
     /// Adds its force and its Hessian at the positions x of all particles.
     pub(super) fn add_to(&self, x: &[f64], force: &mut DVector<f64>, hessian: &mut DMatrix<f64>) {
-        let own = self.particles();
-        let at: Vec<f64> = own.iter().map(|&i| x[i]).collect();
-        let mut f = vec![0.0; own.len()];
+        let indexes = self.particles();
+        let at: Vec<f64> = indexes.iter().map(|&i| x[i]).collect();
+        let mut f = vec![0.0; indexes.len()];
         self.force(&at, &mut f);
         let curvature = self.curvature(&at);
-        for (a, &i) in own.iter().enumerate() {
+        for (a, &i) in indexes.iter().enumerate() {
             force[i] += f[a];
-            for (b, &j) in own.iter().enumerate() {
+            for (b, &j) in indexes.iter().enumerate() {
                 hessian[(i, j)] += if a == b { curvature } else { -curvature };
             }
         }

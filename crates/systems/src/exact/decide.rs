@@ -209,11 +209,11 @@ fn judged(product: &DMatrix<BigInt>, scale: &BigInt, [a, b, c, d]: [&DMatrix<Big
     // Each round counts the roots that are left as often as that.
     let (mut left, mut round) = (rest.clone(), simple.clone());
     while left.len() > 1 {
-        let own: RootCount = roots::count(&round, scale);
-        inside += own.inside;
-        above += own.above;
-        below += own.below;
-        complex += own.complex;
+        let root_count: RootCount = roots::count(&round, scale);
+        inside += root_count.inside;
+        above += root_count.above;
+        below += root_count.below;
+        complex += root_count.complex;
         left = refined::quotient(left, &round);
         round = squarefree(&left);
     }
@@ -323,7 +323,7 @@ mod tests {
             if grows_by_trace(&blocks) {
                 assert_eq!(kind, Kind::Hyperbolic, "{system:?}");
                 let forms = signs::judge(&mut blocks);
-                assert!(forms.is_none_or(|own| own == kind), "{system:?}");
+                assert!(forms.is_none_or(|forms| forms == kind), "{system:?}");
                 *decided
                     .entry(if forms.is_some() { "trace and forms" } else { "trace alone" })
                     .or_insert(0) += 1;

@@ -88,13 +88,15 @@ pub fn inverse(field: &PrimeField, mut m: DMatrix<u64>) -> Option<(DMatrix<u64>,
         }
         determinant = field.mul(determinant, m[(k, k)]);
         let scale = field.invert(m[(k, k)]);
-        for own in [&mut m, &mut inverse] {
-            own.row_mut(k).iter_mut().for_each(|x| *x = field.mul(*x, scale));
+        for matrix in [&mut m, &mut inverse] {
+            matrix.row_mut(k).iter_mut().for_each(|x| *x = field.mul(*x, scale));
         }
         for i in (0..n).filter(|&i| i != k) {
             let factor = m[(i, k)];
-            for own in [&mut m, &mut inverse] {
-                (0..n).for_each(|j| own[(i, j)] = field.sub(own[(i, j)], field.mul(factor, own[(k, j)])));
+            for matrix in [&mut m, &mut inverse] {
+                (0..n).for_each(|j| {
+                    matrix[(i, j)] = field.sub(matrix[(i, j)], field.mul(factor, matrix[(k, j)]))
+                });
             }
         }
     }

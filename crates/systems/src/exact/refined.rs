@@ -70,7 +70,7 @@ pub fn quotient(mut f: Vec<BigInt>, g: &[BigInt]) -> Vec<BigInt> {
     let mut quotient = vec![BigInt::zero(); places];
     for k in (0..places).rev() {
         let c = f[k + g.len() - 1].clone();
-        g.iter().enumerate().for_each(|(i, own)| f[k + i] -= &c * own);
+        g.iter().enumerate().for_each(|(i, integer)| f[k + i] -= &c * integer);
         quotient[k] = c;
     }
     quotient
@@ -141,12 +141,12 @@ impl<'a> Roots<'a> {
             self.spend()?;
             let all = (0..self.points.len()).map(|i| self.correction(&coefficients, i));
             let all = all.collect::<Option<Vec<Correction>>>()?;
-            let size = |own: &Correction| own.w.re.abs() + own.w.im.abs();
-            self.radii = all.iter().map(|own| (size(own) + &own.off) * &n).collect();
-            if round == MOST_ROUNDS || all.iter().all(|own| size(own) <= own.off) {
+            let size = |correction: &Correction| correction.w.re.abs() + correction.w.im.abs();
+            self.radii = all.iter().map(|correction| (size(correction) + &correction.off) * &n).collect();
+            if round == MOST_ROUNDS || all.iter().all(|correction| size(correction) <= correction.off) {
                 break;
             }
-            self.points.iter_mut().zip(all).for_each(|(z, own)| *z = &*z - own.w);
+            self.points.iter_mut().zip(all).for_each(|(z, correction)| *z = &*z - correction.w);
         }
         Some(())
     }
@@ -159,7 +159,8 @@ impl<'a> Roots<'a> {
             value = Complex::new((value.re >> bits) + c, value.im >> bits);
         }
         let others = self.points.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, other)| x - other);
-        let product = others.fold(Complex::new(BigInt::one(), BigInt::zero()), |product, own| product * own);
+        let product =
+            others.fold(Complex::new(BigInt::one(), BigInt::zero()), |product, value| product * value);
         let size = product.norm_sqr();
         if size.is_zero() {
             return None;
@@ -192,12 +193,12 @@ impl<'a> Roots<'a> {
     /// All roots, the discs being apart, where the largest excess is known accurately.
     fn accurate(&self) -> Option<Vec<Multiplier>> {
         let excesses: Vec<(Rational, Rational)> = (0..self.points.len()).map(|i| self.excess(i)).collect();
-        let lo = excesses.iter().map(|own| &own.0).max()?;
-        let hi = excesses.iter().map(|own| &own.1).max()?;
+        let lo = excesses.iter().map(|excess| &excess.0).max()?;
+        let hi = excesses.iter().map(|excess| &excess.1).max()?;
         if (hi - lo) * Rational::from_integer(BigInt::one() << ACCURACY) > *hi {
             return None;
         }
-        Some(excesses.iter().enumerate().map(|(i, own)| self.multiplier(i, own)).collect())
+        Some(excesses.iter().enumerate().map(|(i, pair)| self.multiplier(i, pair)).collect())
     }
 
     fn excess(&self, i: usize) -> (Rational, Rational) {
@@ -207,9 +208,9 @@ impl<'a> Roots<'a> {
             return Default::default();
         }
         let part = |x: &BigInt| Ball::from_integer(x).scale2(scale);
-        let own = rate::excess(&part(&z.re), &part(&z.im), 2 * self.bits + 64);
+        let ball = rate::excess(&part(&z.re), &part(&z.im), 2 * self.bits + 64);
         let off = scale2(radius, scale);
-        ((own.lower() - &off).max(Rational::zero()), own.upper() + off)
+        ((ball.lower() - &off).max(Rational::zero()), ball.upper() + off)
     }
 
     fn multiplier(&self, i: usize, (lo, hi): &(Rational, Rational)) -> Multiplier {
@@ -244,11 +245,11 @@ mod tests {
         let found = of(&[-20, -23, -5, -1, 1], 2);
         let growth = |k: usize| found[k].growth.unwrap();
         let near = |(lo, hi): (f64, f64), x: f64| lo <= x + 1e-15 && x - 1e-15 <= hi && hi - lo < 1e-15;
-        assert_eq!(found.iter().filter(|own| own.mu.im == 0.0).count(), 2);
-        assert_eq!(found.iter().filter(|own| own.growth == Some((0.0, 0.0))).count(), 1);
+        assert_eq!(found.iter().filter(|multiplier| multiplier.mu.im == 0.0).count(), 2);
+        assert_eq!(found.iter().filter(|multiplier| multiplier.growth == Some((0.0, 0.0))).count(), 1);
         assert!(near(growth(3), 2.0 * 2f64.sqrt().asinh()), "{found:?}");
         // |μ| = |μ + 1| = √5/2.
-        let pair = found.iter().find(|own| own.mu.im > 0.0).unwrap();
+        let pair = found.iter().find(|multiplier| multiplier.mu.im > 0.0).unwrap();
         assert!(near(pair.growth.unwrap(), 2.0 * ((5f64.sqrt() - 1.0) / 2.0).sqrt().asinh()), "{found:?}");
     }
 
@@ -266,7 +267,7 @@ mod tests {
         let third: BigInt = &d / 2u8 + 1u8;
         let f = [-third.clone(), -BigInt::one(), third, BigInt::one()];
         let found = multipliers(&f, &d, u64::MAX).unwrap();
-        let (lo, hi) = rate::largest(found.iter().filter_map(|own| own.growth));
+        let (lo, hi) = rate::largest(found.iter().filter_map(|multiplier| multiplier.growth));
         let want = 2.0 * 1e-15f64.sqrt().asinh();
         assert!(lo <= want * (1.0 + 1e-15) && want * (1.0 - 1e-15) <= hi && hi / lo - 1.0 < 1e-15);
     }

@@ -241,7 +241,7 @@ pub fn full_period<S: Ring>(system: &System) -> DMatrix<S> {
 
 /// The degrees of freedom that some entry of the mass or of a stiffness connects, an effective one or one that it comes from.
 pub(crate) fn connected_parts(system: &System) -> Vec<Vec<usize>> {
-    let potentials = system.potentials().iter().map(|own| &own.stiffness);
+    let potentials = system.potentials().iter().map(|potential| &potential.stiffness);
     let graphs = potentials.chain(system.holding()).chain([system.mass()]);
     connected(system.size(), graphs.flat_map(Symmetric::places))
 }

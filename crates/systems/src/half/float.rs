@@ -119,7 +119,7 @@ impl Shear {
     /// Upper bounds of the terms of ρ and σ, together or row by row, whichever is less: with |before| ≤ |after| + |F| |other|,
     /// ‖R‖₂ ≤ c ‖|after|‖₂ + 2 ‖C |F|‖₂ ‖|other|‖₂.
     fn terms<'a>(&self, width: usize, changed: &'a [f64], other: &'a [f64]) -> [f64; 2] {
-        let row = |of: &'a [f64], i: usize| &of[i * width..(i + 1) * width];
+        let row = |values: &'a [f64], i: usize| &values[i * width..(i + 1) * width];
         let changed = norm::by_sums(width, self.rows.iter().map(|&i| row(changed, i)));
         let taken = |j: &usize| self.is_changed[*j] || self.columns[*j] > 0.0;
         let other = norm::by_sums(width, (0..self.columns.len()).filter(taken).map(|j| row(other, j)));
@@ -166,11 +166,11 @@ impl Rows {
 
     /// Begins another shear where row i of this side does not belong to the one under way.
     fn enter(&mut self, side: Side, i: usize) {
-        if self.shear.as_ref().is_some_and(|own| own.side != side || own.is_changed[i]) {
+        if self.shear.as_ref().is_some_and(|shear| shear.side != side || shear.is_changed[i]) {
             self.end_shear();
         }
-        if let Some(own) = &mut self.shear {
-            own.side = side;
+        if let Some(shear) = &mut self.shear {
+            shear.side = side;
         }
     }
 
@@ -280,18 +280,18 @@ fn finish(rows: Rows, frame: &Frame, scales: Vec<f64>) -> FloatBlocks {
     let rigid: Vec<(usize, Vec<f64>)> = frame
         .rigid
         .iter()
-        .map(|(own, n)| (*own, frame.kept.iter().map(|&i| to_f64(&n[i])).collect()))
+        .map(|(index, n)| (*index, frame.kept.iter().map(|&i| to_f64(&n[i])).collect()))
         .collect();
     let row = |from: &[f64], i: usize| from[i * columns..(i + 1) * columns].to_vec();
     let mut y: Vec<Vec<f64>> = frame.kept.iter().map(|&i| row(&rows.x, i)).collect();
-    for (own, n) in &rigid {
-        let own = row(&rows.x, *own);
-        y.iter_mut().zip(n).for_each(|(row, factor)| axpy(row, -factor, &own));
+    for (index, n) in &rigid {
+        let values = row(&rows.x, *index);
+        y.iter_mut().zip(n).for_each(|(row, factor)| axpy(row, -factor, &values));
     }
     let p: Vec<Vec<f64>> = frame.kept.iter().map(|&i| row(&rows.p, i)).collect();
     let project = |row: Vec<f64>| {
         let momentum = |(k, &i): (usize, &usize)| {
-            rigid.iter().fold(row[columns / 2 + i], |sum, (own, n)| sum - n[k] * row[columns / 2 + own])
+            rigid.iter().fold(row[columns / 2 + i], |sum, (index, n)| sum - n[k] * row[columns / 2 + index])
         };
         let positions = frame.kept.iter().map(|&i| row[i]);
         positions.chain(frame.kept.iter().enumerate().map(momentum)).collect::<Vec<_>>()
@@ -364,9 +364,9 @@ impl Frame {
     /// The frame in positions a_i x_i: rigid modes n_J\[i\] a_i/a_J.
     fn scaled(&self, a: &[f64]) -> Frame {
         let factor = |x: f64| Rational::from_float(x).expect("a power of two");
-        let rigid = |(own, n): &(usize, Vec<Rational>)| {
-            let scaled = n.iter().enumerate().map(|(i, x)| x * factor(a[i] / a[*own])).collect();
-            (*own, scaled)
+        let rigid = |(index, n): &(usize, Vec<Rational>)| {
+            let scaled = n.iter().enumerate().map(|(i, x)| x * factor(a[i] / a[*index])).collect();
+            (*index, scaled)
         };
         Frame { rigid: self.rigid.iter().map(rigid).collect(), kept: self.kept.clone() }
     }
@@ -388,9 +388,10 @@ mod tests {
         let (n, a) = (system.size(), &blocks.scales);
         let exact = compose::half_period::<Rational>(&system);
         let off = |k: usize, j: usize| {
-            let (row, own) = if k < n { (a[k], &blocks.y[k]) } else { (a[k - n].recip(), &blocks.p[k - n]) };
+            let (row, values) =
+                if k < n { (a[k], &blocks.y[k]) } else { (a[k - n].recip(), &blocks.p[k - n]) };
             let column = if j < n { a[j].recip() } else { a[j - n] };
-            let rounded = Rational::from_float(own[j] / row / column).expect("powers of two are exact");
+            let rounded = Rational::from_float(values[j] / row / column).expect("powers of two are exact");
             to_f64(&(rounded - &exact[(k, j)])) * row * column
         };
         let largest = Mat::from_fn(2 * n, 2 * n, off).singular_values().unwrap()[0];

@@ -65,16 +65,17 @@ impl Jacobians {
             },
         };
         let period = Laurent::from_rational(self.period());
-        let multipliers = spectrum.as_ref().map_or_else(Default::default, |own| {
-            let shape = |i: usize| own.shape(i, &vec![1.0; self.size()]);
-            explained(own.multipliers(), shape, decided.0, &period, |_, _, _| None)
+        let multipliers = spectrum.as_ref().map_or_else(Default::default, |spectrum| {
+            let shape = |i: usize| spectrum.shape(i, &vec![1.0; self.size()]);
+            explained(spectrum.multipliers(), shape, decided.0, &period, |_, _, _| None)
         });
         let mut part = Part { roots, ..Part::new(self.size(), period, decided, multipliers) };
         let n = self.lift.nrows();
         part.dofs = (0..n).collect();
-        for own in &mut part.instabilities {
-            (own.shape, own.quadrature) = (self.lifted(&own.shape), self.lifted(&own.quadrature));
-            own.normalize();
+        for instability in &mut part.instabilities {
+            (instability.shape, instability.quadrature) =
+                (self.lifted(&instability.shape), self.lifted(&instability.quadrature));
+            instability.normalize();
         }
         let clocks = self.clocks.len();
         Ok(Analysis { rigid_modes: self.rigid.clone(), ..Analysis::of_part(part, clocks, warnings) })
@@ -114,14 +115,15 @@ impl Jacobians {
         if spectrum.by_discs() == Some(Kind::Elliptic) {
             return Some((0.0, 0.0));
         }
-        let growth = spectrum.multipliers().iter().map(|own| own.growth).collect::<Option<Vec<_>>>()?;
+        let growth =
+            spectrum.multipliers().iter().map(|multiplier| multiplier.growth).collect::<Option<Vec<_>>>()?;
         Some(rate::per_time(rate::largest(growth.into_iter()), &Laurent::from_rational(self.period())))
     }
 
     /// Positions of what grows fastest with these steps, real and imaginary part, rounded; `None` where nothing is seen to grow.
     pub fn fastest(&self) -> Option<[Vec<f64>; 2]> {
         let spectrum = self.spectrum().0.as_ref()?;
-        let sizes = spectrum.multipliers().into_iter().map(|own| own.size()).enumerate();
+        let sizes = spectrum.multipliers().into_iter().map(|multiplier| multiplier.size()).enumerate();
         let (i, size) = sizes.max_by(|a, b| a.1.total_cmp(&b.1))?;
         let shape = spectrum.shape(i, &vec![1.0; self.size()]);
         let part = |of: fn(&c64) -> f64| self.lifted(&shape.iter().map(of).collect::<Vec<_>>());
@@ -155,8 +157,8 @@ impl Jacobians {
         limits.allow(cost.min(1e19) as u64, || {
             format!("exact arithmetic on {}", degrees_of_freedom(self.size()))
         })?;
-        let own = orbit::exact(self);
-        Ok(judged_blocks(&own.product, own.blocks.each_ref()))
+        let blocks = orbit::exact(self);
+        Ok(judged_blocks(&blocks.product, blocks.blocks.each_ref()))
     }
 
     /// The bits of an entry of a kick.
@@ -165,8 +167,8 @@ impl Jacobians {
         const DOUBLE: u64 = 128;
         let bits = |m: &DMatrix<Rational>| m.iter().map(|x| x.numer().bits() + x.denom().bits()).max();
         let of = |clock: &Clock| clock.exact.as_ref().map_or(Some(DOUBLE), bits);
-        let own = self.clocks.iter().filter_map(of).max().unwrap_or(0);
-        (own + self.tick.numer().bits() + self.tick.denom().bits()) as f64
+        let count = self.clocks.iter().filter_map(of).max().unwrap_or(0);
+        (count + self.tick.numer().bits() + self.tick.denom().bits()) as f64
     }
 
     /// The growth rate of x'' = −A x itself, enclosed; `None`: not bounded.
@@ -179,10 +181,14 @@ impl Jacobians {
         let size: f64 = self.clocks.iter().map(|clock| norm::frobenius(&clock.matrix)).sum();
         let off = self.clocks.iter().map(|clock| clock.off).sum::<f64>()
             + self.clocks.len() as f64 * 1.1 * U * size;
-        let own = Spectrum::of(sum, Some(off))?;
-        let radius = 1.01 * own.radius?;
+        let spectrum = Spectrum::of(sum, Some(off))?;
+        let radius = 1.01 * spectrum.radius?;
         let alone = |i: usize| {
-            own.mu.iter().enumerate().all(|(j, other)| i == j || (own.mu[i] - other).norm() > 2.01 * radius)
+            spectrum
+                .mu
+                .iter()
+                .enumerate()
+                .all(|(j, other)| i == j || (spectrum.mu[i] - other).norm() > 2.01 * radius)
         };
         let growth = |(i, z): (usize, &c64)| {
             // A real one alone in its disc is real.
@@ -196,6 +202,6 @@ impl Jacobians {
                 (square + radius + rounding).sqrt() * (1.0 + 1e-15),
             )
         };
-        Some(rate::largest(own.mu.iter().enumerate().map(growth)))
+        Some(rate::largest(spectrum.mu.iter().enumerate().map(growth)))
     }
 }

@@ -36,7 +36,7 @@ impl Jacobians {
             return Some(Damping::Damped);
         }
         let is_outside =
-            |own: &Vec<usize>| own.iter().all(|&i| found.mu[i].norm() * (1.0 - 1e-15) - radius > 1.0);
+            |indexes: &Vec<usize>| indexes.iter().all(|&i| found.mu[i].norm() * (1.0 - 1e-15) - radius > 1.0);
         components(&found.mu, radius).iter().any(is_outside).then_some(Damping::Growing)
     }
 
@@ -61,11 +61,11 @@ impl Jacobians {
         let n = self.size();
         let whole = Mat::<f64>::identity(2 * n, 2 * n);
         let (x, v) = (whole.subrows(0, n).to_owned(), whole.subrows(n, n).to_owned());
-        let mut state = Damped { rate, own: Doubles::new(self, x, v), tick: &self.tick };
+        let mut state = Damped { rate, doubles: Doubles::new(self, x, v), tick: &self.tick };
         lead(self, self.schedule.symmetric_period(), &mut state);
-        let (x, v) = (&state.own.x, &state.own.v);
+        let (x, v) = (&state.doubles.x, &state.doubles.v);
         let period = Mat::from_fn(2 * n, 2 * n, |i, j| if i < n { x[(i, j)] } else { v[(i - n, j)] });
-        (period, state.own.error())
+        (period, state.doubles.error())
     }
 
     /// By bisection on the spectral radius of the damped period, rounded; 0 where nothing grows without friction.
@@ -95,7 +95,7 @@ impl Jacobians {
 struct Damped<'a> {
     rate: &'a Rational,
     tick: &'a Rational,
-    own: Doubles<'a>,
+    doubles: Doubles<'a>,
 }
 
 impl KickDrift<Strike> for Damped<'_> {
@@ -103,12 +103,12 @@ impl KickDrift<Strike> for Damped<'_> {
         let time = self.tick * Rational::from_integer(ticks.into());
         let half = 0.5 * to_f64(&time);
         let factor = Ball::from_rational(&-(self.rate * &time), BITS).exp(BITS).mid_f64();
-        self.own.moved(half);
-        self.own.faded(factor);
-        self.own.moved(half);
+        self.doubles.moved(half);
+        self.doubles.faded(factor);
+        self.doubles.moved(half);
     }
 
     fn kick(&mut self, strike: &Strike) {
-        self.own.kick(strike);
+        self.doubles.kick(strike);
     }
 }

@@ -115,11 +115,11 @@ impl Jacobians {
             })
         });
         let rigid = null_space(rows.collect(), n);
-        let kept: Vec<usize> = (0..n).filter(|i| rigid.iter().all(|(own, _)| own != i)).collect();
+        let kept: Vec<usize> = (0..n).filter(|i| rigid.iter().all(|(index, _)| index != i)).collect();
         let left = |a: &DMatrix<Rational>| {
             DMatrix::from_fn(kept.len(), kept.len(), |i, j| {
                 let (i, j) = (kept[i], kept[j]);
-                rigid.iter().fold(a[(i, j)].clone(), |x, (own, n)| x - &n[i] * &a[(*own, j)])
+                rigid.iter().fold(a[(i, j)].clone(), |x, (index, n)| x - &n[i] * &a[(*index, j)])
             })
         };
         let clocks = clocks.into_iter().map(|(a, step, phase)| {
@@ -169,7 +169,7 @@ impl Jacobians {
                 given.iter().map(|(step, j)| apart::Given::new(step.clone(), &weighted(j))).collect();
             of_particles(motions, &thirds(masses), &each, accuracy)?;
         }
-        let motions = found.map_or_else(Mat::new, |(own, _)| own.columns);
+        let motions = found.map_or_else(Mat::new, |(motions, _)| motions.columns);
         // Orthonormal columns beside the motions.
         let removed = motions.ncols();
         let basis = match removed {
@@ -242,7 +242,7 @@ impl Jacobians {
     /// A factor that is not positive.
     pub fn slowed(&self, factor: &Rational) -> Result<Jacobians> {
         let symmetric = self.symmetric.with(&Rational::one(), factor)?;
-        let clock = |own: &Clock| Clock { step: &own.step * factor, ..own.clone() };
+        let clock = |clock: &Clock| Clock { step: &clock.step * factor, ..clock.clone() };
         let clocks = self.clocks.iter().map(clock).collect();
         let (tick, spectrum) = (&self.tick * factor, Default::default());
         Ok(Jacobians { clocks, tick, symmetric, spectrum, ..self.clone() })
@@ -257,15 +257,15 @@ impl Jacobians {
             let remedy = format!("this file has {} clocks: give each its step", self.clocks.len());
             return Err(Error::input("steps", format!("{} of them", steps.len()), remedy));
         }
-        if self.symmetric.clocks().iter().any(|own| !own.phase.is_zero()) {
+        if self.symmetric.clocks().iter().any(|potential| !potential.phase.is_zero()) {
             return Err(Error::input(
                 "phase",
                 "given",
                 "other steps are for clocks that all begin at time 0",
             ));
         }
-        let with = |(own, step): (&Clock, &Rational)| {
-            (Clock { step: step.clone(), ..own.clone() }, Rational::zero())
+        let with = |(clock, step): (&Clock, &Rational)| {
+            (Clock { step: step.clone(), ..clock.clone() }, Rational::zero())
         };
         let clocks = self.clocks.iter().zip(steps).map(with).collect();
         let symmetric = stand_in(self.symmetric.size(), steps.iter())?;
@@ -275,7 +275,7 @@ impl Jacobians {
 
     /// The step of each clock, increasing.
     pub fn steps(&self) -> Vec<Rational> {
-        self.clocks.iter().map(|own| own.step.clone()).collect()
+        self.clocks.iter().map(|clock| clock.step.clone()).collect()
     }
 
     /// |J − Jᵀ|/|J + Jᵀ| of each potential as it was given, Frobenius's norms, rounded.
@@ -318,8 +318,8 @@ impl Jacobians {
 
 /// A system of this size with these clocks and no stiffness.
 fn stand_in<'a>(n: usize, steps: impl Iterator<Item = &'a Rational>) -> Result<System> {
-    let own = steps.map(|step| Potential::new(Symmetric::zero(n), step.clone())).collect();
-    System::new(Symmetric::diagonal(&vec![Rational::one(); n]), own)
+    let potentials = steps.map(|step| Potential::new(Symmetric::zero(n), step.clone())).collect();
+    System::new(Symmetric::diagonal(&vec![Rational::one(); n]), potentials)
 }
 
 fn square<T>(k: usize, j: &DMatrix<T>, n: usize) -> Result<()> {

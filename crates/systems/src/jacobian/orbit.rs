@@ -17,17 +17,17 @@ pub(super) type Strike = (usize, Weight);
 
 /// Leads positions and velocities, a column a solution, through the events.
 pub(super) fn lead(
-    own: &Jacobians,
+    jacobians: &Jacobians,
     events: impl IntoIterator<Item = Event>,
     state: &mut impl KickDrift<Strike>,
 ) {
     let strikes = |clock| [Weight::Full, Weight::Half].map(|weight| (clock, weight));
-    Kicks::of_clocks(0..own.clocks.len(), strikes).lead(events, state);
+    Kicks::of_clocks(0..jacobians.clocks.len(), strikes).lead(events, state);
 }
 
 /// The events of half a period, from t = 0 or back from T/2.
-fn events(own: &Jacobians, is_reversed: bool) -> Vec<Event> {
-    let events: Vec<Event> = own.schedule.half_period().collect();
+fn events(jacobians: &Jacobians, is_reversed: bool) -> Vec<Event> {
+    let events: Vec<Event> = jacobians.schedule.half_period().collect();
     if is_reversed { reversed(&events) } else { events }
 }
 
@@ -52,12 +52,12 @@ impl<'a> Doubles<'a> {
     }
 
     /// Half a period, forwards from x = 1, v = 0, or backwards from x = 0, v = 1.
-    fn half(own: &'a Jacobians, is_reversed: bool) -> Doubles<'a> {
-        let n = own.size();
+    fn half(jacobians: &'a Jacobians, is_reversed: bool) -> Doubles<'a> {
+        let n = jacobians.size();
         let (one, zero) = (Mat::identity(n, n), Mat::zeros(n, n));
         let (x, v) = if is_reversed { (zero, one) } else { (one, zero) };
-        let mut state = Doubles::new(own, x, v);
-        lead(own, events(own, is_reversed), &mut state);
+        let mut state = Doubles::new(jacobians, x, v);
+        lead(jacobians, events(jacobians, is_reversed), &mut state);
         state
     }
 }
@@ -68,7 +68,7 @@ impl Doubles<'_> {
         let size = norm::frobenius(&self.x) + time * norm::frobenius(&self.v);
         self.x += time * &self.v;
         // The time, the product, the sum.
-        self.errors.iter_mut().for_each(|own| own.x = 1.01 * (own.x + time * own.v + 3.1 * U * size));
+        self.errors.iter_mut().for_each(|error| error.x = 1.01 * (error.x + time * error.v + 3.1 * U * size));
     }
 
     /// c v, the factor c within \[0, 1\] rounded.
@@ -76,7 +76,7 @@ impl Doubles<'_> {
         self.v *= Scale(factor);
         let size = norm::frobenius(&self.v);
         // The factor, the product; both once more, since the size is that of the result.
-        self.errors.iter_mut().for_each(|own| own.v = 1.01 * (factor * own.v + 4.1 * U * size));
+        self.errors.iter_mut().for_each(|error| error.v = 1.01 * (factor * error.v + 4.1 * U * size));
     }
 
     /// A bound on the error of both for the matrices given, in Frobenius's norm.
@@ -99,19 +99,21 @@ impl KickDrift<Strike> for Doubles<'_> {
         let terms = self.own.size() as f64 + 4.0;
         let rounding = 1.01 * terms * U * step * norm::frobenius(&clock.matrix) * x + 3.1 * U * v;
         let known = [0.0, self.own.accuracy.unwrap_or(0.0) * clock.size];
-        for (own, known) in self.errors.iter_mut().zip(known) {
-            own.v =
-                1.01 * (own.v + step * (clock.size * own.x + (clock.off + known) * (x + own.x)) + rounding);
+        for (errors, known) in self.errors.iter_mut().zip(known) {
+            errors.v = 1.01
+                * (errors.v
+                    + step * (clock.size * errors.x + (clock.off + known) * (x + errors.x))
+                    + rounding);
         }
     }
 }
 
 /// S = B' C with bounds (2-norm): on the error for the matrices given, and for all within their accuracy.
-pub(super) fn half_product(own: &Jacobians) -> (Mat<f64>, [f64; 2]) {
-    let (forwards, backwards) = (Doubles::half(own, false), Doubles::half(own, true));
+pub(super) fn half_product(jacobians: &Jacobians) -> (Mat<f64>, [f64; 2]) {
+    let (forwards, backwards) = (Doubles::half(jacobians, false), Doubles::half(jacobians, true));
     let (b, c) = (&backwards.x, &forwards.v);
     let [size_b, size_c] = [b, c].map(norm::frobenius);
-    let rounding = 1.01 * (own.size() as f64 + 4.0) * U * size_b * size_c;
+    let rounding = 1.01 * (jacobians.size() as f64 + 4.0) * U * size_b * size_c;
     let errors = [0, 1].map(|k| {
         let (b, c) = (backwards.errors[k].x, forwards.errors[k].v);
         1.01 * (size_b * c + size_c * b + b * c + rounding)

@@ -28,7 +28,8 @@ impl Kernel {
         let margin =
             if unstable { self.unstable_margin(outer, spectrum.as_ref()) } else { self.margin(outer) };
         let period = Laurent::from_rational(period.clone());
-        let multipliers = spectrum.map(|own| self.multipliers(&own, kind, &period)).unwrap_or_default();
+        let multipliers =
+            spectrum.map(|spectrum| self.multipliers(&spectrum, kind, &period)).unwrap_or_default();
         let part = Part::new(self.size(), period, (kind, evidence), multipliers);
         let part = Part { dofs: (0..self.modes.nrows()).collect(), ..part };
         let measured = Some(Measured { margin, ..self.measured(outer, accuracy) });
@@ -36,7 +37,8 @@ impl Kernel {
     }
 
     fn warnings(&self, evidence: Evidence, accuracy: f64) -> Vec<String> {
-        let mut warnings: Vec<String> = self.removed.iter().filter_map(|own| own.warning(accuracy)).collect();
+        let mut warnings: Vec<String> =
+            self.removed.iter().filter_map(|removed| removed.warning(accuracy)).collect();
         if !self.is_total_definite() {
             let (lowest, mode) = self.lowest_total();
             let moves = match mode {

@@ -67,7 +67,9 @@ impl Given {
 /// The 2-norm, rounded; of a large matrix more than it, by at most a factor n^(1/8).
 fn sharp_norm(m: &Mat<f64>) -> f64 {
     const LARGE: usize = 256;
-    let exact = |m: &Mat<f64>| m.singular_values().ok().map(|own| own.iter().copied().fold(0.0, f64::max));
+    let exact = |m: &Mat<f64>| {
+        m.singular_values().ok().map(|singular_value| singular_value.iter().copied().fold(0.0, f64::max))
+    };
     let small = (m.nrows() <= LARGE).then(|| exact(m)).flatten();
     small.unwrap_or_else(|| norm::spectral(m))
 }
@@ -107,7 +109,7 @@ pub(crate) fn of_particles(
         all += &pull;
     }
     shares.total =
-        norm::spectral(&all) / given.iter().map(|own| own.size).sum::<f64>().max(f64::MIN_POSITIVE);
+        norm::spectral(&all) / given.iter().map(|given| given.size).sum::<f64>().max(f64::MIN_POSITIVE);
     Ok(shares)
 }
 
@@ -128,9 +130,9 @@ fn held(step: &Rational, part: f64, accuracy: f64) -> Error {
 
 /// K r without the best ω × g: least squares over all motions, atom by atom.
 fn unexplained(pull: &Mat<f64>, motions: &Motions, masses: &[f64]) -> Mat<f64> {
-    let turns: Vec<Vector3<f64>> = motions.turns.iter().map(|own| Vector3::from(*own)).collect();
-    let normal = turns.iter().fold(Matrix3::zeros(), |sum, own| {
-        sum + Matrix3::identity() * own.norm_squared() - own * own.transpose()
+    let turns: Vec<Vector3<f64>> = motions.turns.iter().map(|turn| Vector3::from(*turn)).collect();
+    let normal = turns.iter().fold(Matrix3::zeros(), |sum, matrix| {
+        sum + Matrix3::identity() * matrix.norm_squared() - matrix * matrix.transpose()
     });
     let Some(inverse) = normal.try_inverse() else { return pull.clone() };
     let mut rest = pull.clone();
@@ -138,10 +140,11 @@ fn unexplained(pull: &Mat<f64>, motions: &Motions, masses: &[f64]) -> Mat<f64> {
         let root = mass.sqrt();
         let force =
             |c: usize| Vector3::new(pull[(3 * i, c)], pull[(3 * i + 1, c)], pull[(3 * i + 2, c)]) * root;
-        let sum = turns.iter().enumerate().fold(Vector3::zeros(), |sum, (c, own)| sum + force(c).cross(own));
+        let sum =
+            turns.iter().enumerate().fold(Vector3::zeros(), |sum, (c, matrix)| sum + force(c).cross(matrix));
         let gradient = inverse * sum;
-        for (c, own) in turns.iter().enumerate() {
-            let turned = own.cross(&gradient) / root;
+        for (c, matrix) in turns.iter().enumerate() {
+            let turned = matrix.cross(&gradient) / root;
             (0..3).for_each(|axis| rest[(3 * i + axis, c)] -= turned[axis]);
         }
     }
@@ -161,17 +164,17 @@ pub(crate) fn common_null_space(
 ) -> Result<Option<(Mat<f64>, Shares)>> {
     let Some(first) = given.first() else { return Ok(None) };
     let n = first.stiffness.nrows();
-    let total = given.iter().fold(Mat::zeros(n, n), |sum, own| sum + &own.stiffness);
-    let all: f64 = given.iter().map(|own| own.size).sum();
+    let total = given.iter().fold(Mat::zeros(n, n), |sum, given| sum + &given.stiffness);
+    let all: f64 = given.iter().map(|given| given.size).sum();
     let Ok(eigen) = total.self_adjoint_eigen(Side::Lower) else { return Ok(None) };
     let null: Vec<usize> = (0..n).filter(|&i| eigen.S()[i].abs() <= accuracy * all).collect();
     if null.is_empty() {
         return Ok(None);
     }
     let candidates = Mat::from_fn(n, null.len(), |i, j| eigen.U()[(i, null[j])]);
-    let relative = |own: &Given| {
-        let pull = &own.stiffness * &candidates;
-        Mat::from_fn(n, null.len(), |i, j| pull[(i, j)] / own.size.max(f64::MIN_POSITIVE))
+    let relative = |given: &Given| {
+        let pull = &given.stiffness * &candidates;
+        Mat::from_fn(n, null.len(), |i, j| pull[(i, j)] / given.size.max(f64::MIN_POSITIVE))
     };
     let pulls: Vec<Mat<f64>> = given.iter().map(relative).collect();
     let stacked = Mat::from_fn(n * pulls.len(), null.len(), |i, j| pulls[i / n][(i % n, j)]);
@@ -199,7 +202,7 @@ pub(crate) fn common_null_space(
         }
     }
     let basis = Mat::from_fn(null.len(), rigid.len(), |i, j| svd.V()[(i, rigid[j])]);
-    let each = pulls.iter().map(|own| norm::spectral(&(own * &basis))).collect();
+    let each = pulls.iter().map(|pull| norm::spectral(&(pull * &basis))).collect();
     let columns = &candidates * &basis;
     let total = norm::spectral(&(&total * &columns)) / all.max(f64::MIN_POSITIVE);
     Ok(Some((columns, Shares { each, total })))
@@ -207,17 +210,17 @@ pub(crate) fn common_null_space(
 
 /// Refuses a motion along which potentials that are not small cancel.
 fn balanced(given: &[Given], motion: &Mat<f64>) -> Result<()> {
-    let pulls: Vec<Mat<f64>> = given.iter().map(|own| &own.stiffness * motion).collect();
+    let pulls: Vec<Mat<f64>> = given.iter().map(|given| &given.stiffness * motion).collect();
     let alone: f64 = pulls.iter().map(norm::frobenius).sum();
-    let together = pulls.iter().fold(Mat::zeros(motion.nrows(), 1), |sum, own| sum + own);
+    let together = pulls.iter().fold(Mat::zeros(motion.nrows(), 1), |sum, matrix| sum + matrix);
     if norm::frobenius(&together) > CANCELLED * alone {
         return Ok(());
     }
-    let parts = given.iter().zip(&pulls).map(|(own, pull)| (own, own.part(pull)));
-    let (own, part) = parts.max_by(|a, b| a.1.total_cmp(&b.1)).expect("at least one potential");
+    let parts = given.iter().zip(&pulls).map(|(given, pull)| (given, given.part(pull)));
+    let (given, part) = parts.max_by(|a, b| a.1.total_cmp(&b.1)).expect("at least one potential");
     let value = format!(
         "the sum of the stiffnesses vanishes, and the potential with step {} holds {part:.1e} of its norm along one of them",
-        own.step
+        given.step
     );
     let remedy = "it is neither rigid nor clearly held. Rotations of a molecule are such: give masses and positions. Else say \"keep_rigid\": true";
     Err(Error::input("rigid motions", value, remedy))

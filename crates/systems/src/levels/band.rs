@@ -36,7 +36,7 @@ impl Kernel {
             && match self.method {
                 Method::Respa => self.covers_kicks(outer, &factors, epsilon),
                 Method::ImplicitExplicit => self.covers_midpoint(outer, &factors, epsilon),
-                Method::Trigonometric(own) if own.is_two_step() => false,
+                Method::Trigonometric(trigonometric) if trigonometric.is_two_step() => false,
                 Method::Trigonometric(_) => self.covers_filtered(outer, &factors, epsilon),
             }
     }
@@ -93,12 +93,12 @@ impl Kernel {
         };
         let kappa: Vec<f64> =
             ends.iter().map(|end| end.map(kappa).into_iter().fold(f64::INFINITY, f64::min)).collect();
-        let stretch: Vec<f64> = kappa.iter().map(|own| own / room * (1.0 - ROOM)).collect();
+        let stretch: Vec<f64> = kappa.iter().map(|value| value / room * (1.0 - ROOM)).collect();
         let size = self.norms()[1] + slow;
         // The product's entries have some roundings each, of less than a room in all for thousands of modes.
         let moved = 1.01 * (2.0 * off * largest * size + largest * largest * slow) + ROOM * size;
         let slack = 1.01 * outer.half_kick() * moved / (smallest * smallest);
-        stretch.iter().all(|own| *own > 0.0) && self.are_stretched(outer, &stretch, factors, slack)
+        stretch.iter().all(|value| *value > 0.0) && self.are_stretched(outer, &stretch, factors, slack)
     }
 
     /// Whether `stretch` − s h² S/2 > 0 at both ends of s.

@@ -42,7 +42,7 @@ impl Basis {
     pub fn backward_error(&self, m: &Mat<f64>) -> Option<(f64, f64)> {
         let own = |block: &Block| backward_error(&block.of(m), &block.vectors, &block.values);
         let both = |(a, b): (f64, f64), (c, d): (f64, f64)| (a.max(c), b.max(d));
-        self.blocks.iter().map(own).try_fold((0.0, 0.0), |worst, own| Some(both(worst, own?)))
+        self.blocks.iter().map(own).try_fold((0.0, 0.0), |worst, pair| Some(both(worst, pair?)))
     }
 
     /// Vᵀ m V.
@@ -58,9 +58,9 @@ impl Basis {
         let mut product = Mat::zeros(m.nrows(), m.ncols());
         for block in &self.blocks {
             let columns = Mat::from_fn(m.nrows(), block.rows.len(), |i, k| m[(i, block.rows[k])]);
-            let own = columns * &block.vectors;
+            let matrix = columns * &block.vectors;
             for (k, &place) in block.places.iter().enumerate() {
-                product.col_as_slice_mut(place).copy_from_slice(own.col_as_slice(k));
+                product.col_as_slice_mut(place).copy_from_slice(matrix.col_as_slice(k));
             }
         }
         product

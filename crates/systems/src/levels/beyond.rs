@@ -121,7 +121,7 @@ impl Kernel {
         let vectors = Mat::from_fn(m, m, |i, j| c64::new(root[i] * eigen.U()[(i, j)], 0.0));
         let (s, error) = blocks.s();
         // Where some V is nearly 0 the basis is not one in doubles.
-        Spectrum::with(s, Some(error), mu, vectors).filter(|own| own.radius.is_some())
+        Spectrum::with(s, Some(error), mu, vectors).filter(|spectrum| spectrum.radius.is_some())
     }
 
     /// The largest ε, within a tenth, for which all F + E₁, S + E₂, ‖E₁‖₂ ≤ ε ‖F‖₂, ‖E₂‖₂ ≤ ε ‖S‖₂, are proven unstable: by counts where these
@@ -175,7 +175,7 @@ pub(super) fn slopes(k: u64, x: f64) -> [[f64; 2]; 3] {
         last = [last[1], last[2], slope];
     }
     // Four roundings of positive terms a round, of at most half a million.
-    last.map(|own| own.map(|x| 1.001 * x))
+    last.map(|values| values.map(|x| 1.001 * x))
 }
 
 impl Blocks {

@@ -109,13 +109,13 @@ impl<'a> Cells<'a> {
         }
         let spectrum = self.spectrum(cell);
         if let Some(counts) = &counts {
-            let twists = spectrum.as_ref().and_then(|(own, _)| self.twists(cell, own));
+            let twists = spectrum.as_ref().and_then(|(spectrum, _)| self.twists(cell, spectrum));
             // Beyond the limits of the discs the modes of the fast level place the twists.
-            if twists.or_else(|| counts.twists()).is_some_and(|own| counts.tell_stability(&own)) {
+            if twists.or_else(|| counts.twists()).is_some_and(|or_else| counts.tell_stability(&or_else)) {
                 return Holds::Stable;
             }
         }
-        spectrum.and_then(|(own, off)| own.certified_around(&off)).into()
+        spectrum.and_then(|(spectrum, off)| spectrum.certified_around(&off)).into()
     }
 
     fn counts(&self, cell: &Cell) -> Option<Counts> {
@@ -132,8 +132,8 @@ impl<'a> Cells<'a> {
         let phi = |i: usize| filter.phi[i].mid();
         let slow = |sign: f64| {
             Mat::from_fn(m, m, |i, j| {
-                let own = middle * kernel.slow[(i, j)] + sign * (half + filter.share) * self.size[(i, j)];
-                phi(i) * own * phi(j) + if i == j { sign * filter.moved[i] } else { 0.0 }
+                let value = middle * kernel.slow[(i, j)] + sign * (half + filter.share) * self.size[(i, j)];
+                phi(i) * value * phi(j) + if i == j { sign * filter.moved[i] } else { 0.0 }
             })
         };
         let slow = [slow(-1.0), slow(1.0)];
@@ -159,8 +159,9 @@ impl<'a> Cells<'a> {
         }
         let (largest, [_, size], [fast, slow]) =
             (cell.slow.lo.abs().max(cell.slow.hi.abs()), kernel.norms(), self.shifts);
-        let tau = phi.iter().map(|own| own.radius()).fold(U, f64::max);
-        let moved = |own: &Interval| 1.01 * largest * (1.0 + 1.0 / tau) * size * own.radius().powi(2);
+        let tau = phi.iter().map(|interval| interval.radius()).fold(U, f64::max);
+        let moved =
+            |interval: &Interval| 1.01 * largest * (1.0 + 1.0 / tau) * size * interval.radius().powi(2);
         let below = self.below(cell);
         let [.., slope] = kernel.method.slopes(p, below);
         let turned = 1.01 * slope * cell.fast.hi * fast;
@@ -195,7 +196,7 @@ impl<'a> Cells<'a> {
             .iter()
             .map(|x| Half::new((Interval::point(*x) * middle).mid(), cell.inner_steps))
             .collect();
-        let (f, g): (Vec<_>, Vec<_>) = halves.iter().map(|own| (own.b * own.c, own.b * own.d)).unzip();
+        let (f, g): (Vec<_>, Vec<_>) = halves.iter().map(|half| (half.b * half.c, half.b * half.d)).unzip();
         let (mid, radius) = (cell.slow.mid(), cell.slow.radius());
         let (most, size) = (cell.slow.lo.abs().max(cell.slow.hi.abs()), &kernel.slow);
         let s = Mat::from_fn(m, m, |i, j| {

@@ -183,21 +183,21 @@ fn recursion(
     let start = Mat::from_fn(n, 1, |i, _| start[i]);
     let mut now = &start / faer::Scale(start.norm_l2());
     let mut before = Mat::<f64>::zeros(n, 1);
-    let (mut own, mut last) = (Tridiagonal::default(), 0.0);
+    let (mut tridiagonal, mut last) = (Tridiagonal::default(), 0.0);
     for _ in 0..steps {
         let mut next = times(&now) - &before * faer::Scale(last);
         let along = (next.transpose() * &now)[(0, 0)];
         next -= &now * faer::Scale(along);
-        own.diagonal.push(along);
-        own.beside.push(last);
+        tridiagonal.diagonal.push(along);
+        tridiagonal.beside.push(last);
         let length = next.norm_l2();
-        own.is_used_up = length <= 1e-12 * (along.abs() + last);
-        if own.is_used_up || is_enough(&own) {
+        tridiagonal.is_used_up = length <= 1e-12 * (along.abs() + last);
+        if tridiagonal.is_used_up || is_enough(&tridiagonal) {
             break;
         }
         before = now;
         now = next / faer::Scale(length);
         last = length;
     }
-    own
+    tridiagonal
 }

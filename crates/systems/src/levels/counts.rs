@@ -84,7 +84,8 @@ impl Counts {
         let at = [1.0].into_iter().chain(twists.iter().copied()).chain([0.0]);
         let one = |s: f64| Some(self.bounds(s)).filter(|(least, most)| least == most).map(|(count, _)| count);
         let counts: Option<Vec<usize>> = at.map(one).collect();
-        let change = |own: Vec<usize>| own.windows(2).map(|pair| pair[0].abs_diff(pair[1])).sum::<usize>();
+        let change =
+            |indexes: Vec<usize>| indexes.windows(2).map(|pair| pair[0].abs_diff(pair[1])).sum::<usize>();
         counts.map(change) == Some(self.less.len())
     }
 
@@ -117,13 +118,13 @@ impl Kernel {
 
     /// Whether all F + E₁, S + E₂, ‖E₁‖₂ ≤ ε ‖F‖₂, ‖E₂‖₂ ≤ ε ‖S‖₂, are proven by counts to have a real multiplier off the circle.
     pub fn has_real_unstable_mode(&self, outer: &Outer, epsilon: f64) -> bool {
-        self.counts(outer, epsilon).is_some_and(|own| own.tell_instability())
+        self.counts(outer, epsilon).is_some_and(|counts| counts.tell_instability())
     }
 
     /// Whether all these are proven stable by the index of the twisted period.
     pub fn is_stable_by_index(&self, outer: &Outer, epsilon: f64) -> bool {
-        let own = self.counts(outer, epsilon);
-        own.is_some_and(|own| own.twists().is_some_and(|twists| own.tell_stability(&twists)))
+        let counts = self.counts(outer, epsilon);
+        counts.is_some_and(|counts| counts.twists().is_some_and(|twists| counts.tell_stability(&twists)))
     }
 
     /// Whether all these are proven stable, in the first region or by the index.

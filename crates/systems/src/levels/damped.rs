@@ -55,11 +55,11 @@ impl Kernel {
     /// The effect of friction of the rate γ per unit time, and the friction that masks the growth without it: both proven.
     pub fn friction(&self, outer: &Outer, rate: &Rational) -> Friction {
         let period = self.damped_period(outer, to_f64(rate));
-        let own = period.map(|(q, error)| {
+        let pair = period.map(|(q, error)| {
             let radius = Radius::of(&q, error);
-            (damping(&q, error, radius), radius.map(|own| own.growth(outer.step)))
+            (damping(&q, error, radius), radius.map(|radius| radius.growth(outer.step)))
         });
-        let (damping, growth) = own.unwrap_or_default();
+        let (damping, growth) = pair.unwrap_or_default();
         Friction { rate: rate.clone(), damping, growth, masking: self.mask(outer) }
     }
 
@@ -198,7 +198,7 @@ pub(super) fn least_masking(
         let middle = lo + (hi - lo) / 2.0;
         *(if is_damped(middle) { &mut hi } else { &mut lo }) = middle;
     }
-    [1.0, 1.0003, 1.001, 1.003, 1.01, 1.03].map(|off| off * hi).into_iter().find(|own| proven(*own))
+    [1.0, 1.0003, 1.001, 1.003, 1.01, 1.03].map(|off| off * hi).into_iter().find(|value| proven(*value))
 }
 
 /// The Frobenius norm.

@@ -193,8 +193,9 @@ impl Kernel {
         let phi = |x: &f64| self.method.filter(Interval::point(outer.inner_square * x), p);
         let phi: Vec<Interval> = self.values.iter().map(phi).collect();
         let [.., slope] = self.method.slopes(p, self.below(outer, fast));
-        let off = phi.iter().map(|own| own.radius()).fold(0.0, f64::max) + slope * self.moved(outer, fast);
-        let largest = phi.iter().map(|own| own.mid().abs()).fold(0.0, f64::max) + off;
+        let off = phi.iter().map(|interval| interval.radius()).fold(0.0, f64::max)
+            + slope * self.moved(outer, fast);
+        let largest = phi.iter().map(|interval| interval.mid().abs()).fold(0.0, f64::max) + off;
         let kicks = Mat::from_fn(m, m, |i, j| phi[i].mid() * self.slow[(i, j)] * phi[j].mid());
         // Two roundings an entry.
         let rounding = 3.0 * U * largest * largest * norm::frobenius(&self.slow);

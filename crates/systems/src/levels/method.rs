@@ -44,7 +44,7 @@ impl Method {
         match self {
             Method::Respa => "respa",
             Method::ImplicitExplicit => "implicit-explicit",
-            Method::Trigonometric(own) => own.name(),
+            Method::Trigonometric(trigonometric) => trigonometric.name(),
         }
     }
 
@@ -55,7 +55,7 @@ impl Method {
 
     /// Whether a, b and c are those of a two-step method, no monotone functions of F.
     fn is_two_step(self) -> bool {
-        matches!(self, Method::Trigonometric(own) if own.is_two_step())
+        matches!(self, Method::Trigonometric(trigonometric) if trigonometric.is_two_step())
     }
 
     /// The half period of p inner steps at s = h² w², h the inner step; in the time unit h.
@@ -89,8 +89,8 @@ impl Method {
 
     /// (i, k) of the filter cos^i y sinc^k y; `None` where it is 1.
     fn powers(self) -> Option<(u32, u32)> {
-        let Method::Trigonometric(own) = self else { return None };
-        Some(own.filter()).filter(|own| *own != (0, 0))
+        let Method::Trigonometric(trigonometric) = self else { return None };
+        Some(trigonometric.filter()).filter(|pair| *pair != (0, 0))
     }
 
     pub(super) fn has_filter(self) -> bool {
@@ -161,13 +161,13 @@ impl Method {
             return [less, more].map(|s| self.half(Interval::point(s), p));
         }
         let all = Interval { lo: less, hi: more };
-        let own = self.half(Interval::point(all.mid()), p);
+        let half = self.half(Interval::point(all.mid()), p);
         let slopes = self.slopes(p, (-less).max(0.0));
         let wider = |x: Interval, slope: f64| {
             let off = 1.01 * slope * all.radius();
             Interval { lo: (x.lo - off).next_down(), hi: (x.hi + off).next_up() }
         };
-        [Half { a: wider(own.a, slopes[0]), c: wider(own.c, slopes[2]), ..own }; 2]
+        [Half { a: wider(half.a, slopes[0]), c: wider(half.c, slopes[2]), ..half }; 2]
     }
 }
 
@@ -175,7 +175,7 @@ impl std::str::FromStr for Method {
     type Err = Error;
 
     fn from_str(text: &str) -> Result<Method> {
-        let found = Method::all().find(|own| own.name() == text);
+        let found = Method::all().find(|method| method.name() == text);
         found.ok_or_else(|| Error::unknown("method", text, Method::all().map(Method::name)))
     }
 }
@@ -246,17 +246,17 @@ mod tests {
     #[test]
     fn half_periods_and_filters_are_those_of_the_functions() {
         let sinc = |x: f64| if x == 0.0 { 1.0 } else { x.sin() / x };
-        for method in Method::all().filter(|own| !own.has_inner_steps()) {
+        for method in Method::all().filter(|method| !method.has_inner_steps()) {
             for x in [0.0, 1e-5, 0.3, 0.99, 1.01, 3.0, 6.2, 6.4, 25.0] {
                 for p in [1u64, 4] {
                     let (s, y) = ((x / p as f64).powi(2), x / 2.0);
-                    let own = method.half(Interval::point(s), p);
+                    let half = method.half(Interval::point(s), p);
                     let [ad, bd, bc] = match method {
                         Method::ImplicitExplicit => [1.0, 0.5, -x * x / 4.0].map(|z| z / (1.0 + y * y)),
                         _ if method.is_two_step() => [y.cos().powi(2), 0.5, -y.sin().powi(2)],
                         _ => [y.cos().powi(2), sinc(x) / 2.0, -y.sin().powi(2)],
                     };
-                    let products = [own.a * own.d, own.b * own.d, own.b * own.c];
+                    let products = [half.a * half.d, half.b * half.d, half.b * half.c];
                     for (got, want) in products.into_iter().zip([ad, bd * p as f64, bc]) {
                         // Some roundings of y, whose size is up to 13.
                         assert!(
@@ -295,13 +295,13 @@ mod tests {
     /// Slopes against those of scalars: no matrix moves by more, and scalars are matrices.
     #[test]
     fn slopes_are_no_less_than_those_of_scalars() {
-        for method in Method::all().filter(|own| !own.has_inner_steps()) {
+        for method in Method::all().filter(|method| !method.has_inner_steps()) {
             for s in [0.01, 1.5, 9.0, 40.0, 200.0] {
                 let step = 1e-4;
                 let at = |s: f64| {
-                    let (own, phi) =
+                    let (half, phi) =
                         (method.half(Interval::point(s), 1), method.filter(Interval::point(s), 1));
-                    [own.a, own.b, own.c, own.d, phi, own.b * own.c, own.b * own.d].map(Interval::mid)
+                    [half.a, half.b, half.c, half.d, phi, half.b * half.c, half.b * half.d].map(Interval::mid)
                 };
                 let products = method.slopes_of_products(1, 0.0);
                 let slopes = [method.slopes(1, 0.0).as_slice(), products.as_slice()].concat();

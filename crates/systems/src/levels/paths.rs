@@ -91,8 +91,8 @@ impl Hessians {
     pub fn paths_prove_stable(&self, step: f64, inner_steps: u64, near: Near) -> bool {
         let [fast, slow] = near.factors;
         let total = &self.fast * Scale(fast) + &self.slow * Scale(slow);
-        let off = |level: usize, own: &Mat<f64>| {
-            near.factors[level] * (self.errors[level] + 4.0 * U * norm::frobenius(own)) + near.off[level]
+        let off = |level: usize, matrix: &Mat<f64>| {
+            near.factors[level] * (self.errors[level] + 4.0 * U * norm::frobenius(matrix)) + near.off[level]
         };
         let slack = 1.01 * (off(0, &self.fast) + off(1, &self.slow));
         is_definite(total, slack)

@@ -118,8 +118,8 @@ impl Hessians {
         // The rounding of two roots, their product, the quotient and the mean of both triangles.
         let weights = 5.1 * U * norm::frobenius(&whole);
         let Some(basis) = &self.basis else { return (whole, weights) };
-        let (own, error) = projected(&whole, basis, orthogonality(basis).unwrap_or(f64::INFINITY));
-        (own, weights + error)
+        let (matrix, error) = projected(&whole, basis, orthogonality(basis).unwrap_or(f64::INFINITY));
+        (matrix, weights + error)
     }
 
     /// These Hessians where one level, 0 the fast one, is a sum of mass-weighted stiffnesses: each of these is known to its own norm, though

@@ -53,7 +53,7 @@ impl Hessians {
         let size = crate::half::norm::frobenius(fast);
         let turn = |t: f64| Turn::new(fast, size, t);
         let sinc = |t: f64| turn(t).sin * Scale(1.0 / t);
-        let Method::Trigonometric(own) = method else {
+        let Method::Trigonometric(trigonometric) = method else {
             // (1 − A/2)⁻¹ (1 + A/2), A = h [[0, 1], [−F, 0]].
             let half = blocks([
                 &Mat::zeros(n, n),
@@ -64,14 +64,14 @@ impl Hessians {
             let whole = Mat::<f64>::identity(2 * n, 2 * n);
             return self.kicked(h, &self.slow, (&whole - &half).partial_piv_lu().solve(&whole + &half));
         };
-        let filter = match own {
+        let filter = match trigonometric {
             Trigonometric::Impulse => one.clone(),
             Trigonometric::Gautschi | Trigonometric::Short => sinc(h / 2.0),
             Trigonometric::Linear => sinc(h / 2.0) * sinc(h / 2.0),
             Trigonometric::Long | Trigonometric::HairerLubich => sinc(h),
         };
         let Turn { cos, sin } = turn(h);
-        if own.is_two_step() {
+        if trigonometric.is_two_step() {
             // ψ = γ², φ = 1.
             let x = cos * Scale(2.0) - &filter * &filter * &self.slow * Scale(h * h);
             return blocks([&x, &(&one * Scale(-1.0)), &one, &Mat::zeros(n, n)]);

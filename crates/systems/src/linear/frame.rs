@@ -28,7 +28,7 @@ pub struct Frame {
 impl Frame {
     pub fn new(system: &System) -> Self {
         let rigid = system.rigid_modes();
-        let kept = (0..system.size()).filter(|i| rigid.iter().all(|(own, _)| own != i)).collect();
+        let kept = (0..system.size()).filter(|i| rigid.iter().all(|(index, _)| index != i)).collect();
         Frame { rigid, kept }
     }
 
@@ -40,7 +40,7 @@ impl Frame {
     /// The momentum that starts column `k`: the rows of its entries that are not 0.
     pub fn momentum(&self, k: usize) -> Vec<(usize, Rational)> {
         let i = self.kept[k];
-        let rest = self.rigid.iter().map(|(own, n)| (*own, -n[i].clone()));
+        let rest = self.rigid.iter().map(|(index, n)| (*index, -n[i].clone()));
         std::iter::once((i, Rational::one())).chain(rest).collect()
     }
 
@@ -56,10 +56,10 @@ impl Frame {
         let factor = S::from_rational(c);
         for (a, &i) in self.kept.iter().enumerate() {
             let factors: Vec<_> =
-                self.rigid.iter().map(|(own, n)| (*own, S::from_rational(&(c * &n[i])))).collect();
+                self.rigid.iter().map(|(index, n)| (*index, S::from_rational(&(c * &n[i])))).collect();
             for j in 0..x.ncols() {
                 let mut entry = S::product(&factor, &x[(i, j)]);
-                factors.iter().for_each(|(own, n)| entry.sub_product(n, &x[(*own, j)]));
+                factors.iter().for_each(|(index, n)| entry.sub_product(n, &x[(*index, j)]));
                 y[(a, j)] = entry;
             }
         }

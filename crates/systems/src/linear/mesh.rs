@@ -81,7 +81,8 @@ impl Mesh {
             return Err(Error::input(&format!("mesh.nodes[{node}]"), "no mass", remedy));
         }
         let masses: Vec<_> = moving.iter().map(|(node, _)| masses[*node].clone()).collect();
-        let potentials = clocks.into_iter().map(|(step, own)| Potential::new(own, step.clone())).collect();
+        let potentials =
+            clocks.into_iter().map(|(step, symmetric)| Potential::new(symmetric, step.clone())).collect();
         Ok((System::new(Symmetric::diagonal(&masses), potentials)?, moving))
     }
 

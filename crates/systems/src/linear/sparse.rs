@@ -53,15 +53,15 @@ impl Symmetric {
 
     fn rows(&self) -> &[BTreeMap<usize, Rational>] {
         self.entries.rows.get_or_init(|| {
-            let (own, c) = self.entries.multiple.as_ref().expect("rows or what they are a multiple of");
+            let (symmetric, c) = self.entries.multiple.as_ref().expect("rows or what they are a multiple of");
             let scaled = |row: &BTreeMap<usize, Rational>| row.iter().map(|(&j, x)| (j, x * c)).collect();
-            own.rows().iter().map(scaled).collect()
+            symmetric.rows().iter().map(scaled).collect()
         })
     }
 
     /// Rows whose entries are those of the matrix but for a factor that is not 0.
     fn pattern(&self) -> &[BTreeMap<usize, Rational>] {
-        self.entries.multiple.as_ref().map_or_else(|| self.rows(), |(own, _)| own.rows())
+        self.entries.multiple.as_ref().map_or_else(|| self.rows(), |(symmetric, _)| symmetric.rows())
     }
 
     /// To be changed.
@@ -148,8 +148,8 @@ impl Symmetric {
 
     /// Adds the other matrix of the same size.
     pub fn add_all(&mut self, other: &Symmetric) {
-        for (own, row) in self.rows_mut().iter_mut().zip(other.rows()) {
-            row.iter().for_each(|(&j, x)| add(own, j, x));
+        for (table, row) in self.rows_mut().iter_mut().zip(other.rows()) {
+            row.iter().for_each(|(&j, x)| add(table, j, x));
         }
     }
 
@@ -159,7 +159,7 @@ impl Symmetric {
             return Symmetric::zero(self.size());
         }
         let multiple = match &self.entries.multiple {
-            Some((own, factor)) => (own.clone(), factor * c),
+            Some((symmetric, factor)) => (symmetric.clone(), factor * c),
             None => (self.clone(), c.clone()),
         };
         let entries = Entries { rows: OnceLock::new(), multiple: Some(multiple), doubles: OnceLock::new() };
@@ -203,8 +203,8 @@ impl Symmetric {
 
     /// The rows and columns in `indices`.
     pub fn restricted(&self, indices: &[usize]) -> Self {
-        if let Some((own, c)) = &self.entries.multiple {
-            return own.restricted(indices).scaled(c);
+        if let Some((symmetric, c)) = &self.entries.multiple {
+            return symmetric.restricted(indices).scaled(c);
         }
         let place: BTreeMap<usize, usize> =
             indices.iter().enumerate().map(|(new, &old)| (old, new)).collect();
@@ -292,8 +292,8 @@ impl Symmetric {
 
     /// The rows that are not 0, c times each entry, rounded once.
     pub(crate) fn rounded_products(&self, c: &Rational) -> Vec<(usize, Vec<(usize, f64)>)> {
-        if let Some((own, factor)) = &self.entries.multiple {
-            return own.rounded_products(&(factor * c));
+        if let Some((symmetric, factor)) = &self.entries.multiple {
+            return symmetric.rounded_products(&(factor * c));
         }
         let factor = Twofold::from_rational(c);
         let rows = self.rows().iter().zip(self.doubles()).enumerate();
@@ -363,14 +363,14 @@ pub(crate) fn is_sum_semidefinite(parts: &[&Symmetric], sum: impl FnOnce() -> Sy
 /// entries a row): there exact elimination fills in little and costs less.
 pub(crate) fn inertia_of_sum(parts: &[&Symmetric]) -> Inertia {
     const SMALL: usize = 64;
-    let n = parts.first().map_or(0, |own| own.size());
-    let entries: usize = parts.iter().flat_map(|own| own.pattern()).map(BTreeMap::len).sum();
+    let n = parts.first().map_or(0, |symmetric| symmetric.size());
+    let entries: usize = parts.iter().flat_map(|part| part.pattern()).map(BTreeMap::len).sum();
     let unknown = Inertia { unknown: n, ..Inertia::default() };
     if n > SMALL && entries < 5 * n {
         return unknown;
     }
     let (mut sum, mut size) = (Mat::<f64>::zeros(n, n), 0.0);
-    for rounded in parts.iter().map(|own| own.rounded()) {
+    for rounded in parts.iter().map(|part| part.rounded()) {
         sum += &rounded;
         size += norm::frobenius(&rounded);
     }

@@ -92,7 +92,8 @@ impl System {
 
     /// The stiffnesses whose common null vectors are the rigid motions.
     pub fn holding(&self) -> impl Iterator<Item = &Symmetric> {
-        let potentials = self.potentials.iter().filter(|_| self.holding.is_none()).map(|own| &own.stiffness);
+        let potentials =
+            self.potentials.iter().filter(|_| self.holding.is_none()).map(|potential| &potential.stiffness);
         self.holding.iter().flatten().chain(potentials)
     }
 
@@ -119,7 +120,7 @@ impl System {
 
     /// The steps of the potentials as they were given.
     pub fn steps(&self) -> Vec<Rational> {
-        self.potentials.iter().map(|own| own.step.clone()).collect()
+        self.potentials.iter().map(|potential| potential.step.clone()).collect()
     }
 
     /// This system with all stiffnesses times a factor, and all steps times another one.
@@ -127,10 +128,14 @@ impl System {
     /// # Errors
     /// As [`System::new`].
     pub fn with(&self, stiffer: &Rational, slower: &Rational) -> Result<System> {
-        let changed = |own: &Potential| Potential {
-            stiffness: if stiffer.is_one() { own.stiffness.clone() } else { own.stiffness.scaled(stiffer) },
-            step: &own.step * slower,
-            phase: own.phase.clone(),
+        let changed = |potential: &Potential| Potential {
+            stiffness: if stiffer.is_one() {
+                potential.stiffness.clone()
+            } else {
+                potential.stiffness.scaled(stiffer)
+            },
+            step: &potential.step * slower,
+            phase: potential.phase.clone(),
         };
         let (mass, potentials) = (self.mass.clone(), self.potentials.iter().map(changed).collect());
         if stiffer.is_zero() || !slower.is_positive() {
@@ -225,7 +230,7 @@ impl System {
     /// The degrees of freedom in `indices` alone; `None` where no potential acts on them.
     pub(crate) fn component(&self, indices: &[usize]) -> Option<System> {
         let part = self.part(indices);
-        let is_held = part.holding().any(|own| !own.is_zero());
+        let is_held = part.holding().any(|symmetric| !symmetric.is_zero());
         is_held.then_some(part)
     }
 
@@ -238,7 +243,8 @@ impl System {
     }
 
     fn mapped(&self, mass: Symmetric, map: impl Fn(&Symmetric) -> Symmetric) -> System {
-        let mapped = |own: &Potential| Potential { stiffness: map(&own.stiffness), ..own.clone() };
+        let mapped =
+            |potential: &Potential| Potential { stiffness: map(&potential.stiffness), ..potential.clone() };
         // A part of a schedule has no longer a period than the whole.
         let part = System::of_checked(mass, self.potentials.iter().map(mapped).collect())
             .expect("a part of a checked system");
@@ -254,15 +260,15 @@ fn column(vectors: &[Vec<Rational>], i: usize) -> Vec<Rational> {
 fn reduced(mut vectors: Vec<Vec<Rational>>, n: usize) -> Vec<(usize, Vec<Rational>)> {
     let mut pivots = Vec::new();
     for k in 0..vectors.len() {
-        let own = (0..n).rev().find(|&i| !vectors[k][i].is_zero()).expect("independent vectors");
-        let inverse = vectors[k][own].recip();
+        let index = (0..n).rev().find(|&i| !vectors[k][i].is_zero()).expect("independent vectors");
+        let inverse = vectors[k][index].recip();
         vectors[k].iter_mut().for_each(|x| *x *= &inverse);
         let pivot = vectors[k].clone();
         for (_, other) in vectors.iter_mut().enumerate().filter(|(j, _)| *j != k) {
-            let factor = other[own].clone();
+            let factor = other[index].clone();
             other.iter_mut().zip(&pivot).for_each(|(x, y)| *x -= &factor * y);
         }
-        pivots.push(own);
+        pivots.push(index);
     }
     pivots.into_iter().zip(vectors).collect()
 }

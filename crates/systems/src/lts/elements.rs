@@ -38,7 +38,7 @@ impl ElementSteps {
         SchemeSummary {
             scheme: Scheme::Avi,
             size: self.size,
-            levels: self.levels.iter().map(|own| (own.fine.len(), own.substeps)).collect(),
+            levels: self.levels.iter().map(|level| (level.fine.len(), level.substeps)).collect(),
             plain_limit: plain_limit(&self.clocks),
             first_unstable: None,
         }

@@ -48,10 +48,10 @@ impl LocalSteps {
     /// The cost of these, in products of machine words.
     pub fn cost(&self) -> f64 {
         let part = |dofs: &Vec<usize>| {
-            let own = self.part(dofs);
-            let (n, degree) = (own.size() as f64, own.degree() as f64);
+            let local_steps = self.part(dofs);
+            let (n, degree) = (local_steps.size() as f64, local_steps.degree() as f64);
             let words = degree + 16.0;
-            WORDS * (degree + 1.0) * (own.size() as f64).powi(3) / 3.0
+            WORDS * (degree + 1.0) * (local_steps.size() as f64).powi(3) / 3.0
                 + 100.0 * degree * degree / 2.0 * words
                 + n
         };
@@ -83,8 +83,8 @@ impl LocalSteps {
         }
         let polynomials: Vec<_> = polynomials
             .iter()
-            .filter(|own| own.degree().is_some_and(|n| n > 0))
-            .map(|own| whole(own, &square))
+            .filter(|polynomial| polynomial.degree().is_some_and(|n| n > 0))
+            .map(|polynomial| whole(polynomial, &square))
             .collect();
         let gaps = gaps_of(&polynomials, (0.0, top), &|x| x * x / &square)?;
         Ok(gaps.into_iter().filter(|gap| gap.lo < hi && lo < gap.hi).collect())
@@ -99,10 +99,10 @@ impl LocalSteps {
             let effective = self.effective(&x);
             let mut other = effective.scaled(&-x);
             other.add_all(&mass);
-            Ok([effective, other].map(|own| determinant(&own.congruent(&complement))))
+            Ok([effective, other].map(|symmetric| determinant(&symmetric.congruent(&complement))))
         };
         let values: Vec<[Rational; 2]> = try_map(&(1..=self.degree() + 1).collect::<Vec<_>>(), values)?;
-        Ok([0, 1].map(|k| interpolated(values.iter().map(|own| own[k].clone()).collect())))
+        Ok([0, 1].map(|k| interpolated(values.iter().map(|values| values[k].clone()).collect())))
     }
 }
 

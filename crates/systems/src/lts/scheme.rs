@@ -50,7 +50,7 @@ impl std::str::FromStr for Scheme {
     /// # Errors
     /// Another name.
     fn from_str(name: &str) -> Result<Scheme> {
-        let found = Scheme::ALL.into_iter().find(|own| own.name() == name);
+        let found = Scheme::ALL.into_iter().find(|scheme| scheme.name() == name);
         found.ok_or_else(|| {
             let remedy = "name lts (leapfrog with local time steps) or avi (a clock for each element)";
             Error::input("scheme", name, remedy)
@@ -96,7 +96,7 @@ impl Level {
 
     /// The substeps in a step of the whole of one degree of freedom, or of one element.
     pub(crate) fn substeps_of(levels: &[Level], i: usize) -> u32 {
-        levels.iter().filter(|own| own.fine.contains(&i)).map(|own| own.substeps).product()
+        levels.iter().filter(|level| level.fine.contains(&i)).map(|level| level.substeps).product()
     }
 
     /// As [`Level::check`], of a system of one clock without a phase and with lumped masses.
@@ -259,10 +259,10 @@ fn effective(plain: &System, levels: &[Level], square: &Rational) -> Symmetric {
     let substeps_of_all: Rational = levels.iter().map(substeps_of).product();
     let half = Rational::new(1.into(), 2.into());
     let finest = stiffness.scaled(&(square * half / (&substeps_of_all * &substeps_of_all)));
-    let stiffness = levels.iter().rev().fold(finest, |own, level| {
+    let stiffness = levels.iter().rev().fold(finest, |symmetric, level| {
         let weight = |i| if level.fine.contains(&i) { mass.get(i, i).recip() } else { Rational::zero() };
         let weights: Vec<_> = (0..mass.size()).map(weight).collect();
-        substeps(&own, &weights, level.substeps)
+        substeps(&symmetric, &weights, level.substeps)
     });
     stiffness.scaled(&(ratio(2, 1) / square))
 }
@@ -283,7 +283,7 @@ fn work(plain: &System, levels: &[Level]) -> f64 {
 
 /// W_p(1 − S P M⁻¹) S, `weights` the diagonal of P M⁻¹: all polynomials in S P M⁻¹ times S are symmetric. Those of k and k + 1 substeps become those
 /// of 2k and 2k + 1 or 2k + 2 by T_2k = 2 T_k² − 1 and T_2k+1 = 2 T_k T_k+1 − T_1: p substeps take 2 log₂ p products, whose numbers are p times as long.
-fn substeps(own: &Symmetric, weights: &[Rational], substeps: u32) -> Symmetric {
+fn substeps(symmetric: &Symmetric, weights: &[Rational], substeps: u32) -> Symmetric {
     let [two, minus, minus_two] = [2, -1, -2].map(|n| ratio(n, 1));
     // 1 − T_a+b plus 1 − T_a−b of those of a and b.
     let sum = |a: &Symmetric, b: &Symmetric| {
@@ -292,11 +292,11 @@ fn substeps(own: &Symmetric, weights: &[Rational], substeps: u32) -> Symmetric {
         sum.add_all(&b.scaled(&two));
         sum
     };
-    let (mut now, mut next) = (Symmetric::zero(own.size()), own.clone());
+    let (mut now, mut next) = (Symmetric::zero(symmetric.size()), symmetric.clone());
     for bit in (0..u32::BITS - substeps.leading_zeros()).rev() {
         let between = || {
             let mut between = sum(&now, &next);
-            between.add_all(&own.scaled(&minus));
+            between.add_all(&symmetric.scaled(&minus));
             between
         };
         (now, next) = match (substeps >> bit & 1, bit) {

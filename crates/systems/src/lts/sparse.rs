@@ -112,14 +112,14 @@ impl SparseSteps {
         let weighted: Vec<_> = given.iter().map(|&(i, j, x)| (i, j, x / (roots[i] * roots[j]))).collect();
         let whole = Sparse::symmetric(n, &weighted);
         let plain = whole.block(0..n)?;
-        let fine = levels.first().filter(|own| !own.fine.is_empty());
-        let fine = fine.map(|own| whole.block(own.fine.iter().copied())).transpose()?;
+        let fine = levels.first().filter(|levels| !levels.fine.is_empty());
+        let fine = fine.map(|fine| whole.block(fine.fine.iter().copied())).transpose()?;
         let coefficients = effective(whole, &levels);
         let triplets: Vec<_> = coefficients.iter().map(Sparse::lower).collect();
         let (pattern, values) = Pattern::of_all(n, &triplets.iter().map(Vec::as_slice).collect::<Vec<_>>())?;
-        let term = |(values, own): (Vec<f64>, &Sparse)| {
+        let term = |(values, sparse): (Vec<f64>, &Sparse)| {
             // The lower triangle stands for both: sums of rows and of columns.
-            Term { size: pattern.size_of(&values).0, values, error: 2.0 * own.error }
+            Term { size: pattern.size_of(&values).0, values, error: 2.0 * sparse.error }
         };
         let terms = values.into_iter().zip(&coefficients).map(term).collect();
         let given = (n <= SMALL).then(|| (masses.to_vec(), given.into_boxed_slice()));
@@ -153,8 +153,8 @@ impl SparseSteps {
 
     /// A y = M^-½ K M^-½ y, rounded.
     pub fn pull(&self, y: &[f64]) -> Vec<f64> {
-        let own = &self.plain;
-        own.pattern.times(&own.values, &Mat::from_fn(y.len(), 1, |i, _| y[i])).col_as_slice(0).to_vec()
+        let block = &self.plain;
+        block.pattern.times(&block.values, &Mat::from_fn(y.len(), 1, |i, _| y[i])).col_as_slice(0).to_vec()
     }
 
     /// Rigid motions that are set apart: 0 or 1.
@@ -171,10 +171,10 @@ impl SparseSteps {
     pub fn exactly(&self, step: &Rational) -> Option<Result<LocalSteps>> {
         let (masses, stiffness) = self.given.as_ref()?;
         let exact = |x: f64| from_f64_exact(x).expect("finite");
-        let mut own = Symmetric::zero(self.size());
-        stiffness.iter().for_each(|&(i, j, x)| own.add(i, j, &exact(x)));
+        let mut symmetric = Symmetric::zero(self.size());
+        stiffness.iter().for_each(|&(i, j, x)| symmetric.add(i, j, &exact(x)));
         let mass = Symmetric::diagonal(&masses.iter().map(|&m| exact(m)).collect::<Vec<_>>());
-        let plain = System::new(mass, vec![Potential::new(own, step.clone())]);
+        let plain = System::new(mass, vec![Potential::new(symmetric, step.clone())]);
         Some(plain.and_then(|plain| LocalSteps::new(plain, self.levels.clone())))
     }
 
@@ -224,14 +224,14 @@ impl SparseSteps {
         let off = off + 3.1 * (norm::frobenius(&image) + rounding);
         let mut tau = 1.1 * off;
         for _ in 0..TRIES {
-            let Some((count, own)) = self.pattern.negative(tau, &terms) else { return Holds::NotTold };
-            if tau > 1.01 * (own + off) {
+            let Some((count, value)) = self.pattern.negative(tau, &terms) else { return Holds::NotTold };
+            if tau > 1.01 * (value + off) {
                 if count <= self.rigid.ncols() {
                     return Holds::Stable;
                 }
                 break;
             }
-            tau = 1.1 * (own + off);
+            tau = 1.1 * (value + off);
         }
         self.unstable_along(values, 1.0, off, 0.0)
     }
@@ -248,15 +248,16 @@ impl SparseSteps {
         let above = self.beyond(&values, off, (-1.0, 4.0), true);
         let below = self.beyond(&values, off, (1.0, 0.0), true);
         let is_above =
-            below.as_ref().is_none_or(|below| above.as_ref().is_some_and(|own| own.hi >= below.hi));
-        let (own, other, end) =
+            below.as_ref().is_none_or(|below| above.as_ref().is_some_and(|above| above.hi >= below.hi));
+        let (beyond, other, end) =
             if is_above { (above?, below, (1.0, 0.0)) } else { (below?, above, (-1.0, 4.0)) };
-        let (lo, hi) = other.as_ref().map_or((own.lo, own.hi), |other| (own.lo.max(other.lo), own.hi));
+        let (lo, hi) =
+            other.as_ref().map_or((beyond.lo, beyond.hi), |other| (beyond.lo.max(other.lo), beyond.hi));
         // Beyond the other end nothing is farther out.
         let is_known = other.is_some() || self.pattern.is_definite(end.1 + hi, &[(end.0, &values)], off);
         // Ten roundings at most.
         let rate = |excess: f64, round: f64| 2.0 * (excess.sqrt() / 2.0).asinh() * (1.0 + round * 10.0 * U);
-        let shape: Vec<f64> = (0..self.size()).map(|i| own.along[(i, 0)] / self.roots[i]).collect();
+        let shape: Vec<f64> = (0..self.size()).map(|i| beyond.along[(i, 0)] / self.roots[i]).collect();
         let longest = shape.iter().fold(0.0, |most: f64, x| if x.abs() > most.abs() { *x } else { most });
         is_known.then(|| Growth {
             excess: (lo, hi),
@@ -273,13 +274,13 @@ impl SparseSteps {
         let factors = |by: f64| self.pattern.factored(c + by, &[(a, values)], off);
         let rooms = std::iter::successors(Some(LEAST * size), |by| Some(16.0 * by))
             .take_while(|&by| by < 32.0 * size);
-        let (mut hi, mut own) = rooms.into_iter().find_map(|by| Some((by, factors(by)?)))?;
+        let (mut hi, mut factors) = rooms.into_iter().find_map(|by| Some((by, factors(by)?)))?;
         let (begin, mut lo) = (start(self.size()), f64::MIN);
         let mut x = Mat::from_fn(self.size(), 1, |i, _| begin[i]);
         // Sums of n products each, of |x|ᵀ|f||x| ≤ ‖f‖.
         let rounding = 1.02 * (n + 8.0) * U;
         for _ in 0..MOST_ROUNDS {
-            x = own.iterated(x, &self.rigid, ROUNDS)?;
+            x = factors.iterated(x, &self.rigid, ROUNDS)?;
             let (square, form) =
                 (x.squared_norm_l2(), (x.transpose() * self.pattern.times(values, &x))[(0, 0)]);
             let least = -(c * square + a * form) - 1.01 * square * (off + rounding * (size + c));
@@ -292,7 +293,7 @@ impl SparseSteps {
             let nearer =
                 if lo > 0.0 { [lo * (1.0 + SHARP / 2.0), (lo * hi).sqrt()] } else { [hi / 8.0, hi / 2.0] };
             if let Some((by, next)) = nearer.into_iter().find_map(|by| Some((by, factors(by)?))) {
-                (hi, own) = (by, next);
+                (hi, factors) = (by, next);
             }
         }
         (lo > 0.0).then_some(Beyond { lo, hi, along: x })
@@ -341,7 +342,7 @@ impl SparseSteps {
         SchemeSummary {
             scheme: Scheme::Lts,
             size: self.size(),
-            levels: self.levels.iter().map(|own| (own.fine.len(), own.substeps)).collect(),
+            levels: self.levels.iter().map(|level| (level.fine.len(), level.substeps)).collect(),
             plain_limit: self.plain_limit(),
             first_unstable: self.first_unstable(),
         }
@@ -387,7 +388,7 @@ fn rigid(stiffness: &Triplets, roots: &[f64]) -> (Mat<f64>, f64) {
     }
     let rows = || sums.iter().zip(&sizes).map(|(sum, size): (&f64, &f64)| (sum.abs(), *size));
     let is_rigid = rows().zip(&counts).all(|((sum, size), count)| sum <= RIGID * count * size);
-    let largest = rows().filter(|own| own.1 > 0.0).map(|(sum, size)| sum / size).fold(0.0, f64::max);
+    let largest = rows().filter(|pair| pair.1 > 0.0).map(|(sum, size)| sum / size).fold(0.0, f64::max);
     let length = roots.iter().map(|x| x * x).sum::<f64>().sqrt();
     (Mat::from_fn(n, usize::from(is_rigid), |i, _| roots[i] / length), largest)
 }
@@ -395,33 +396,33 @@ fn rigid(stiffness: &Triplets, roots: &[f64]) -> (Mat<f64>, f64) {
 /// C_j of f, j from 1 on.
 fn effective(whole: Sparse, levels: &[Level]) -> Vec<Sparse> {
     let n = whole.size();
-    let all: f64 = levels.iter().map(|own| f64::from(own.substeps)).product();
+    let all: f64 = levels.iter().map(|level| f64::from(level.substeps)).product();
     let finest = vec![whole.scaled(1.0 / (2.0 * all * all))];
-    let found = levels.iter().rev().fold(finest, |own, level| {
+    let found = levels.iter().rev().fold(finest, |sparses, level| {
         let mut is_fine = vec![false; n];
         level.fine.iter().for_each(|&i| is_fine[i] = true);
-        substeps(&own, &is_fine, level.substeps)
+        substeps(&sparses, &is_fine, level.substeps)
     });
-    found.into_iter().map(|own| own.scaled(2.0)).collect()
+    found.into_iter().map(|sparse| sparse.scaled(2.0)).collect()
 }
 
 /// W_p(1 − S P) S as polynomials in dt², lowest first.
-fn substeps(own: &[Sparse], is_fine: &[bool], substeps: u32) -> Vec<Sparse> {
-    let (mut before, mut now): (Vec<Sparse>, Vec<Sparse>) = (Vec::new(), own.to_vec());
+fn substeps(sparses: &[Sparse], is_fine: &[bool], substeps: u32) -> Vec<Sparse> {
+    let (mut before, mut now): (Vec<Sparse>, Vec<Sparse>) = (Vec::new(), sparses.to_vec());
     for _ in 1..substeps {
         let coefficient = |j: usize| {
             let of = |all: &[Sparse]| all.get(j).cloned();
-            let (now_j, own_j, before_j) = (of(&now), of(own), of(&before));
+            let (now_j, own_j, before_j) = (of(&now), of(sparses), of(&before));
             let sums: Vec<(f64, &Sparse)> = [(2.0, &now_j), (2.0, &own_j), (-1.0, &before_j)]
                 .into_iter()
                 .filter_map(|(a, m)| Some((a, m.as_ref()?)))
                 .collect();
             // Places j − 1 stand for dt^2j.
-            let product = |i: usize| Some((-2.0, own.get(i)?, now.get(j.checked_sub(i + 1)?)?));
+            let product = |i: usize| Some((-2.0, sparses.get(i)?, now.get(j.checked_sub(i + 1)?)?));
             let products: Vec<_> = (0..j).filter_map(product).collect();
             Sparse::combined(is_fine, &sums, &products)
         };
-        let next = (0..own.len() + now.len()).map(coefficient).collect();
+        let next = (0..sparses.len() + now.len()).map(coefficient).collect();
         (before, now) = (now, next);
     }
     now
@@ -441,20 +442,20 @@ struct Sparse {
 impl Sparse {
     /// From its lower triangle, weighed with masses: two roots, their product, the quotient.
     fn symmetric(n: usize, lower: &Triplets) -> Sparse {
-        let upper = lower.iter().filter(|own| own.0 != own.1).map(|&(i, j, x)| (j, i, x));
+        let upper = lower.iter().filter(|triple| triple.0 != triple.1).map(|&(i, j, x)| (j, i, x));
         let mut all: Vec<_> = lower.iter().copied().chain(upper).collect();
-        all.sort_by_key(|own| (own.1, own.0));
-        let mut own =
+        all.sort_by_key(|triple| (triple.1, triple.0));
+        let mut sparse =
             Sparse { ends: vec![0; n + 1], rows: Vec::new(), values: Vec::new(), error: 0.0, size: 0.0 };
         for (i, j, x) in all {
-            own.ends[j + 1] += 1;
-            own.rows.push(i);
-            own.values.push(x);
+            sparse.ends[j + 1] += 1;
+            sparse.rows.push(i);
+            sparse.values.push(x);
         }
-        (0..n).for_each(|j| own.ends[j + 1] += own.ends[j]);
-        own.size = own.sums();
-        own.error = 4.1 * U * own.size;
-        own
+        (0..n).for_each(|j| sparse.ends[j + 1] += sparse.ends[j]);
+        sparse.size = sparse.sums();
+        sparse.error = 4.1 * U * sparse.size;
+        sparse
     }
 
     fn size(&self) -> usize {
@@ -486,7 +487,7 @@ impl Sparse {
 
     fn lower(&self) -> Vec<(usize, usize, f64)> {
         (0..self.size())
-            .flat_map(|j| self.column(j).filter(move |own| own.0 >= j).map(move |(i, x)| (i, j, x)))
+            .flat_map(|j| self.column(j).filter(move |pair| pair.0 >= j).map(move |(i, x)| (i, j, x)))
             .collect()
     }
 
@@ -494,24 +495,26 @@ impl Sparse {
     fn block(&self, kept: impl ExactSizeIterator<Item = usize>) -> Result<Block> {
         let (mut place, count) = (vec![usize::MAX; self.size()], kept.len());
         kept.enumerate().for_each(|(new, old)| place[old] = new);
-        let is_kept = |own: &&(usize, usize, f64)| place[own.0] != usize::MAX && place[own.1] != usize::MAX;
+        let is_kept =
+            |triple: &&(usize, usize, f64)| place[triple.0] != usize::MAX && place[triple.1] != usize::MAX;
         let lower = self.lower();
-        let own: Vec<_> = lower.iter().filter(is_kept).map(|&(i, j, x)| (place[i], place[j], x)).collect();
-        let (pattern, [values]) = Pattern::of(count, [&own])?;
+        let triples: Vec<_> =
+            lower.iter().filter(is_kept).map(|&(i, j, x)| (place[i], place[j], x)).collect();
+        let (pattern, [values]) = Pattern::of(count, [&triples])?;
         Ok(Block { pattern, values, error: self.error })
     }
 
     /// Σ a A + Σ b S P B, P on the fine degrees of freedom.
     fn combined(is_fine: &[bool], sums: &[(f64, &Sparse)], products: &[(f64, &Sparse, &Sparse)]) -> Sparse {
         let n = is_fine.len();
-        let mut own = Sparse {
+        let mut sparse = Sparse {
             ends: Vec::with_capacity(n + 1),
             rows: Vec::new(),
             values: Vec::new(),
             error: 0.0,
             size: 0.0,
         };
-        own.ends.push(0);
+        sparse.ends.push(0);
         let (mut sum, mut seen, mut touched) = (vec![0.0; n], vec![usize::MAX; n], Vec::new());
         let mut most = 0;
         for j in 0..n {
@@ -536,12 +539,12 @@ impl Sparse {
             most = most.max(terms);
             touched.sort_unstable();
             for i in touched.drain(..) {
-                own.rows.push(i);
-                own.values.push(sum[i]);
+                sparse.rows.push(i);
+                sparse.values.push(sum[i]);
             }
-            own.ends.push(own.rows.len());
+            sparse.ends.push(sparse.rows.len());
         }
-        own.size = own.sums();
+        sparse.size = sparse.sums();
         // The errors of the parts, and the roundings: two for each product, for the sums as many as terms.
         let carried: f64 = sums.iter().map(|(a, m)| a.abs() * m.error).sum::<f64>()
             + products
@@ -550,8 +553,8 @@ impl Sparse {
                 .sum::<f64>();
         let sizes: f64 = sums.iter().map(|(a, m)| a.abs() * m.size).sum::<f64>()
             + products.iter().map(|(b, s, v)| b.abs() * s.size * v.size).sum::<f64>();
-        own.error = 1.01 * (carried + (most as f64 + 3.0) * U * sizes);
-        own
+        sparse.error = 1.01 * (carried + (most as f64 + 3.0) * U * sizes);
+        sparse
     }
 }
 
@@ -561,7 +564,7 @@ impl LocalSteps {
         SchemeSummary {
             scheme: Scheme::Lts,
             size: self.system().size(),
-            levels: self.levels().iter().map(|own| (own.fine.len(), own.substeps)).collect(),
+            levels: self.levels().iter().map(|level| (level.fine.len(), level.substeps)).collect(),
             plain_limit: self.plain_limit(),
             first_unstable: None,
         }

@@ -87,16 +87,16 @@ impl MeasuredSystem {
         let mut shares: Vec<(Rational, Vec<DMatrix<f64>>)> = Vec::new();
         for (step, stiffness) in given {
             match shares.iter_mut().find(|(other, _)| *other == step) {
-                Some((_, own)) => own.push(stiffness),
+                Some((_, matrixes)) => matrixes.push(stiffness),
                 None => shares.push((step, vec![stiffness])),
             }
         }
-        let sum = |(step, own): &(Rational, Vec<DMatrix<f64>>)| {
-            let (n, m) = own[0].shape();
-            (step.clone(), own.iter().fold(DMatrix::zeros(n, m), |sum, k| sum + k))
+        let sum = |(step, matrixes): &(Rational, Vec<DMatrix<f64>>)| {
+            let (n, m) = matrixes[0].shape();
+            (step.clone(), matrixes.iter().fold(DMatrix::zeros(n, m), |sum, k| sum + k))
         };
         let mut potentials: Vec<(Rational, DMatrix<f64>)> = shares.iter().map(sum).collect();
-        shares.retain(|(_, own)| own.len() > 1);
+        shares.retain(|(_, matrixes)| matrixes.len() > 1);
         potentials.sort_by(|a, b| a.0.cmp(&b.0));
         // The steps, checked as those of any system are.
         let clock = |(step, _): &(Rational, _)| Potential::new(Symmetric::zero(1), step.clone());
@@ -119,20 +119,20 @@ impl MeasuredSystem {
             return Err(Error::input("mass_matrix", "not diagonal", remedy));
         }
         let double = |x: &Rational| {
-            let own = to_f64(x);
+            let value = to_f64(x);
             let error =
                 || Error::input("method", x, "decides in doubles of full precision: choose other units");
-            (own.is_normal() || x.is_zero()).then_some(own).ok_or_else(error)
+            (value.is_normal() || x.is_zero()).then_some(value).ok_or_else(error)
         };
         let masses = (0..n).map(|i| double(&mass.get(i, i))).collect::<Result<_>>()?;
         let dense = |clock: &Potential| {
-            let mut own = DMatrix::zeros(n, n);
+            let mut matrix = DMatrix::zeros(n, n);
             for i in 0..n {
                 for (&j, x) in clock.stiffness.row(i) {
-                    own[(i, j)] = double(x)?;
+                    matrix[(i, j)] = double(x)?;
                 }
             }
-            Ok((clock.step.clone(), own))
+            Ok((clock.step.clone(), matrix))
         };
         let masses: Vec<f64> = masses;
         // Exactly: what is soft beside the roundings of doubles is not rigid.
@@ -184,7 +184,7 @@ impl MeasuredSystem {
     pub fn refuse_method(&self, what: &str) -> Result<()> {
         match self.method {
             Method::Respa => Ok(()),
-            own => Err(Error::input("method", own, format!("{what} is for respa: leave it out"))),
+            method => Err(Error::input("method", method, format!("{what} is for respa: leave it out"))),
         }
     }
 
@@ -211,7 +211,7 @@ impl MeasuredSystem {
     pub(super) fn system(&self) -> &System {
         self.system.get_or_init(|| {
             let masses = self.body.masses.as_ref().filter(|_| !self.body.is_weighted);
-            rational(masses.map_or(&vec![1.0; self.size()], |own| own), &self.potentials)
+            rational(masses.map_or(&vec![1.0; self.size()], |values| values), &self.potentials)
         })
     }
 
@@ -248,8 +248,8 @@ impl MeasuredSystem {
 
     /// Of one potential, too, which is one clock.
     fn decided(&self, outer: &Outer, period: &Rational) -> Result<Analysis> {
-        let own = self.kernel()?.decide(outer, period, self.accuracy);
-        Ok(Analysis { clocks: self.potentials.len(), ..own })
+        let analysis = self.kernel()?.decide(outer, period, self.accuracy);
+        Ok(Analysis { clocks: self.potentials.len(), ..analysis })
     }
 
     /// The verdict that is proven for the doubles given: of two levels in the eigenbasis, where it is known, else at the least cost for this one
@@ -387,17 +387,18 @@ impl MeasuredSystem {
         if self.potentials.len() == 2 && self.is_of_two_levels() {
             return Ok(None);
         }
-        let weighted = |own: &[DMatrix<f64>]| own.iter().map(|k| self.weighted(k)).collect();
-        let clocks: Vec<Vec<DMatrix<f64>>> = self.clocks().map(|(_, own)| weighted(own)).collect();
+        let weighted = |matrixes: &[DMatrix<f64>]| matrixes.iter().map(|k| self.weighted(k)).collect();
+        let clocks: Vec<Vec<DMatrix<f64>>> = self.clocks().map(|(_, matrixes)| weighted(matrixes)).collect();
         let levels = Nested::new(&self.hessians()?, &clocks)?;
         Ok(Some(ManyLevels { levels, body: &self.body, accuracy: self.accuracy }))
     }
 
     /// The stiffnesses as they were given, those of each step together, by increasing step.
     pub(super) fn clocks(&self) -> impl Iterator<Item = (&Rational, &[DMatrix<f64>])> {
-        self.potentials.iter().map(|(step, own)| {
-            let shares = self.shares.iter().find(|(other, _)| other == step).map(|(_, own)| &own[..]);
-            (step, shares.unwrap_or(std::slice::from_ref(own)))
+        self.potentials.iter().map(|(step, matrix)| {
+            let shares =
+                self.shares.iter().find(|(other, _)| other == step).map(|(_, matrixes)| &matrixes[..]);
+            (step, shares.unwrap_or(std::slice::from_ref(matrix)))
         })
     }
 
@@ -417,9 +418,9 @@ impl MeasuredSystem {
     /// The stiffness of the shortest step and the sum of the others, rigid motions and held distances projected out.
     pub(super) fn hessians(&self) -> Result<Hessians> {
         let whole = self.summed_hessians()?;
-        Ok(self.shares.iter().fold(whole, |whole, (step, own)| {
+        Ok(self.shares.iter().fold(whole, |whole, (step, matrixes)| {
             let level = usize::from(*step != self.potentials[0].0);
-            whole.of_shares(level, &own.iter().map(|k| self.weighted(k)).collect::<Vec<_>>())
+            whole.of_shares(level, &matrixes.iter().map(|k| self.weighted(k)).collect::<Vec<_>>())
         }))
     }
 

@@ -66,21 +66,21 @@ impl Model {
     /// gradient, Hessians along an orbit, and sparse stiffnesses, have none: what is returned has their size and their clocks, no more.
     pub fn system(&self) -> &System {
         match self {
-            Model::Rational(own) | Model::Pi(own) | Model::Elements(own, _) => own,
-            Model::Oscillator(own) => &own.rounded,
-            Model::Measured(own) => own.system(),
-            Model::LocalSteps(own) => own.system(),
-            Model::Implicit(own) => own.system(),
-            Model::NoGradient(own) => own.symmetric(),
-            Model::Along(own) => own.clocks(),
-            Model::Sparse(own) => own.system(),
+            Model::Rational(system) | Model::Pi(system) | Model::Elements(system, _) => system,
+            Model::Oscillator(oscillator) => &oscillator.rounded,
+            Model::Measured(measured_system) => measured_system.system(),
+            Model::LocalSteps(local_steps) => local_steps.system(),
+            Model::Implicit(implicit_explicit) => implicit_explicit.system(),
+            Model::NoGradient(jacobians) => jacobians.symmetric(),
+            Model::Along(along) => along.clocks(),
+            Model::Sparse(sparse_system) => sparse_system.system(),
         }
     }
 
     /// The number of degrees of freedom.
     pub fn size(&self) -> usize {
         match self {
-            Model::Measured(own) => own.size(),
+            Model::Measured(measured_system) => measured_system.size(),
             _ => self.system().size(),
         }
     }
@@ -88,10 +88,10 @@ impl Model {
     /// The products of doubles that the verdict costs, roughly, where doubles prove it.
     pub fn cost(&self) -> u64 {
         match self {
-            Model::Measured(own) => own.cost(),
-            Model::NoGradient(own) => own.cost(),
-            Model::Along(own) => own.cost(),
-            Model::Sparse(own) => own.cost(),
+            Model::Measured(measured_system) => measured_system.cost(),
+            Model::NoGradient(jacobians) => jacobians.cost(),
+            Model::Along(along) => along.cost(),
+            Model::Sparse(sparse_system) => sparse_system.cost(),
             _ => verdict_cost(self.system()),
         }
     }
@@ -117,17 +117,17 @@ impl Model {
     /// As [`decide_by`]; a budget error where what would decide exceeds the limits.
     pub fn decide(&self, route: Route, limits: &Limits) -> Result<Analysis> {
         match self {
-            Model::Rational(own) | Model::Elements(own, _) => decide_by(route, own, limits),
+            Model::Rational(system) | Model::Elements(system, _) => decide_by(route, system, limits),
             Model::Pi(_) if route == Route::Exact => Err(self.refused("exact arithmetic")),
-            Model::Pi(own) => decide_around(own, limits),
-            Model::Oscillator(own) => own.decide(limits),
-            Model::Measured(own) => own.decide(route, limits),
-            Model::LocalSteps(own) => decide_by(route, own.system(), limits),
-            Model::Implicit(own) => decide_by(route, own.system(), limits),
-            Model::NoGradient(own) => own.decide(route, limits),
-            Model::Along(own) => own.decide(route, limits),
+            Model::Pi(system) => decide_around(system, limits),
+            Model::Oscillator(oscillator) => oscillator.decide(limits),
+            Model::Measured(measured_system) => measured_system.decide(route, limits),
+            Model::LocalSteps(local_steps) => decide_by(route, local_steps.system(), limits),
+            Model::Implicit(implicit_explicit) => decide_by(route, implicit_explicit.system(), limits),
+            Model::NoGradient(jacobians) => jacobians.decide(route, limits),
+            Model::Along(along) => along.decide(route, limits),
             Model::Sparse(_) if route == Route::Exact => Err(self.refused("exact arithmetic")),
-            Model::Sparse(own) => own.decide(limits),
+            Model::Sparse(sparse_system) => sparse_system.decide(limits),
         }
     }
 
@@ -137,7 +137,7 @@ impl Model {
     /// As [`Model::decide`].
     pub fn at_point(&self, route: Route, limits: &Limits) -> Result<Analysis> {
         match self {
-            Model::Sparse(own) if route == Route::Cheapest => own.at_point(limits),
+            Model::Sparse(sparse_system) if route == Route::Cheapest => sparse_system.at_point(limits),
             _ => self.decide(route, limits),
         }
     }
@@ -148,8 +148,8 @@ impl Model {
     /// As [`Model::decide`].
     pub fn verdict(&self, route: Route, limits: &Limits) -> Result<Holds> {
         match self {
-            Model::Measured(own) if route == Route::Cheapest => own.verdict(limits),
-            Model::Sparse(own) if route == Route::Cheapest => own.verdict(limits),
+            Model::Measured(measured_system) if route == Route::Cheapest => measured_system.verdict(limits),
+            Model::Sparse(sparse_system) if route == Route::Cheapest => sparse_system.verdict(limits),
             _ => Ok(self.decide(route, limits)?.holds()),
         }
     }
@@ -159,7 +159,10 @@ impl Model {
     /// # Errors
     /// As [`Model::decide`].
     pub fn holds(&self, limits: &Limits) -> Result<Holds> {
-        self.measured().map_or_else(|| self.verdict(Route::Cheapest, limits), |own| own.holds(limits))
+        self.measured().map_or_else(
+            || self.verdict(Route::Cheapest, limits),
+            |measured_system| measured_system.holds(limits),
+        )
     }
 
     /// The rational system that moves: of measured stiffnesses without rigid motions and held distances.
@@ -168,7 +171,7 @@ impl Model {
     /// Where measured stiffnesses have another null space than that of rigid motions.
     pub fn moving(&self) -> Result<Cow<'_, System>> {
         match self {
-            Model::Measured(own) => own.moving(),
+            Model::Measured(measured_system) => measured_system.moving(),
             Model::NoGradient(_) | Model::Along(_) | Model::Sparse(_) => {
                 Err(self.refused("varying another number than outer"))
             }
@@ -183,14 +186,16 @@ impl Model {
     /// A budget error, before the work on the part that exceeds it.
     pub fn exact_kind(&self, limits: &Limits) -> Result<Kind> {
         match self {
-            Model::Oscillator(own) => own.exact_kind(limits),
-            Model::Rational(own) | Model::Pi(own) | Model::Elements(own, _) => exact_kind(own, limits),
-            Model::LocalSteps(own) => exact_kind(own.system(), limits),
-            Model::Implicit(own) => exact_kind(own.system(), limits),
-            Model::NoGradient(own) => own.exact(limits).map(|(kind, _)| kind),
-            Model::Along(own) => own.exact(limits).map(|(kind, _)| kind),
+            Model::Oscillator(oscillator) => oscillator.exact_kind(limits),
+            Model::Rational(system) | Model::Pi(system) | Model::Elements(system, _) => {
+                exact_kind(system, limits)
+            }
+            Model::LocalSteps(local_steps) => exact_kind(local_steps.system(), limits),
+            Model::Implicit(implicit_explicit) => exact_kind(implicit_explicit.system(), limits),
+            Model::NoGradient(jacobians) => jacobians.exact(limits).map(|(kind, _)| kind),
+            Model::Along(along) => along.exact(limits).map(|(kind, _)| kind),
             Model::Sparse(_) => Err(self.refused("exact arithmetic")),
-            Model::Measured(own) => exact_kind(own.moving()?.as_ref(), limits),
+            Model::Measured(measured_system) => exact_kind(measured_system.moving()?.as_ref(), limits),
         }
     }
 
@@ -200,7 +205,7 @@ impl Model {
     /// As [`damped_system`]; π in the stiffnesses of several degrees of freedom, irrational steps.
     pub fn friction(&self, rate: &Rational, limits: &Limits) -> Result<Friction> {
         match self {
-            Model::Rational(own) | Model::Elements(own, _) => damped_system(own, rate, limits),
+            Model::Rational(system) | Model::Elements(system, _) => damped_system(system, rate, limits),
             Model::Pi(_) => {
                 let remedy = "with several degrees of freedom write stiffnesses without pi";
                 Err(Error::input("friction", rate, remedy))
@@ -216,8 +221,8 @@ impl Model {
                 Err(Error::input("friction", rate, remedy))
             }
             Model::Along(_) | Model::Sparse(_) => Err(self.refused("friction")),
-            Model::Oscillator(own) => own.friction(rate, limits),
-            Model::Measured(own) => own.friction(rate, limits),
+            Model::Oscillator(oscillator) => oscillator.friction(rate, limits),
+            Model::Measured(measured_system) => measured_system.friction(rate, limits),
         }
     }
 
@@ -249,7 +254,7 @@ impl Model {
     pub fn with_method(self, method: Method) -> Result<Model> {
         let refused = |remedy: &str| Err(Error::input("method", method, remedy));
         match self {
-            Model::Measured(own) => Ok(Model::Measured(own.with_method(method)?)),
+            Model::Measured(measured_system) => Ok(Model::Measured(measured_system.with_method(method)?)),
             Model::Rational(_)
             | Model::Pi(_)
             | Model::Oscillator(_)
@@ -260,13 +265,15 @@ impl Model {
             {
                 Ok(self)
             }
-            Model::Implicit(own) => Model::Rational(own.plain().clone()).with_method(method),
-            Model::Rational(own) if method == Method::ImplicitExplicit => {
-                Ok(Model::Implicit(Box::new(ImplicitExplicit::new(own)?)))
+            Model::Implicit(implicit_explicit) => {
+                Model::Rational(implicit_explicit.plain().clone()).with_method(method)
             }
-            Model::Rational(own) => {
-                two_clocks(&own)?;
-                Ok(Model::Measured(MeasuredSystem::rounded(&own)?.with_method(method)?))
+            Model::Rational(system) if method == Method::ImplicitExplicit => {
+                Ok(Model::Implicit(Box::new(ImplicitExplicit::new(system)?)))
+            }
+            Model::Rational(system) => {
+                two_clocks(&system)?;
+                Ok(Model::Measured(MeasuredSystem::rounded(&system)?.with_method(method)?))
             }
             Model::Pi(_) => refused("is for rational stiffnesses: write them without pi"),
             Model::Oscillator(_) => refused(
@@ -296,42 +303,42 @@ impl Model {
 
     /// The step of two rational levels whose fast force is solved for.
     pub fn implicit(&self) -> Option<&ImplicitExplicit> {
-        if let Model::Implicit(own) = self { Some(own) } else { None }
+        if let Model::Implicit(implicit_explicit) = self { Some(implicit_explicit) } else { None }
     }
 
     /// Jacobians that are not symmetric, where it is made of such.
     pub fn jacobians(&self) -> Option<&Jacobians> {
-        if let Model::NoGradient(own) = self { Some(own) } else { None }
+        if let Model::NoGradient(jacobians) = self { Some(jacobians) } else { None }
     }
 
     /// Hessians along an orbit, where it is made of such.
     pub fn along(&self) -> Option<&Along> {
-        if let Model::Along(own) = self { Some(own) } else { None }
+        if let Model::Along(along) = self { Some(along) } else { None }
     }
 
     /// The summary of local time steps, where some degrees of freedom take substeps: computed when it is asked for, for sparse systems by some
     /// dozen factorizations.
     pub fn local_steps_summary(&self) -> Option<SchemeSummary> {
         match self {
-            Model::LocalSteps(own) => Some(own.summary()),
-            Model::Elements(_, own) => Some(own.summary()),
-            Model::Sparse(own) => own.summary(),
+            Model::LocalSteps(local_steps) => Some(local_steps.summary()),
+            Model::Elements(_, element_steps) => Some(element_steps.summary()),
+            Model::Sparse(sparse_system) => sparse_system.summary(),
             _ => None,
         }
     }
 
     /// The scheme, where some degrees of freedom of a rational system take substeps.
     pub fn local_steps(&self) -> Option<&LocalSteps> {
-        if let Model::LocalSteps(own) = self { Some(own) } else { None }
+        if let Model::LocalSteps(local_steps) = self { Some(local_steps) } else { None }
     }
 
     fn measured(&self) -> Option<&MeasuredSystem> {
-        if let Model::Measured(own) = self { Some(own) } else { None }
+        if let Model::Measured(measured_system) = self { Some(measured_system) } else { None }
     }
 
     /// The measured stiffnesses whose kernel of two levels decides.
     fn levels(&self) -> Option<&MeasuredSystem> {
-        self.measured().filter(|own| own.is_of_two_levels())
+        self.measured().filter(|measured_system| measured_system.is_of_two_levels())
     }
 
     /// Both levels of a system of two measured ones.
@@ -402,18 +409,18 @@ impl Model {
     /// # Errors
     /// As [`Model::decide`]; a budget error before the work.
     pub fn growth_of_period(&self, limits: &Limits) -> Result<Option<f64>> {
-        if let Some(own) = self.along() {
-            limits.allow_dense(own.cost(), || "the full period, kick by kick,".into())?;
-            return Ok(Some(own.growth_of_period()));
+        if let Some(along) = self.along() {
+            limits.allow_dense(along.cost(), || "the full period, kick by kick,".into())?;
+            return Ok(Some(along.growth_of_period()));
         }
-        self.measured().map_or(Ok(None), |own| own.growth_of_period(limits))
+        self.measured().map_or(Ok(None), |measured_system| measured_system.growth_of_period(limits))
     }
 
     /// The system as two clocks on one oscillator, where it is that, without phases.
     pub fn two_clocks(&self) -> Option<propagator::Oscillator> {
         let system = match self {
-            Model::Oscillator(own) => return own.as_two_clocks(),
-            Model::Rational(own) | Model::Elements(own, _) if own.size() == 1 => own,
+            Model::Oscillator(oscillator) => return oscillator.as_two_clocks(),
+            Model::Rational(system) | Model::Elements(system, _) if system.size() == 1 => system,
             _ => return None,
         };
         let [fast, slow] = system.clocks() else { return None };
@@ -429,7 +436,7 @@ impl Model {
     /// All steps, those of potentials of one clock each for itself.
     pub fn steps(&self) -> Vec<Rational> {
         match self {
-            Model::Measured(own) => own.steps(),
+            Model::Measured(measured_system) => measured_system.steps(),
             _ => self.system().steps(),
         }
     }

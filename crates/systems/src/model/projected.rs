@@ -37,23 +37,25 @@ impl MeasuredSystem {
         }
         let motions = self.motions();
         if let Some(held) = held {
-            let columns = motions.as_ref().map_or_else(Mat::new, |(own, _)| own.columns.clone());
+            let columns = motions.as_ref().map_or_else(Mat::new, |(motions, _)| motions.columns.clone());
             let all = |i: usize, j: usize| match j.checked_sub(held.ncols()) {
                 None => held[(i, j)],
                 Some(j) => columns[(i, j)],
             };
             let all = Mat::from_fn(held.nrows(), held.ncols() + columns.ncols(), all);
             let (by, shares) = match &motions {
-                Some((own, particles)) => ("positions and constraints", self.shares_of(own, particles)?),
+                Some((motions, particles)) => {
+                    ("positions and constraints", self.shares_of(motions, particles)?)
+                }
                 None => ("constraints", Shares { each: Vec::new(), total: 0.0 }),
             };
             return Ok(whole.set_apart(&all.qr().compute_thin_Q(), by, shares));
         }
         match motions {
             _ if self.keeps_rigid => Ok(whole),
-            Some((own, particles)) => {
+            Some((motions, particles)) => {
                 let by = if *is_periodic { "periodic box" } else { "positions" };
-                Ok(whole.set_apart(&own.columns, by, self.shares_of(&own, &particles)?))
+                Ok(whole.set_apart(&motions.columns, by, self.shares_of(&motions, &particles)?))
             }
             None => {
                 let found =
@@ -81,8 +83,8 @@ impl MeasuredSystem {
     }
 
     fn given(&self) -> Vec<Given> {
-        let each = |(step, own): (&Rational, &[DMatrix<f64>])| -> Vec<Given> {
-            own.iter().map(|k| Given::new(step.clone(), &self.weighted(k))).collect()
+        let each = |(step, matrixes): (&Rational, &[DMatrix<f64>])| -> Vec<Given> {
+            matrixes.iter().map(|k| Given::new(step.clone(), &self.weighted(k))).collect()
         };
         self.clocks().flat_map(each).collect()
     }
@@ -150,9 +152,9 @@ impl MeasuredSystem {
 
     /// Bᵀ M^-½ K M^-½ B of each stiffness, unit masses.
     fn projected(&self, basis: &Mat<f64>) -> System {
-        let project = |(step, own): (Rational, DMatrix<f64>)| {
-            let n = own.nrows();
-            let image = basis.transpose() * MatRef::from_column_major_slice(own.as_slice(), n, n) * basis;
+        let project = |(step, matrix): (Rational, DMatrix<f64>)| {
+            let n = matrix.nrows();
+            let image = basis.transpose() * MatRef::from_column_major_slice(matrix.as_slice(), n, n) * basis;
             (step, DMatrix::from_fn(image.nrows(), image.ncols(), |i, j| image[(i, j)]))
         };
         let potentials: Vec<_> = self.all_weighted().map(project).collect();
@@ -174,14 +176,15 @@ fn lift(analysis: &mut Analysis, basis: &Mat<f64>) {
     };
     for part in &mut analysis.parts {
         part.dofs = (0..n).collect();
-        for own in &mut part.instabilities {
-            (own.shape, own.quadrature) = (up(&own.shape), up(&own.quadrature));
-            own.normalize();
+        for instability in &mut part.instabilities {
+            (instability.shape, instability.quadrature) =
+                (up(&instability.shape), up(&instability.quadrature));
+            instability.normalize();
         }
     }
     for rigid in &mut analysis.rigid_modes {
-        let own = up(&rigid.iter().map(to_f64).collect::<Vec<_>>());
-        *rigid = own.into_iter().map(|x| from_f64_exact(x).expect("finite")).collect();
+        let values = up(&rigid.iter().map(to_f64).collect::<Vec<_>>());
+        *rigid = values.into_iter().map(|x| from_f64_exact(x).expect("finite")).collect();
     }
     analysis.size = n;
 }

@@ -130,7 +130,7 @@ impl SparseSystem {
     /// Where it has local time steps.
     pub fn local_steps(&self) -> Option<&SparseSteps> {
         match &self.of {
-            Of::Steps(own) => Some(own),
+            Of::Steps(sparse_steps) => Some(sparse_steps),
             _ => None,
         }
     }
@@ -139,7 +139,7 @@ impl SparseSystem {
     pub(super) fn summary(&self) -> Option<SchemeSummary> {
         match &self.of {
             Of::Levels { .. } => None,
-            Of::Steps(own) => Some(own.summary()),
+            Of::Steps(sparse_steps) => Some(sparse_steps.summary()),
         }
     }
 
@@ -173,8 +173,8 @@ impl SparseSystem {
 
     /// Takes over the accuracy of two other levels.
     pub fn follow(&mut self, other: &SparseSystem) {
-        if let (Of::Levels { accuracy, .. }, Of::Levels { accuracy: own, .. }) = (&mut self.of, &other.of) {
-            *accuracy = *own;
+        if let (Of::Levels { accuracy, .. }, Of::Levels { accuracy: value, .. }) = (&mut self.of, &other.of) {
+            *accuracy = *value;
         }
     }
 
@@ -193,7 +193,7 @@ impl SparseSystem {
     pub(super) fn cost(&self) -> u64 {
         let products = match &self.of {
             Of::Levels { levels, .. } => OF_LEVELS * levels.products(),
-            Of::Steps(own) => FACTORIZATIONS * own.products(),
+            Of::Steps(sparse_steps) => FACTORIZATIONS * sparse_steps.products(),
         };
         (products / FASTER).min(1e19) as u64
     }
@@ -207,7 +207,7 @@ impl SparseSystem {
         self.allow(limits)?;
         let (levels, outer, accuracy, removed) = match &self.of {
             Of::Levels { levels, outer, accuracy, removed } => (levels, outer, *accuracy, removed),
-            Of::Steps(own) => return self.of_steps(own, limits),
+            Of::Steps(sparse_steps) => return self.of_steps(sparse_steps, limits),
         };
         levels.look(outer.inner_steps());
         let margin = if levels.is_unstable(outer, 0.0) { None } else { levels.margin(outer) };
@@ -253,20 +253,20 @@ impl SparseSystem {
         self.allow(limits)?;
         Ok(match &self.of {
             Of::Levels { levels, outer, .. } => levels.verdict(outer, 0.0),
-            Of::Steps(own) => own.verdict(to_f64(&self.step)),
+            Of::Steps(sparse_steps) => sparse_steps.verdict(to_f64(&self.step)),
         })
     }
 
     /// The verdict on local time steps, and what grows fastest.
-    fn of_steps(&self, own: &SparseSteps, limits: &Limits) -> Result<Analysis> {
+    fn of_steps(&self, sparse_steps: &SparseSteps, limits: &Limits) -> Result<Analysis> {
         let (dt, period) = (to_f64(&self.step), Laurent::from_rational(self.step.clone()));
-        let verdict = own.verdict(dt);
+        let verdict = sparse_steps.verdict(dt);
         if verdict == Holds::NotTold
-            && let Some(found) = self.exactly(own, limits)?
+            && let Some(found) = self.exactly(sparse_steps, limits)?
         {
             return Ok(found);
         }
-        let growth = if verdict == Holds::Unstable { own.growth(dt) } else { None };
+        let growth = if verdict == Holds::Unstable { sparse_steps.growth(dt) } else { None };
         let largest = growth.as_ref().map(|growth| growth.rate);
         let growing = growth.map(|growth| {
             let Growth { excess: (lo, hi), rate, is_above, shape } = growth;
@@ -285,13 +285,14 @@ impl SparseSystem {
                 resonance: None,
             }
         });
-        let (multipliers, instabilities) = growing.map(|own| (own.multiplier, own)).into_iter().unzip();
-        let part = Part::new(own.size(), period, decided(verdict), (multipliers, instabilities));
+        let (multipliers, instabilities) =
+            growing.map(|growing| (growing.multiplier, growing)).into_iter().unzip();
+        let part = Part::new(sparse_steps.size(), period, decided(verdict), (multipliers, instabilities));
         let mut notes = vec![FASTEST.into()];
-        if own.rigid_motions() > 0 {
+        if sparse_steps.rigid_motions() > 0 {
             notes.push(TOGETHER.into());
         }
-        notes.extend(own.nearly_free().filter(|_| verdict == Holds::NotTold).map(|sums| {
+        notes.extend(sparse_steps.nearly_free().filter(|_| verdict == Holds::NotTold).map(|sums| {
             format!(
                 "the rows of the stiffness sum to nearly 0 ({sums:.0e} of their entries): all together are neither clearly free nor clearly held, and \
                  nothing is proven; assemble it so that they sum to 0 to rounding, or hold a node"
@@ -301,8 +302,8 @@ impl SparseSystem {
     }
 
     /// What exact arithmetic tells of a small one, where doubles tell nothing; `None` where that is too much.
-    fn exactly(&self, own: &SparseSteps, limits: &Limits) -> Result<Option<Analysis>> {
-        let Some(Ok(exact)) = own.exactly(&self.step) else { return Ok(None) };
+    fn exactly(&self, sparse_steps: &SparseSteps, limits: &Limits) -> Result<Option<Analysis>> {
+        let Some(Ok(exact)) = sparse_steps.exactly(&self.step) else { return Ok(None) };
         match decide_by(Route::Cheapest, exact.system(), limits) {
             // What the effective stiffness leaves free at this step and K holds is not rigid.
             Ok(found) if found.rigid_modes.len() != exact.plain().rigid_modes().len() => Ok(None),

@@ -63,13 +63,14 @@ pub fn is_stable(system: &System, frame: &Frame) -> Option<bool> {
 /// Whether counts of negative eigenvalues prove a real multiplier off the circle.
 fn has_real_unstable_mode(system: &System, frame: &Frame) -> bool {
     // J_hh and J_hf must be regular: the signs of all their eigenvalues are known.
-    let are_regular = |own: &Counts| {
-        let is_sharp =
-            |held| own.count(held, Bound::Least).is_some_and(|a| own.count(held, Bound::Most) == Some(a));
+    let are_regular = |counts: &Counts| {
+        let is_sharp = |held| {
+            counts.count(held, Bound::Least).is_some_and(|a| counts.count(held, Bound::Most) == Some(a))
+        };
         [Held::Both, Held::Start].into_iter().all(is_sharp)
     };
     let n = frame.rigid.is_empty().then_some(system.size());
-    Counts::new(system).is_some_and(|own| differ([&own, &own], n) && are_regular(&own))
+    Counts::new(system).is_some_and(|new| differ([&new, &new], n) && are_regular(&new))
 }
 
 /// Bounds on the number of negative eigenvalues of the action for each pair of ends, each computed when it is first asked for.
@@ -139,7 +140,8 @@ pub(crate) fn is_total_definite(system: &System, frame: &Frame) -> bool {
     let lower = entries.filter(|(i, j, _)| j <= i);
     let terms: Vec<_> =
         lower.filter_map(|(i, j, x)| Some((order[place[i]], order[*place.get(j)?], to_f64(x)))).collect();
-    assembled(place.len(), &terms, place.len()).and_then(|own| own.sign(1, 1)) == Some(Sign::Positive)
+    assembled(place.len(), &terms, place.len()).and_then(|assembled| assembled.sign(1, 1))
+        == Some(Sign::Positive)
 }
 
 /// Where each item stands in an order.
@@ -179,9 +181,9 @@ impl Action {
         for (i, row) in program.kicks.iter().flat_map(|kick| &kick.rows) {
             graph[*i].extend(row.iter().map(|(j, _)| *j).filter(|j| j != i));
         }
-        graph.iter_mut().for_each(|own| {
-            own.sort_unstable();
-            own.dedup();
+        graph.iter_mut().for_each(|indexes| {
+            indexes.sort_unstable();
+            indexes.dedup();
         });
         let order = narrow(&graph);
         let place = positions(&order);
@@ -207,7 +209,7 @@ impl Action {
             }
         }
         let end = system.schedule().period() / 2;
-        times.iter_mut().filter(|own| own.last() != Some(&end)).for_each(|own| own.push(end));
+        times.iter_mut().filter(|time| time.last() != Some(&end)).for_each(|time| time.push(end));
         let masses: Vec<f64> = order.iter().map(|&i| to_f64(&system.mass().get(i, i))).collect();
         // Below the smallest normal double nothing is within a rounding.
         let entries = kicks.iter().flatten().flat_map(|(_, row)| row).map(|(_, x)| x);
@@ -221,16 +223,16 @@ impl Action {
         let is_free = |time: &u64| !(held.start() && *time == 0 || held.end() && Some(time) == end);
         // The first unknown of each degree of freedom; free nodes are neighbours in time.
         let mut begin = vec![0];
-        for own in &self.times {
-            begin.push(begin[begin.len() - 1] + own.iter().filter(|time| is_free(time)).count());
+        for counts in &self.times {
+            begin.push(begin[begin.len() - 1] + counts.iter().filter(|time| is_free(time)).count());
         }
         let unknown = |i: usize, time: u64| {
             let k = self.times[i].binary_search(&time).ok().filter(|_| is_free(&time))?;
             Some(begin[i] + k - usize::from(held.start()))
         };
         let mut terms = Vec::new();
-        for (i, own) in self.times.iter().enumerate() {
-            for ends in own.windows(2) {
+        for (i, counts) in self.times.iter().enumerate() {
+            for ends in counts.windows(2) {
                 let x = self.masses[i] / (ends[1] - ends[0]) as f64;
                 let nodes = [unknown(i, ends[0]), unknown(i, ends[1])];
                 terms.extend(nodes.iter().flatten().map(|&a| (a, a, x)));
@@ -243,8 +245,8 @@ impl Action {
             let weight = -weight.share();
             for (i, row) in clocks.iter().flat_map(|&clock| &self.kicks[clock]) {
                 let Some(a) = unknown(*i, *time) else { continue };
-                let own = row.iter().filter(|(j, _)| j <= i);
-                terms.extend(own.filter_map(|(j, x)| Some((a, unknown(*j, *time)?, weight * x))));
+                let filter = row.iter().filter(|(j, _)| j <= i);
+                terms.extend(filter.filter_map(|(j, x)| Some((a, unknown(*j, *time)?, weight * x))));
             }
         }
         // Neighbours close together, the times of each in order; or time by time, where most are neighbours.

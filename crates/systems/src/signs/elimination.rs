@@ -52,7 +52,7 @@ fn bareiss([a, b, c, d]: [&BigInt; 4], last: &BigInt) -> BigInt {
 fn bring_pivot(m: &mut DMatrix<BigInt>, k: usize) -> bool {
     let n = m.nrows();
     let shortest = (k..n).filter(|&i| !m[(i, i)].is_zero()).min_by_key(|&i| m[(i, i)].bits());
-    let own = match shortest {
+    let index = match shortest {
         Some(i) => i,
         None => {
             let mut pairs = (k..n).flat_map(|i| (k..i).map(move |j| (i, j)));
@@ -68,8 +68,8 @@ fn bring_pivot(m: &mut DMatrix<BigInt>, k: usize) -> bool {
             i
         }
     };
-    m.swap_rows(k, own);
-    m.swap_columns(k, own);
+    m.swap_rows(k, index);
+    m.swap_columns(k, index);
     true
 }
 

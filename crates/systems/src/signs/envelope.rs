@@ -72,28 +72,33 @@ impl Envelope {
     pub fn is_positive_in_blocks(&self, n: usize, terms: usize, roundings: usize) -> bool {
         let shift = self.shift(self.slack(terms, roundings));
         let entry = |i: usize, j: usize| {
-            let own = j.checked_sub(self.first[i]).and_then(|place| self.rows[i].get(place));
-            own.copied().unwrap_or(0.0)
+            let value = j.checked_sub(self.first[i]).and_then(|place| self.rows[i].get(place));
+            value.copied().unwrap_or(0.0)
         };
         let threads = faer::get_global_parallelism();
         let mut room = MemBuffer::new(cholesky_in_place_scratch::<f64>(n, threads, Default::default()));
         let mut before: Option<Mat<f64>> = None;
         for top in (0..self.rows.len()).step_by(n) {
             let lower = |i: usize, j: usize| if i >= j { entry(top + i, top + j) } else { 0.0 };
-            let mut own = Mat::from_fn(n, n, |i, j| lower(i, j) - if i == j { shift } else { 0.0 });
+            let mut matrix = Mat::from_fn(n, n, |i, j| lower(i, j) - if i == j { shift } else { 0.0 });
             if let Some(factor) = before {
                 let mut beside = Mat::from_fn(n, n, |i, j| entry(top + j, top - n + i));
                 solve_lower_triangular_in_place(factor.as_ref(), beside.as_mut(), threads);
                 let left = beside.transpose();
-                matmul(own.as_mut(), Accum::Add, left, beside.as_ref(), -1.0, threads);
+                matmul(matrix.as_mut(), Accum::Add, left, beside.as_ref(), -1.0, threads);
             }
             let none = Default::default();
-            let is_done =
-                cholesky_in_place(own.as_mut(), none, threads, MemStack::new(&mut room), Default::default());
-            if is_done.is_err() || (0..n).any(|i| !own[(i, i)].is_finite()) {
+            let is_done = cholesky_in_place(
+                matrix.as_mut(),
+                none,
+                threads,
+                MemStack::new(&mut room),
+                Default::default(),
+            );
+            if is_done.is_err() || (0..n).any(|i| !matrix[(i, i)].is_finite()) {
                 return false;
             }
-            before = Some(own);
+            before = Some(matrix);
         }
         true
     }
@@ -146,9 +151,9 @@ impl Envelope {
     fn eliminated(&self, shift: f64) -> Option<(usize, f64)> {
         let n = self.rows.len();
         let (mut factor, mut d): (Vec<Vec<f64>>, Vec<f64>) = (Vec::with_capacity(n), Vec::with_capacity(n));
-        for (i, own) in self.rows.iter().enumerate() {
+        for (i, values) in self.rows.iter().enumerate() {
             // u_ij = l_ij d_j.
-            let (mut u, first) = (own.clone(), self.first[i]);
+            let (mut u, first) = (values.clone(), self.first[i]);
             for j in first..i {
                 let (other, start) = (&factor[j], self.first[j].max(first));
                 u[j - first] -= dot(&u[start - first..j - first], &other[start - self.first[j]..]);
@@ -194,8 +199,8 @@ impl Envelope {
     /// pivot is that stopped it.
     fn stopped(&self, shift: f64) -> Option<Vec<f64>> {
         let mut factor: Vec<Vec<f64>> = Vec::with_capacity(self.rows.len());
-        for (i, own) in self.rows.iter().enumerate() {
-            let (mut row, first) = (own.clone(), self.first[i]);
+        for (i, values) in self.rows.iter().enumerate() {
+            let (mut row, first) = (values.clone(), self.first[i]);
             for j in first..i {
                 let (other, start) = (&factor[j], self.first[j].max(first));
                 let (left, right) = (&row[start - first..j - first], &other[start - self.first[j]..]);
@@ -222,8 +227,8 @@ impl Envelope {
         for (i, row) in factor.iter().enumerate().rev() {
             let (pivot, before) = row.split_last().expect("a diagonal entry");
             z[i] /= pivot;
-            let own = z[i];
-            z[self.first[i]..i].iter_mut().zip(before).for_each(|(z, l)| *z -= l * own);
+            let value = z[i];
+            z[self.first[i]..i].iter_mut().zip(before).for_each(|(z, l)| *z -= l * value);
         }
         z
     }

@@ -51,7 +51,7 @@ pub(crate) fn judge(forms: &mut impl Inertias) -> Option<Kind> {
 /// Whether the number of negative eigenvalues of P or R is known and differs from that of W or Z: as many μ are real and outside
 /// \[−1, 0\].
 fn counts_differ(ends: [Inertia; 2], others: [Option<Inertia>; 2]) -> bool {
-    let known = |own: Inertia| (own.unknown + own.zero == 0).then_some(own.negative);
+    let known = |inertia: Inertia| (inertia.unknown + inertia.zero == 0).then_some(inertia.negative);
     let others: Vec<usize> = others.into_iter().flatten().filter_map(known).collect();
     ends.into_iter().filter_map(known).any(|count| others.iter().any(|other| *other != count))
 }

@@ -106,8 +106,8 @@ pub(crate) fn negative_bounds(low: &Mat<f64>, high: &Mat<f64>, slack: f64) -> (u
 /// L B Lᵀ (Bunch and Kaufman 1977) of a matrix moved by c I has the inertia of B (Sylvester), and where it is within c − `slack` of that it
 /// lies above, or below, all of them. No eigenvector and no gap between eigenvalues is asked for.
 fn by_factors(low: &Mat<f64>, high: &Mat<f64>, slack: f64) -> (Option<usize>, Option<usize>) {
-    let least = moved(high, slack, 1.0).map(|own| own.negative);
-    let most = moved(low, slack, -1.0).map(|own| own.negative + own.zero);
+    let least = moved(high, slack, 1.0).map(|inertia| inertia.negative);
+    let most = moved(low, slack, -1.0).map(|inertia| inertia.negative + inertia.zero);
     (least, most)
 }
 
@@ -118,12 +118,12 @@ fn moved(m: &Mat<f64>, slack: f64, sign: f64) -> Option<Inertia> {
     // The room that the check usually needs; once more with twice the room for roundings that it asked for.
     for _ in 0..2 {
         let at = |i: usize, j: usize| m[(i.max(j), i.min(j))] + if i == j { sign * shift } else { 0.0 };
-        let own = Mat::from_fn(n, n, at);
-        let lblt = own.lblt(Side::Lower);
+        let matrix = Mat::from_fn(n, n, at);
+        let lblt = matrix.lblt(Side::Lower);
         let (order, l) = (lblt.P().arrays().0, lblt.L().to_owned());
         let (diagonal, next) = (lblt.B_diag().column_vector(), lblt.B_subdiag().column_vector());
         let (product, sizes) = times_blocks(&l, &|i| diagonal[i], &|i| next[i]);
-        let residual = 1.01 * lower_residual(&own, order, &product, &l);
+        let residual = 1.01 * lower_residual(&matrix, order, &product, &l);
         let products = (n as f64 + 4.0) * norm::frobenius(&product) + 4.0 * sizes;
         let rounding = 1.1 * U * (norm::frobenius(&l) * products + 2.0 * (size + shift * n as f64));
         let off = 1.01 * (residual + rounding + slack);
@@ -140,9 +140,9 @@ fn moved(m: &Mat<f64>, slack: f64, sign: f64) -> Option<Inertia> {
 
 /// The Frobenius norm of X − L B Lᵀ, X being `own` in the order given and `product` L B, rounded: column by column of the lower triangle,
 /// which needs as many columns of L as the last of them has rows.
-fn lower_residual(own: &Mat<f64>, order: &[usize], product: &Mat<f64>, l: &Mat<f64>) -> f64 {
+fn lower_residual(matrix: &Mat<f64>, order: &[usize], product: &Mat<f64>, l: &Mat<f64>) -> f64 {
     const PANEL: usize = 32;
-    let (n, threads) = (own.nrows(), faer::get_global_parallelism());
+    let (n, threads) = (matrix.nrows(), faer::get_global_parallelism());
     let mut panel = Mat::<f64>::zeros(n, PANEL);
     let mut squares = 0.0;
     for first in (0..n).step_by(PANEL) {
@@ -153,8 +153,8 @@ fn lower_residual(own: &Mat<f64>, order: &[usize], product: &Mat<f64>, l: &Mat<f
         let right = l.submatrix(first, 0, columns, last).transpose();
         matmul(panel.submatrix_mut(first, 0, rows, columns), Accum::Replace, left, right, 1.0, threads);
         for j in first..last {
-            let (own, found) = (own.col_as_slice(order[j]), &panel.col_as_slice(j - first)[j..]);
-            let off = |(&i, x): (&usize, &f64)| (own[i] - x).powi(2);
+            let (values, found) = (matrix.col_as_slice(order[j]), &panel.col_as_slice(j - first)[j..]);
+            let off = |(&i, x): (&usize, &f64)| (values[i] - x).powi(2);
             let (diagonal, below): (f64, f64) =
                 (off((&order[j], &found[0])), order[j + 1..].iter().zip(&found[1..]).map(off).sum());
             squares += diagonal + 2.0 * below;
@@ -174,10 +174,10 @@ fn times_blocks(
     let mut squares = 0.0;
     for j in 0..n {
         let beside = |k: Option<usize>| k.filter(|&k| k < n).map_or(&none[..], |k| l.col_as_slice(k));
-        let (left, own, right) = (beside(j.checked_sub(1)), l.col_as_slice(j), beside(Some(j + 1)));
+        let (left, values, right) = (beside(j.checked_sub(1)), l.col_as_slice(j), beside(Some(j + 1)));
         let (a, b, c) =
             (j.checked_sub(1).map_or(0.0, next), diagonal(j), if j + 1 < n { next(j) } else { 0.0 });
-        let terms = left.iter().zip(own).zip(right).map(|((x, y), z)| [a * x, b * y, c * z]);
+        let terms = left.iter().zip(values).zip(right).map(|((x, y), z)| [a * x, b * y, c * z]);
         for (to, [x, y, z]) in product.col_as_slice_mut(j).iter_mut().zip(terms) {
             *to = x + y + z;
             let size = x.abs() + y.abs() + z.abs();

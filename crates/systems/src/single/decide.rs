@@ -168,7 +168,7 @@ fn by_doubles<S: Decidable>(rounded: &System, clocks: &ManyClocks<S>) -> Option<
     let (mu, label) = (b.mul(&c, BITS), labelled(clocks, verdict));
     let growth = growth(verdict, &mu, &a.mul(&d, BITS));
     // Beside an edge balls give more digits.
-    let is_sharp = growth.as_ref().is_none_or(|own| own.relative_accuracy_bits() > SHARP);
+    let is_sharp = growth.as_ref().is_none_or(|growth| growth.relative_accuracy_bits() > SHARP);
     is_sharp.then_some(Scalar { verdict, tier: Tier::Filter, mu, growth, label })
 }
 
@@ -199,7 +199,7 @@ fn by_balls<S: Decidable>(clocks: &ManyClocks<S>) -> Option<Scalar> {
         let label = half.label(verdict).filter(|_| verdict.kind() == Kind::Hyperbolic);
         let [bc, ad] = half.products(BITS);
         let growth = growth(verdict, &bc, &ad);
-        let is_sharp = growth.as_ref().is_none_or(|own| own.relative_accuracy_bits() > SHARP);
+        let is_sharp = growth.as_ref().is_none_or(|growth| growth.relative_accuracy_bits() > SHARP);
         is_sharp.then_some(Scalar { verdict, tier: Tier::Refine, mu: bc, growth, label })
     })
 }
@@ -242,7 +242,7 @@ fn instability(rounded: &System, period: &Laurent, multiplier: Multiplier, scala
     Instability {
         multiplier,
         origin: Origin::RealPair,
-        growth_rate: multiplier.growth.map(|own| rate::per_time(own, period)),
+        growth_rate: multiplier.growth.map(|growth| rate::per_time(growth, period)),
         shape: vec![1.0],
         quadrature: vec![0.0],
         resonance: Some(resonance),

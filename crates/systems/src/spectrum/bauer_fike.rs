@@ -95,15 +95,15 @@ impl Residual {
             let left = &w * left;
             rows.iter_mut()
                 .enumerate()
-                .for_each(|(i, own)| *own += 1.01 * size * across * (row(&left, i) + rest));
+                .for_each(|(i, value)| *value += 1.01 * size * across * (row(&left, i) + rest));
         }
-        let norm = 1.01 * rows.iter().map(|own| own * own).sum::<f64>().sqrt();
+        let norm = 1.01 * rows.iter().map(|value| value * value).sum::<f64>().sqrt();
         self.plus(norm, rows)
     }
 
     fn plus(self, norm: f64, rows: Vec<f64>) -> Option<Residual> {
         let norm = self.norm + norm;
-        let rows = self.rows.iter().zip(rows).map(|(own, more)| own + more).collect();
+        let rows = self.rows.iter().zip(rows).map(|(value, more)| value + more).collect();
         norm.is_finite().then_some(Residual { norm, rows, ..self })
     }
 }

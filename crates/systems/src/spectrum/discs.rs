@@ -70,16 +70,21 @@ impl Spectrum {
     pub fn with(s: Mat<f64>, s_error: Option<f64>, mu: Vec<c64>, vectors: Mat<c64>) -> Option<Spectrum> {
         let finite = mu.iter().all(|z| z.re.is_finite() && z.im.is_finite());
         let residual = s_error.filter(|_| finite).and_then(|delta| residual(&s, delta, &mu, &vectors));
-        let radius = residual.as_ref().map(|own| own.norm);
-        let inverse = residual.as_ref().map(|own| own.inverse);
-        let rows = residual.map_or(Vec::new(), |own| own.rows);
+        let radius = residual.as_ref().map(|residual| residual.norm);
+        let inverse = residual.as_ref().map(|residual| residual.inverse);
+        let rows = residual.map_or(Vec::new(), |residual| residual.rows);
         finite.then_some(Spectrum { mu, radius, rows, inverse, vectors, s, s_error })
     }
 
     /// The discs for matrices within another distance of S.
     pub fn with_error(&self, s_error: f64) -> Option<Spectrum> {
-        let own = residual(&self.s, s_error, &self.mu, &self.vectors)?;
-        Some(Spectrum { radius: Some(own.norm), rows: own.rows, s_error: Some(s_error), ..self.clone() })
+        let residual = residual(&self.s, s_error, &self.mu, &self.vectors)?;
+        Some(Spectrum {
+            radius: Some(residual.norm),
+            rows: residual.rows,
+            s_error: Some(s_error),
+            ..self.clone()
+        })
     }
 
     /// The discs where the half period is known as well as these blocks, which differ from its own in their error alone. There are none
@@ -91,15 +96,15 @@ impl Spectrum {
 
     /// Every multiplier with an enclosure of its growth: that of all discs which meet its own, and of the largest one no more than the rows of F allow.
     pub fn multipliers(&self) -> Vec<Multiplier> {
-        let Some(radius) = self.radius.map(|own| 1.01 * own) else {
+        let Some(radius) = self.radius.map(|radius| 1.01 * radius) else {
             return self.mu.iter().map(|&mu| Multiplier::new(mu, None, None)).collect();
         };
-        let own: Vec<_> = self.mu.iter().map(|&mu| rate::about(mu, radius)).collect();
+        let pairs: Vec<_> = self.mu.iter().map(|&mu| rate::about(mu, radius)).collect();
         let above = self.largest_growth();
-        let mut growth = own.clone();
+        let mut growth = pairs.clone();
         for component in components(&self.mu, radius) {
-            let lo = component.iter().map(|&i| own[i].0).fold(f64::INFINITY, f64::min);
-            let hi = component.iter().map(|&i| own[i].1).fold(0.0, f64::max);
+            let lo = component.iter().map(|&i| pairs[i].0).fold(f64::INFINITY, f64::min);
+            let hi = component.iter().map(|&i| pairs[i].1).fold(0.0, f64::max);
             component.iter().for_each(|&i| growth[i] = (lo, hi.min(above)));
         }
         let multiplier = |(&mu, growth)| Multiplier::new(mu, self.radius, Some(growth));
@@ -143,8 +148,8 @@ impl Spectrum {
         Some(Residual { norm: self.radius?, rows: self.rows.clone(), inverse: self.inverse? })
     }
 
-    fn with_residual(&self, own: Residual) -> Spectrum {
-        Spectrum { radius: Some(own.norm), rows: own.rows, ..self.clone() }
+    fn with_residual(&self, residual: Residual) -> Spectrum {
+        Spectrum { radius: Some(residual.norm), rows: residual.rows, ..self.clone() }
     }
 
     /// The kind that the discs or the clusters prove, if any.
@@ -183,8 +188,11 @@ impl Spectrum {
             _ => false,
         };
         // Up to the first: circles about all of them cost as much as the products where matrices are small.
-        let mut untold =
-            components.iter().filter(|own| !inside(own)).flatten().filter(|&&i| !self.is_alone(i));
+        let mut untold = components
+            .iter()
+            .filter(|component| !inside(component))
+            .flatten()
+            .filter(|&&i| !self.is_alone(i));
         untold.next().is_none().then_some(Kind::Elliptic)
     }
 
@@ -205,7 +213,7 @@ impl Spectrum {
     /// their small discs. The radii tried go down by fifths, to a hundredth of the distance.
     fn is_encircled(&self, i: usize) -> bool {
         let off = 0.99 * from_segment(self.mu[i]);
-        if self.rows.get(i).is_none_or(|own| *own >= off) {
+        if self.rows.get(i).is_none_or(|value| *value >= off) {
             return false;
         }
         self.is_free(i, off)
@@ -219,8 +227,8 @@ impl Spectrum {
         };
         let all: Vec<_> = self.mu.iter().map(distances).zip(&self.rows).collect();
         let escape = |radius: f64| {
-            let term = |([own, other], row): &([f64; 2], &f64)| {
-                (*row / (own - radius).abs().min((other - radius).abs())).powi(2)
+            let term = |([value, other], row): &([f64; 2], &f64)| {
+                (*row / (value - radius).abs().min((other - radius).abs())).powi(2)
             };
             self.rows.len() == self.mu.len() && all.iter().map(term).sum::<f64>() < 0.99
         };
@@ -293,8 +301,8 @@ fn improved(s: &Mat<f64>, mu: &[c64], mut vectors: Mat<c64>) -> Mat<c64> {
     let is_rough = |k: &usize| residual(mu[*k], &column(&vectors, *k)) > ROUNDED * off;
     let rough: Vec<usize> = (0..m).filter(is_pair).filter(is_rough).take(MOST_IMPROVED).collect();
     for k in rough {
-        let (z, own) = (mu[k], column(&vectors, k));
-        let before = residual(z, &own);
+        let (z, matrix) = (mu[k], column(&vectors, k));
+        let before = residual(z, &matrix);
         let shifted = Mat::from_fn(m, m, |i, j| if i == j { s[(i, j)] - z - off } else { s[(i, j)] });
         let factors = shifted.partial_piv_lu();
         let step = |v: Mat<c64>| {
@@ -302,7 +310,7 @@ fn improved(s: &Mat<f64>, mu: &[c64], mut vectors: Mat<c64>) -> Mat<c64> {
             let size = c64::new(1.0 / next.norm_l2(), 0.0);
             next * Scale(size)
         };
-        let next = step(step(own));
+        let next = step(step(matrix));
         if residual(z, &next) < before {
             (0..m).for_each(|i| {
                 (vectors[(i, k)], vectors[(i, k + 1)]) = (next[(i, 0)], next[(i, 0)].conj());

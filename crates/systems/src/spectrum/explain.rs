@@ -50,7 +50,7 @@ pub fn explained(
         Instability {
             multiplier,
             origin,
-            growth_rate: multiplier.growth.map(|own| rate::per_time(own, period)),
+            growth_rate: multiplier.growth.map(|growth| rate::per_time(growth, period)),
             resonance: resonance(&shape, origin, exponent(multiplier.mu)),
             shape: shape.iter().map(|c| c.re).collect(),
             quadrature: shape.iter().map(|c| c.im).collect(),
@@ -61,7 +61,7 @@ pub fn explained(
 
 /// Whether an enclosure of the largest growth shows fewer digits than documents do.
 fn is_rough(found: &[Multiplier]) -> bool {
-    let growth = found.iter().map(|own| own.growth).collect::<Option<Vec<_>>>();
+    let growth = found.iter().map(|multiplier| multiplier.growth).collect::<Option<Vec<_>>>();
     growth.is_none_or(|all| {
         let (lo, hi) = rate::largest(all.into_iter());
         hi - lo > 1e-9 * hi
@@ -94,13 +94,13 @@ impl Piece {
 
     /// The multipliers from the characteristic polynomial, each in the place of the computed one that it stands for.
     fn refined(&self, found: &[Multiplier], limits: &Limits) -> Option<Vec<Multiplier>> {
-        let mut exact =
-            exact::multipliers(&self.system, &self.frame, limits).filter(|own| own.len() == found.len())?;
+        let mut exact = exact::multipliers(&self.system, &self.frame, limits)
+            .filter(|multiplier| multiplier.len() == found.len())?;
         let mut order: Vec<usize> = (0..found.len()).collect();
         order.sort_by(|&i, &j| by_place(&found[i].mu, &found[j].mu));
         exact.sort_by(|a, b| by_place(&a.mu, &b.mu));
         let mut placed = exact.clone();
-        order.iter().zip(exact).for_each(|(&i, own)| placed[i] = own);
+        order.iter().zip(exact).for_each(|(&i, multiplier)| placed[i] = multiplier);
         Some(placed)
     }
 

@@ -81,7 +81,7 @@ fn symmetric_form(system: &System, frame: &Frame) -> Option<(Mat<f64>, Mat<f64>)
     let mut projection = Mat::<f64>::zeros(m, n);
     for (a, &i) in frame.kept.iter().enumerate() {
         projection[(a, i)] = 1.0;
-        frame.rigid.iter().for_each(|(own, n)| projection[(a, *own)] = -to_f64(&n[i]));
+        frame.rigid.iter().for_each(|(index, n)| projection[(a, *index)] = -to_f64(&n[i]));
     }
     let reduced = &projection * rounded_inverse_mass(system) * projection.transpose();
     let stiffness = kept_stiffness(system, frame);

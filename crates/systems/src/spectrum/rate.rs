@@ -82,7 +82,7 @@ pub fn about(mu: Complex64, radius: f64) -> Range {
         return (0.0, f64::INFINITY);
     }
     let (x, y) = (exact(mu.re), exact(mu.im));
-    let own = if mu.im == 0.0 {
+    let ball = if mu.im == 0.0 {
         // Exactly: no root cancels.
         let above = exact(mu.re.max(0.0));
         above.add(&exact((-mu.re).max(1.0)).sub(&Ball::one(), BITS), BITS)
@@ -90,14 +90,14 @@ pub fn about(mu: Complex64, radius: f64) -> Range {
         excess(&x, &y, BITS)
     };
     let off = from_f64_exact(radius).unwrap_or_default();
-    let by_excess = between(&(own.lower() - &off), &(own.upper() + &off));
+    let by_excess = between(&(ball.lower() - &off), &(ball.upper() + &off));
     let nearer = mu.norm().min((mu + 1.0).norm());
     if radius > nearer / 2.0 {
         return by_excess;
     }
     // The roundings of some products of factors that do not cancel.
     let moved = 1.01 * radius / ((mu.norm() - radius) * ((mu + 1.0).norm() - radius)).sqrt();
-    let (lo, hi) = between(&own.lower(), &own.upper());
+    let (lo, hi) = between(&ball.lower(), &ball.upper());
     (by_excess.0.max((lo - moved).next_down()), by_excess.1.min((hi + moved).next_up()))
 }
 

@@ -49,11 +49,11 @@ impl Intervals {
     /// \[lo, hi\]: where what is proven stable before the first unstable stretch ends, and where that begins; twice the first
     /// unstable number where only some were decided.
     pub fn first_unstable(&self) -> Option<(f64, f64)> {
-        let k = self.stretches.iter().position(|own| own.verdict == Holds::Unstable)?;
+        let k = self.stretches.iter().position(|stretch| stretch.verdict == Holds::Unstable)?;
         if self.is_discrete {
             return Some((self.stretches[k].lo, self.stretches[k].lo));
         }
-        let stable = self.stretches[..k].iter().rev().find(|own| own.verdict == Holds::Stable)?;
+        let stable = self.stretches[..k].iter().rev().find(|stretch| stretch.verdict == Holds::Stable)?;
         Some((stable.hi, self.stretches[k].lo))
     }
 }
@@ -115,15 +115,15 @@ impl<'a> Cells<'a> {
     /// The counts at a number.
     fn counts(&self, x: f64) -> Result<Arc<Option<Counts>>> {
         let known = || self.counts.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(own) = known().get(&x.to_bits()) {
-            return Ok(Arc::clone(own));
+        if let Some(counts) = known().get(&x.to_bits()) {
+            return Ok(Arc::clone(counts));
         }
-        let own = Arc::new(Counts::new(&(self.at)(x)?));
+        let counts = Arc::new(Counts::new(&(self.at)(x)?));
         let mut known = known();
         if known.len() >= MOST_ENDS {
             known.clear();
         }
-        Ok(Arc::clone(known.entry(x.to_bits()).or_insert(own)))
+        Ok(Arc::clone(known.entry(x.to_bits()).or_insert(counts)))
     }
 
     /// Whether counts prove all systems between two numbers unstable, every kick growing from one to the other: at both ends together, or
@@ -136,7 +136,7 @@ impl<'a> Cells<'a> {
         halvings: u32,
     ) -> Result<bool> {
         let ends = [self.counts(lo)?, self.counts(hi)?];
-        let [Some(a), Some(b)] = ends.each_ref().map(|own| own.as_ref().as_ref()) else { return Ok(false) };
+        let [Some(a), Some(b)] = ends.each_ref().map(|ends| ends.as_ref().as_ref()) else { return Ok(false) };
         if differ(if is_rising { [a, b] } else { [b, a] }, n) {
             return Ok(true);
         }
@@ -144,8 +144,8 @@ impl<'a> Cells<'a> {
         if halvings == 0 || !(lo < middle && middle < hi) {
             return Ok(false);
         }
-        let own = self.counts(middle)?;
-        Ok(own.as_ref().as_ref().is_some_and(|own| differ([own, own], n))
+        let counts = self.counts(middle)?;
+        Ok(counts.as_ref().as_ref().is_some_and(|counts| differ([counts, counts], n))
             && self.differ_throughout((lo, middle), is_rising, n, halvings - 1)?
             && self.differ_throughout((middle, hi), is_rising, n, halvings - 1)?)
     }
@@ -183,15 +183,19 @@ impl Course {
 /// Where it is not.
 pub(crate) fn verify_line(systems: [&System; 3]) -> Result<()> {
     let [lo, middle, hi] = systems;
-    let steps = |own: &System| {
-        own.potentials().iter().map(|own| (own.step.clone(), own.phase.clone())).collect::<Vec<_>>()
+    let steps = |system: &System| {
+        system
+            .potentials()
+            .iter()
+            .map(|potential| (potential.step.clone(), potential.phase.clone()))
+            .collect::<Vec<_>>()
     };
     let is_mean = |[a, b, c]: [&Symmetric; 3]| {
         let mut twice = a.clone();
         twice.add_all(c);
         twice == b.scaled(&Rational::from_integer(2.into()))
     };
-    let stiffnesses = |k: usize| systems.map(|own| &own.potentials()[k].stiffness);
+    let stiffnesses = |k: usize| systems.map(|systems| &systems.potentials()[k].stiffness);
     if steps(lo) != steps(middle)
         || steps(hi) != steps(middle)
         || !is_mean(systems.map(System::mass))
@@ -214,9 +218,9 @@ fn spread([a, b]: [&Symmetric; 2]) -> Option<[Symmetric; 2]> {
     let (beta, gamma) = (inertia::lack(&rounded, slack), inertia::lack(&-&rounded, slack));
     let (bound, [lo, hi]) = if beta <= gamma { (beta, [a, b]) } else { (gamma, [b, a]) };
     let bound = from_f64_exact(bound)?;
-    let moved = |own: &Symmetric, by: &Rational| {
-        let mut moved = own.clone();
-        moved.add_all(&Symmetric::diagonal(&vec![by.clone(); own.size()]));
+    let moved = |symmetric: &Symmetric, by: &Rational| {
+        let mut moved = symmetric.clone();
+        moved.add_all(&Symmetric::diagonal(&vec![by.clone(); symmetric.size()]));
         moved
     };
     Some([moved(lo, &-&bound), moved(hi, &bound)])
@@ -270,7 +274,7 @@ impl Cell<'_> {
     fn around(&self) -> Result<Option<[System; 2]>> {
         let [lo, middle, hi] = self.systems;
         let (mut less, mut more) = (Vec::new(), Vec::new());
-        for (k, own) in middle.potentials().iter().enumerate() {
+        for (k, potential) in middle.potentials().iter().enumerate() {
             let [a, b] = [lo, hi].map(|system| system.potentials()[k].stiffness.clone());
             let [small, large] = match self.courses[k] {
                 Course::Fixed | Course::Rising => [a, b],
@@ -280,8 +284,8 @@ impl Cell<'_> {
                     None => return Ok(None),
                 },
             };
-            less.push(Potential { stiffness: small, ..own.clone() });
-            more.push(Potential { stiffness: large, ..own.clone() });
+            less.push(Potential { stiffness: small, ..potential.clone() });
+            more.push(Potential { stiffness: large, ..potential.clone() });
         }
         let masses = |pick: fn(Rational, Rational) -> Rational| {
             let entry = |i: usize| pick(lo.mass().get(i, i), hi.mass().get(i, i));
@@ -339,8 +343,10 @@ impl Cell<'_> {
         let (program, scales) = scaled_program(&reduced, &Frame::whole(m));
         let tick = reduced.tick();
         // Sums of equal clocks, where none vanishes at an end.
-        let are_all = [middle, hi].iter().all(|own| own.clocks().len() == self.clocks());
-        let kicks = |own: &'_ System| if are_all { own.clocks().to_vec() } else { own.potentials().to_vec() };
+        let are_all = [middle, hi].iter().all(|system| system.clocks().len() == self.clocks());
+        let kicks = |system: &'_ System| {
+            if are_all { system.clocks().to_vec() } else { system.potentials().to_vec() }
+        };
         let stiff = |(k, clock): (usize, &Potential)| {
             let ticks = Rational::from_integer(reduced.schedule().clocks()[k].step().into());
             let factor = to_f64(&(tick * tick * ticks));
@@ -370,15 +376,15 @@ impl Cell<'_> {
         let kicks: Vec<Stiff> = reduced.clocks().iter().enumerate().map(stiff).collect();
         // ‖P diag(e) Pᵀ‖ ≤ Σ e_i |P_i|², P = (I, −N); where N is empty the largest e_i.
         let moved = |i: usize| {
-            let inverse = self.systems.map(|own| own.mass().get(i, i).recip());
+            let inverse = self.systems.map(|systems| systems.mass().get(i, i).recip());
             let far = (&inverse[0] - &inverse[1]).abs().max((&inverse[2] - &inverse[1]).abs());
-            let column: f64 = match self.frame.kept.iter().position(|&own| own == i) {
+            let column: f64 = match self.frame.kept.iter().position(|&index| index == i) {
                 Some(k) => scales[k] * scales[k],
                 None => self
                     .frame
                     .rigid
                     .iter()
-                    .filter(|(own, _)| *own == i)
+                    .filter(|(index, _)| *index == i)
                     .map(|(_, n)| self.square(n, &scales))
                     .sum(),
             };
@@ -400,7 +406,7 @@ impl Cell<'_> {
     /// The number of clocks that kick anywhere on the segment.
     fn clocks(&self) -> usize {
         let [lo, middle, hi] = self.systems.map(System::potentials);
-        let kicks = |k: &usize| [lo, middle, hi].iter().any(|own| !own[*k].stiffness.is_zero());
+        let kicks = |k: &usize| [lo, middle, hi].iter().any(|potentials| !potentials[*k].stiffness.is_zero());
         let clocks = (0..middle.len()).filter(kicks).map(|k| (&middle[k].step, &middle[k].phase));
         clocks.collect::<BTreeSet<_>>().len()
     }
@@ -417,16 +423,16 @@ impl Cell<'_> {
         }
         let inverse = inverted(system.mass().to_dense());
         let columns = nalgebra::DMatrix::from_fn(self.frame.kept.len(), system.size(), |a, i| {
-            let rigid = self.frame.rigid.iter().find(|(own, _)| *own == i);
+            let rigid = self.frame.rigid.iter().find(|(index, _)| *index == i);
             match rigid {
                 Some((_, n)) => -n[self.frame.kept[a]].clone(),
                 None => Rational::from_integer(i64::from(self.frame.kept[a] == i).into()),
             }
         });
         let mass = Symmetric::try_from(&inverted(&columns * inverse * columns.transpose()))?;
-        let kept = |own: &Potential| Potential {
-            stiffness: own.stiffness.restricted(&self.frame.kept),
-            ..own.clone()
+        let kept = |potential: &Potential| Potential {
+            stiffness: potential.stiffness.restricted(&self.frame.kept),
+            ..potential.clone()
         };
         System::new(mass, system.potentials().iter().map(kept).collect())
     }

@@ -59,10 +59,10 @@ impl Nearest {
     /// # Errors
     /// The first error of `stretches`.
     pub fn search(
-        (number, own): (f64, Holds),
+        (number, holds): (f64, Holds),
         stretches: impl Fn((f64, f64)) -> Result<Vec<Stretch>>,
     ) -> Result<Nearest> {
-        let mut covered = vec![Stretch { lo: number, hi: number, verdict: own }];
+        let mut covered = vec![Stretch { lo: number, hi: number, verdict: holds }];
         for upwards in [false, true] {
             for range in Nearest::ranges(number, upwards) {
                 let more = stretches(range)?;
@@ -71,9 +71,9 @@ impl Nearest {
                 let found = Nearest::of(number, &covered);
                 // Searched until what is behind it is proven stable.
                 let is_whole = if upwards {
-                    found.above.is_some_and(|own| own.within.1.is_some())
+                    found.above.is_some_and(|above| above.within.1.is_some())
                 } else {
-                    found.below.is_some_and(|own| own.within.0.is_some())
+                    found.below.is_some_and(|below| below.within.0.is_some())
                 };
                 if is_whole {
                     break;
@@ -86,26 +86,31 @@ impl Nearest {
     /// From stretches that cover a range about the number.
     pub fn of(number: f64, all: &[Stretch]) -> Nearest {
         let runs: Vec<&[Stretch]> =
-            all.split(|own| own.verdict == Holds::Stable).filter(|run| !run.is_empty()).collect();
+            all.split(|stretch| stretch.verdict == Holds::Stable).filter(|run| !run.is_empty()).collect();
         let ends = |run: &[Stretch]| (run[0].lo, run[run.len() - 1].hi);
-        let searched = (all.first().map_or(number, |own| own.lo), all.last().map_or(number, |own| own.hi));
+        let searched = (
+            all.first().map_or(number, |stretch| stretch.lo),
+            all.last().map_or(number, |stretch| stretch.hi),
+        );
         let unstable = |run: &[Stretch]| {
-            let proven = || run.iter().filter(|own| own.verdict == Holds::Unstable);
+            let proven = || run.iter().filter(|stretch| stretch.verdict == Holds::Unstable);
             let (lo, hi) = ends(run);
             let proven = (proven().next()?.lo, proven().next_back()?.hi);
-            let stable = || all.iter().filter(|own| own.verdict == Holds::Stable);
-            let below = stable().rfind(|own| own.hi <= lo).map(|own| own.hi);
-            let above = stable().find(|own| own.lo >= hi).map(|own| own.lo);
+            let stable = || all.iter().filter(|stretch| stretch.verdict == Holds::Stable);
+            let below = stable().rfind(|stable| stable.hi <= lo).map(|stretch| stretch.hi);
+            let above = stable().find(|stretch| stretch.lo >= hi).map(|stretch| stretch.lo);
             Some(Unstable { proven, within: (below, above) })
         };
         let found: Vec<Unstable> = runs.iter().filter_map(|run| unstable(run)).collect();
-        let own = runs.iter().find(|run| ends(run).0 <= number && number <= ends(run).1);
-        let own = own.and_then(|run| unstable(run));
+        let stretches = runs.iter().find(|run| ends(run).0 <= number && number <= ends(run).1);
+        let own = stretches.and_then(|run| unstable(run));
         let others = || found.iter().filter(|other| Some(**other) != own).copied();
         let below = others().rfind(|other| other.proven.1 <= number);
         let above = others().find(|other| other.proven.0 >= number);
-        let near =
-            (below.map_or(searched.0, |own| own.proven.1), above.map_or(searched.1, |own| own.proven.0));
+        let near = (
+            below.map_or(searched.0, |unstable| unstable.proven.1),
+            above.map_or(searched.1, |unstable| unstable.proven.0),
+        );
         let untold = runs.iter().filter(|run| unstable(run).is_none()).map(|run| ends(run));
         let untold = untold.filter(|(lo, hi)| near.0 <= *lo && *hi <= near.1).collect();
         Nearest { number, searched, own, below, above, untold }

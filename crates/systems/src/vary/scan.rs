@@ -30,7 +30,7 @@ impl Point {
 
     /// The middle of that enclosure, what is proven at least where it is infinite, 0 where there is none.
     pub fn rounded_rate(&self) -> f64 {
-        self.growth_rate.map_or(0.0, |own| if own.1.is_finite() { middle(own) } else { own.0 })
+        self.growth_rate.map_or(0.0, |pair| if pair.1.is_finite() { middle(pair) } else { pair.0 })
     }
 }
 

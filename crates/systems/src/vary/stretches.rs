@@ -41,9 +41,9 @@ pub fn cover(
     let found = try_map(&parts, |&ends| cells(ends, floor, &verdict))?;
     let coarse = merged(found.into_iter().flatten());
     // An open stretch gives its neighbours the parts that smaller cells prove.
-    let shrink = |own: &Stretch| match own.verdict {
-        Holds::NotTold => shrunk(own, FINER * floor, &verdict),
-        _ => Ok(vec![*own]),
+    let shrink = |stretch: &Stretch| match stretch.verdict {
+        Holds::NotTold => shrunk(stretch, FINER * floor, &verdict),
+        _ => Ok(vec![*stretch]),
     };
     Ok(merged(try_map(&coarse, shrink)?.into_iter().flatten()))
 }
@@ -93,8 +93,12 @@ fn cells(
 }
 
 /// An open stretch without the parts that cells down to `floor` prove at its ends: near an edge cells are as wide as they are far from it.
-fn shrunk(own: &Stretch, floor: f64, verdict: &impl Fn(f64, f64) -> Result<Holds>) -> Result<Vec<Stretch>> {
-    let (mut lo, mut hi) = (own.lo, own.hi);
+fn shrunk(
+    stretch: &Stretch,
+    floor: f64,
+    verdict: &impl Fn(f64, f64) -> Result<Holds>,
+) -> Result<Vec<Stretch>> {
+    let (mut lo, mut hi) = (stretch.lo, stretch.hi);
     let mut ends = [Vec::new(), Vec::new()];
     for (k, found) in ends.iter_mut().enumerate() {
         let mut step = (hi - lo) / 4.0;
@@ -120,10 +124,10 @@ fn shrunk(own: &Stretch, floor: f64, verdict: &impl Fn(f64, f64) -> Result<Holds
 /// Neighbours of one verdict as one stretch.
 pub fn merged(stretches: impl Iterator<Item = Stretch>) -> Vec<Stretch> {
     let mut all: Vec<Stretch> = Vec::new();
-    for own in stretches {
+    for stretch in stretches {
         match all.last_mut() {
-            Some(last) if last.verdict == own.verdict => last.hi = own.hi,
-            _ => all.push(own),
+            Some(last) if last.verdict == stretch.verdict => last.hi = stretch.hi,
+            _ => all.push(stretch),
         }
     }
     all

@@ -125,7 +125,8 @@ impl Part {
         if let Some(largest) = self.largest {
             return Some(rate::per_time(largest, &self.period));
         }
-        let growth = self.multipliers.iter().map(|own| own.growth).collect::<Option<Vec<_>>>()?;
+        let growth =
+            self.multipliers.iter().map(|multiplier| multiplier.growth).collect::<Option<Vec<_>>>()?;
         let complete = (growth.len() >= self.size).then(|| rate::largest(growth.into_iter()))?;
         Some(rate::per_time(complete, &self.period))
     }

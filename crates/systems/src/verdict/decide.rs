@@ -91,7 +91,7 @@ fn decided(system: &System, is_exact: bool, how: (Route, &Limits)) -> Result<Ana
 
 /// Whether the total stiffness has a negative direction, for all stiffnesses within the rounding of these to doubles.
 fn is_proven_indefinite(system: &System) -> bool {
-    let sizes = system.stiffnesses().into_iter().map(|own| norm::frobenius(&own.rounded()));
+    let sizes = system.stiffnesses().into_iter().map(|symmetric| norm::frobenius(&symmetric.rounded()));
     // Entries are rounded once, and added up.
     let slack = 2.0 * (1 + system.clocks().len()) as f64 * U * sizes.sum::<f64>();
     inertia::proven(&system.rounded_total(), slack).negative > 0

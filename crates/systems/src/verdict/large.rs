@@ -112,18 +112,18 @@ impl State<f64> for Column {
 /// # Errors
 /// Where the work was stopped.
 pub fn dominant(size: usize, period: impl Fn(&[f64]) -> Vec<f64>, least: f64) -> Result<Option<Dominant>> {
-    let mut own = unit(start(size));
+    let mut values = unit(start(size));
     for _ in 0..ROUNDS {
         for _ in 0..POWER {
             go_on()?;
-            own = own.and_then(|z| unit(period(&z)));
+            values = values.and_then(|z| unit(period(&z)));
         }
-        let Some((found, residual)) = own.and_then(|z| ritz(&period, z)) else { break };
+        let Some((found, residual)) = values.and_then(|z| ritz(&period, z)) else { break };
         let length = found.lambda.norm();
         if residual < FOUND * length && length > 1.0 + least {
             return Ok(Some(found));
         }
-        own = unit(found.z.iter().map(|z| z.re).collect());
+        values = unit(found.z.iter().map(|z| z.re).collect());
     }
     Ok(None)
 }
@@ -146,10 +146,10 @@ fn ritz(period: &impl Fn(&[f64]) -> Vec<f64>, z: Vec<f64>) -> Option<(Dominant, 
         let mut next = period(&basis[k]);
         // Twice: once does not leave it orthogonal where it nearly lies in the space.
         for _ in 0..2 {
-            for (i, own) in basis.iter().enumerate() {
-                let part = dot(own, &next);
+            for (i, values) in basis.iter().enumerate() {
+                let part = dot(values, &next);
                 h[(i, k)] += part;
-                next.iter_mut().zip(own).for_each(|(x, y)| *x -= part * y);
+                next.iter_mut().zip(values).for_each(|(x, y)| *x -= part * y);
             }
         }
         let length = dot(&next, &next).sqrt();
@@ -166,8 +166,8 @@ fn ritz(period: &impl Fn(&[f64]) -> Vec<f64>, z: Vec<f64>) -> Option<(Dominant, 
     let (lambda, weights) = (eigen.S()[best], eigen.U().col(best));
     let part = |of: fn(&c64) -> f64| {
         let mut z = vec![0.0; basis[0].len()];
-        for (own, weight) in basis.iter().zip(weights.iter().map(of)) {
-            z.iter_mut().zip(own).for_each(|(x, y)| *x += weight * y);
+        for (values, weight) in basis.iter().zip(weights.iter().map(of)) {
+            z.iter_mut().zip(values).for_each(|(x, y)| *x += weight * y);
         }
         z
     };

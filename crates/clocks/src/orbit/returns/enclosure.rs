@@ -254,8 +254,8 @@ pub fn balanced<E: Enclosure, const N: usize>(terms: [Matrix<E>; N]) -> ([Matrix
 /// largest number, which no ball takes.
 pub fn power<E: Enclosure>(step: &Matrix<E>, one: &Matrix<E>, n: &BigUint) -> (Matrix<E>, i128) {
     let digits = (0..n.bits()).rev().map(|bit| n.bit(bit));
-    digits.fold((one.clone(), 0i128), |(own, exponent), digit| {
-        let square = product(&own, &own);
+    digits.fold((one.clone(), 0i128), |(numbers, exponent), digit| {
+        let square = product(&numbers, &numbers);
         let next = if digit { product(&square, step) } else { square };
         let ([next], scaled) = balanced([next]);
         (next, exponent.saturating_mul(2).saturating_add(scaled.into()))

@@ -95,8 +95,8 @@ impl<T: Coefficient> Level<T> {
     fn induced(&mut self, n: u128, budget: &mut Budget) -> Option<Option<[Branch<T>; 2]>> {
         let Level { left, right } = self;
         let (a, b) = (left.branch.length, right.branch.length);
-        let height = |own: &Run<T>, k: i128, other: &Run<T>| {
-            Some(own.branch.height.saturating_add((k as u128).saturating_mul(other.branch.height)))
+        let height = |run: &Run<T>, k: i128, other: &Run<T>| {
+            Some(run.branch.height.saturating_add((k as u128).saturating_mul(other.branch.height)))
                 .filter(|&height| height <= n)
         };
         if a >= b {

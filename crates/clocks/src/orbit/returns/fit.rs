@@ -43,8 +43,9 @@ fn step(both: &[Real; 2]) -> Option<Real> {
     for [a, b, c, d] in both {
         let (beta, gamma, delta) = (0.5 * (a - d), 0.5 * (b + c), 0.5 * (b - c));
         rest = [rest[0] - delta * gamma, rest[1] + delta * beta];
-        let own = delta * delta;
-        square = [square[0] + gamma * gamma + own, square[1] - beta * gamma, square[2] + beta * beta + own];
+        let value = delta * delta;
+        square =
+            [square[0] + gamma * gamma + value, square[1] - beta * gamma, square[2] + beta * beta + value];
     }
     let [xx, xy, yy] = square;
     let determinant = xx * yy - xy * xy;
@@ -71,7 +72,7 @@ fn metric(mut both: [Real; 2]) -> Real {
         }
         let [a, b, c, d] = next;
         let back = [d, -b, -c, a];
-        both = both.map(|own| product(product(next, own), back));
+        both = both.map(|both| product(product(next, both), back));
         all = further;
     }
     all

@@ -251,8 +251,8 @@ mod tests {
         fn whole_numbers_lose_what_is_beyond_256_bits(n in prop::collection::vec(any::<u32>(), 0..24), k in -50i64..50) {
             let n = BigInt::new(Sign::Minus, n);
             let found = exact(&Long::of_dyadic(&n, k));
-            let own = Rational::from_integer(n) * Rational::from_integer(2.into()).pow(k as i32);
-            prop_assert!(size(&(found - &own)) <= size(&own) * tiny(255));
+            let value = Rational::from_integer(n) * Rational::from_integer(2.into()).pow(k as i32);
+            prop_assert!(size(&(found - &value)) <= size(&value) * tiny(255));
         }
     }
 }

@@ -82,7 +82,7 @@ fn about<T: Coefficient>(m: &Entries<T>) -> f64 {
 #[inline(always)]
 pub fn sizes<T: Coefficient, const N: usize>(terms: &[Entries<T>]) -> [f64; N] {
     let mut sizes = [0.0; N];
-    sizes.iter_mut().zip(terms).for_each(|(own, term)| *own = about(term));
+    sizes.iter_mut().zip(terms).for_each(|(value, term)| *value = about(term));
     sizes
 }
 
@@ -98,18 +98,18 @@ fn largest<T: Coefficient, const N: usize>(terms: &[Entries<T>], known: f64) -> 
         return known.min(sum);
     }
     // r_k of z and of w, and those of their imaginary parts: in two lanes each.
-    let mut own = [[0.0; 4]; N];
-    own.iter_mut().zip(terms).for_each(|(own, term)| *own = parts(term));
+    let mut values = [[0.0; 4]; N];
+    values.iter_mut().zip(terms).for_each(|(values, term)| *values = parts(term));
     let n = terms.len().min(N);
     let mut squares = [0.0; 2];
     for k in 0..2 * n - 1 {
         let mut r = [0.0; 4];
         for i in (k + 1).saturating_sub(n)..k.div_ceil(2) {
-            r = std::array::from_fn(|lane| r[lane] + own[i][lane] * own[k - i][lane]);
+            r = std::array::from_fn(|lane| r[lane] + values[i][lane] * values[k - i][lane]);
         }
         r = r.map(|r| 2.0 * r);
         if k % 2 == 0 {
-            r = std::array::from_fn(|lane| r[lane] + own[k / 2][lane] * own[k / 2][lane]);
+            r = std::array::from_fn(|lane| r[lane] + values[k / 2][lane] * values[k / 2][lane]);
         }
         squares = [squares[0] + (r[0] + r[1]).abs(), squares[1] + (r[2] + r[3]).abs()];
     }

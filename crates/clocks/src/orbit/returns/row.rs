@@ -87,8 +87,8 @@ impl<T: Coefficient> Row<'_, T> {
         // f(R)^q/f_0^q.
         let ratio = |radius: f64| {
             let mut sum = 0.0;
-            for own in majorant[..terms].iter().rev() {
-                sum = sum * radius + own;
+            for value in majorant[..terms].iter().rev() {
+                sum = sum * radius + value;
             }
             let (ratio, mut power) = (sum * UP / majorant[0], 1.0);
             for _ in 0..q {
@@ -170,8 +170,8 @@ impl<T: Coefficient> Row<'_, T> {
                     *sum = sum.plus_times(&first, upper).plus_times(&second, lower);
                 }
             }
-            for (own, next) in product[..length].iter_mut().zip(&next) {
-                *own = next.entries();
+            for (numbers, next) in product[..length].iter_mut().zip(&next) {
+                *numbers = next.entries();
             }
             sums *= g;
             let rounding = 2.0 * T::UNIT * sums * (4.0 + 2.0 * f64::from(i) * slope / g);

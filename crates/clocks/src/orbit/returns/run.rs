@@ -92,7 +92,7 @@ impl<T: Coefficient> Run<T> {
 
     fn known(&self, log2: u32, x: i128) -> Option<usize> {
         let place = self.place(log2, x);
-        self.pieces.iter().position(|own| own.0 == (log2, place))
+        self.pieces.iter().position(|piece| piece.0 == (log2, place))
     }
 
     /// The piece of length L/n that holds x and half a piece beyond it, as far as P_n is defined.

@@ -87,8 +87,8 @@ fn by_elimination(ratio: Ratio, search: &Search) -> Result<(Vec<Bracket>, bool)>
             go_on()?;
             let (below, above) = (orders(ratio, &lo, None)?, orders(ratio, &hi, None)?);
             let crossed = |(a, b): &(&Order, &Order)| if lo == hi { a.closed } else { a.lower != b.lower };
-            let own = below.iter().zip(&above).filter(|(a, _)| (a.m % 2 == 1) == odd);
-            let closing: Vec<u64> = own.filter(crossed).map(|(a, _)| a.m).collect();
+            let filter = below.iter().zip(&above).filter(|(a, _)| (a.m % 2 == 1) == odd);
+            let closing: Vec<u64> = filter.filter(crossed).map(|(a, _)| a.m).collect();
             complete &= closing.len() == 1;
             let asked = closing.into_iter().filter(|&m| search.m.is_none_or(|asked| m == asked));
             found.extend(asked.map(|m| (m, lo.clone(), hi.clone())));

@@ -241,7 +241,7 @@ impl Edges {
     /// Where the schedule is too long.
     pub fn compare(&self, edge: &Edge, s: &Laurent) -> Result<Ordering> {
         let exact = s.as_rational();
-        let order = |own: &Enclosure, bits: u32| {
+        let order = |enclosure: &Enclosure, bits: u32| {
             let [least, most] = match &exact {
                 Some(s) => [s.clone(), s.clone()],
                 None => {
@@ -249,8 +249,8 @@ impl Edges {
                     [s.lower(), s.upper()]
                 }
             };
-            let beyond = || (own.lo > most).then_some(Ordering::Greater);
-            if own.hi < least { Some(Ordering::Less) } else { beyond() }
+            let beyond = || (enclosure.lo > most).then_some(Ordering::Greater);
+            if enclosure.hi < least { Some(Ordering::Less) } else { beyond() }
         };
         let mut near = Enclosure::from(edge);
         let mut digits = TWO_DOUBLES;

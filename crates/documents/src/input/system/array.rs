@@ -52,7 +52,7 @@ impl TryFrom<Value> for Reference {
 
     fn try_from(value: Value) -> std::result::Result<Self, String> {
         let text = |key: &str| value.get(key).and_then(Value::as_str).map(String::from);
-        let own = match value.as_object().map_or(0, Map::len) {
+        let reference = match value.as_object().map_or(0, Map::len) {
             1 => text("npy").map(|npy| Reference::Npy { npy }).or(text("mm").map(|mm| Reference::Mm { mm })),
             2 => text("npz").and_then(|npz| {
                 let array = text("array").map(|array| Reference::Npz { npz: npz.clone(), array });
@@ -60,7 +60,7 @@ impl TryFrom<Value> for Reference {
             }),
             _ => None,
         };
-        own.ok_or_else(|| {
+        reference.ok_or_else(|| {
             format!(
                 "{value} names no array: write {{\"npy\": \"h.npy\"}}, {{\"npz\": \"h.npz\", \"array\": \"fast\"}} or {{\"mm\": \"h.mtx\"}}"
             )
@@ -263,7 +263,7 @@ fn c_order(values: &[f64], shape: &[usize]) -> Vec<f64> {
         for (own, size) in index.iter_mut().zip(shape).rev() {
             (*own, left) = (left % size, left / size);
         }
-        index.iter().zip(shape).rev().fold(0, |at, (own, size)| at * size + own)
+        index.iter().zip(shape).rev().fold(0, |at, (index, size)| at * size + index)
     };
     (0..values.len()).map(|k| values[place(k)]).collect()
 }
@@ -320,7 +320,7 @@ impl Array {
             return Err(Error::input(field, format!("shape {:?}", self.shape), remedy));
         };
         let all = self.values.chunks_exact((rows * columns).max(1));
-        Ok(all.map(|own| DMatrix::from_row_slice(rows, columns, own)).collect())
+        Ok(all.map(|values| DMatrix::from_row_slice(rows, columns, values)).collect())
     }
 
     /// The diagonal of a square matrix, all elements of any other array.

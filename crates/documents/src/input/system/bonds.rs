@@ -29,7 +29,7 @@ impl Nonlinear {
         let mut clocks: Vec<(&Rational, &Rational)> = self.steps.iter().zip(&self.phases).collect();
         clocks.sort();
         clocks.dedup();
-        let place = |own| clocks.binary_search(&own).expect("one of them");
+        let place = |pair| clocks.binary_search(&pair).expect("one of them");
         let clock_of: Vec<usize> = self.steps.iter().zip(&self.phases).map(place).collect();
         let steps: Vec<_> = clocks.iter().map(|(step, _)| (*step).clone()).collect();
         let phases: Vec<_> = clocks.iter().map(|(_, phase)| (*phase).clone()).collect();

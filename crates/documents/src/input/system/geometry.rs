@@ -21,7 +21,7 @@ impl SystemScene {
         let document = Document::deserialize(&self.source).map_err(no_system)?;
         let mesh = document.mesh.ok_or_else(missing)?;
         let (nodes, elements, moved) = mesh.placed()?;
-        let point = |own: Vec<_>| std::array::from_fn(|axis| own.get(axis).map_or(0.0, to_f64));
+        let point = |values: Vec<_>| std::array::from_fn(|axis| values.get(axis).map_or(0.0, to_f64));
         let points: Vec<[f64; 3]> = nodes.into_iter().map(point).collect();
         Ok(Geometry { symbols: vec!["X".into(); points.len()], points, cells: elements, moved })
     }
@@ -40,7 +40,7 @@ impl SystemScene {
                 && rest.chars().all(char::is_lowercase)
         };
         let named =
-            |i: usize| words(i).and_then(|own| own.split(' ').next()).filter(is_symbol).unwrap_or("X");
+            |i: usize| words(i).and_then(|words| words.split(' ').next()).filter(is_symbol).unwrap_or("X");
         let symbol =
             |i: usize| document.elements.as_ref().map_or(named(i), |all| all[i].as_str()).to_string();
         let symbols = (0..points.len()).map(symbol).collect();

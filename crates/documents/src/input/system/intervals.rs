@@ -183,14 +183,14 @@ impl SystemScene {
     fn scale(&self, path: &str) -> Result<(usize, f64)> {
         let key = path.strip_prefix("potentials.").and_then(|rest| rest.strip_suffix(".scale"));
         let all = &self.source["potentials"];
-        let own = key.map_or(&Value::Null, |key| found(all, key));
-        if own.is_null() {
+        let value = key.map_or(&Value::Null, |key| found(all, key));
+        if value.is_null() {
             return Err(Error::input("intervals", path, "name the scale of a potential"));
         }
         let step = |of: &Value| Written::from(of["step"].clone()).read("step");
-        let step_of = step(own)?;
+        let step_of = step(value)?;
         let steps = all.as_array().into_iter().flatten().map(step).collect::<Result<Vec<_>>>()?;
-        let factor = match own.get("scale") {
+        let factor = match value.get("scale") {
             Some(scale) => to_f64(&Written::from(scale.clone()).read("scale")?),
             None => 1.0,
         };
@@ -304,8 +304,8 @@ impl SystemScene {
     fn multiples(&self, span: &Span, limits: &Limits) -> Result<Vec<Stretch>> {
         let values = self.multiples_of(span)?;
         // One eigenbasis serves them all.
-        if let (Model::Measured(own), Some(_)) = (&self.model, self.model.inner_steps()) {
-            own.kernel()?;
+        if let (Model::Measured(measured_system), Some(_)) = (&self.model, self.model.inner_steps()) {
+            measured_system.kernel()?;
         }
         let stretch = |step: &Rational| {
             let model = self.with("intervals", &[(&span.path, step)])?.model;

@@ -42,7 +42,11 @@ impl Document {
             Error::missing("masses", "a force that is no gradient needs them, one for each degree of freedom")
         })?;
         let masses = numbers("masses", masses)?;
-        let given = self.potentials()?.iter().enumerate().map(|(k, own)| own.jacobian(k, masses.len()));
+        let given = self
+            .potentials()?
+            .iter()
+            .enumerate()
+            .map(|(k, potential_document)| potential_document.jacobian(k, masses.len()));
         Jacobians::rational(&masses, &given.collect::<Result<Vec<_>>>()?)
     }
 }

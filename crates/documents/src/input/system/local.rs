@@ -53,7 +53,7 @@ impl Document {
             let remedy = "has no place in a scheme of local steps: leave it out";
             return Err(Error::input("friction", "given", remedy));
         }
-        let level = |(l, own)| self.level(l, own, &plain, moving);
+        let level = |(l, level_document)| self.level(l, level_document, &plain, moving);
         let levels = levels.iter().enumerate().map(level).collect::<Result<_>>()?;
         Ok(Model::LocalSteps(LocalSteps::new(plain, levels)?))
     }
@@ -61,12 +61,12 @@ impl Document {
     fn level(
         &self,
         l: usize,
-        own: &LevelDocument,
+        level_document: &LevelDocument,
         plain: &System,
         moving: &[(usize, usize)],
     ) -> Result<Level> {
         let field = |name: &str| format!("levels[{l}].{name}");
-        let fine = match (&own.fine, &own.elements, &self.mesh) {
+        let fine = match (&level_document.fine, &level_document.elements, &self.mesh) {
             (Some(fine), None, _) => indices(&field("fine"), fine, plain.size())?,
             (None, Some(elements), Some(mesh)) => {
                 let elements = indices(&field("elements"), elements, mesh.elements.len())?;
@@ -78,7 +78,7 @@ impl Document {
                 return Err(Error::input(&format!("levels[{l}]"), given, remedy));
             }
         };
-        Ok(Level { fine, substeps: own.count(l)? })
+        Ok(Level { fine, substeps: level_document.count(l)? })
     }
 }
 
@@ -96,14 +96,14 @@ impl LevelDocument {
 impl MeshDocument {
     /// Levels of elements.
     pub fn levels(&self, levels: &[LevelDocument]) -> Result<Vec<Level>> {
-        let level = |(l, own): (usize, &LevelDocument)| {
-            let (Some(elements), None) = (&own.elements, &own.fine) else {
+        let level = |(l, level_document): (usize, &LevelDocument)| {
+            let (Some(elements), None) = (&level_document.elements, &level_document.fine) else {
                 let remedy =
                     "name elements: with avi elements have steps of their own, degrees of freedom have none";
                 return Err(Error::input(&format!("levels[{l}]"), "no elements", remedy));
             };
             let fine = indices(&format!("levels[{l}].elements"), elements, self.elements.len())?;
-            Ok(Level { fine, substeps: own.count(l)? })
+            Ok(Level { fine, substeps: level_document.count(l)? })
         };
         levels.iter().enumerate().map(level).collect()
     }

@@ -147,8 +147,9 @@ impl MassesDocument {
         let masses = match self {
             MassesDocument::Array(at) => at.read(field, arrays)?.into_diagonal(field)?,
             MassesDocument::List(all) => {
-                let number =
-                    |(i, own): (usize, &Number)| own.read(&format!("{field}[{i}]")).map(|own| to_f64(&own));
+                let number = |(i, number): (usize, &Number)| {
+                    number.read(&format!("{field}[{i}]")).map(|value| to_f64(&value))
+                };
                 all.iter().enumerate().map(number).collect::<Result<_>>()?
             }
         };
@@ -159,7 +160,7 @@ impl MassesDocument {
 /// Whether some stiffness of the file stands by reference.
 pub(super) fn is_by_reference(source: &Value) -> bool {
     let potentials = source.get("potentials").and_then(Value::as_array);
-    potentials.is_some_and(|all| all.iter().any(|own| own.get("stiffness").is_some_and(Value::is_object)))
+    potentials.is_some_and(|all| all.iter().any(|value| value.get("stiffness").is_some_and(Value::is_object)))
 }
 
 /// The file, its arrays unread.
@@ -185,14 +186,18 @@ pub(super) fn read(document: &Document, arrays: &Arrays) -> Result<Model> {
             return Err(Error::input(field, "given", "is for \"along_orbit\": true: leave it out"));
         }
     }
-    let read = document.potentials.iter().enumerate().map(|(k, own)| own.read(k, arrays));
+    let read = document
+        .potentials
+        .iter()
+        .enumerate()
+        .map(|(k, potential_document)| potential_document.read(k, arrays));
     let mut read = read.collect::<Result<Vec<_>>>()?;
-    let n = read.first().map_or(0, |own| own.stiffness.nrows());
+    let n = read.first().map_or(0, |read| read.stiffness.nrows());
     if n == 0 || n > LARGEST {
         return Err(Error::input("potentials", n, format!("give 1 to {LARGEST} degrees of freedom")));
     }
     let is_sound = |k: &DMatrix<f64>| k.shape() == (n, n) && k.iter().all(|x| x.is_finite());
-    if !read.iter().all(|own| is_sound(&own.stiffness)) {
+    if !read.iter().all(|read| is_sound(&read.stiffness)) {
         let remedy = format!("give {n} x {n} finite numbers for each potential");
         return Err(Error::input("potentials", "a stiffness", remedy));
     }
@@ -205,13 +210,13 @@ pub(super) fn read(document: &Document, arrays: &Arrays) -> Result<Model> {
     let mut body = Body { masses, positions, is_weighted, is_periodic, held: None, rigid: None };
     document.transform(&mut body, &mut read, arrays)?;
     let accuracy = document.accuracy()?;
-    let potentials: Vec<_> = read.into_iter().map(|own| (own.step, own.stiffness)).collect();
+    let potentials: Vec<_> = read.into_iter().map(|read| (read.step, read.stiffness)).collect();
     let model = if document.symmetric {
         let own = MeasuredSystem::new(body, potentials, accuracy)?;
-        let own = if document.keep_rigid { own.keeping_rigid() } else { own };
+        let measured_system = if document.keep_rigid { own.keeping_rigid() } else { own };
         Model::Measured(match &document.method {
-            Some(method) => own.with_method(method.parse()?)?,
-            None => own,
+            Some(method) => measured_system.with_method(method.parse()?)?,
+            None => measured_system,
         })
     } else {
         if let Some(method) = &document.method {
@@ -236,38 +241,38 @@ impl Document {
             return Err(Error::input(field, "given", "has no place along an orbit: leave it out"));
         }
         let (mut steps, mut kicks) = (Vec::new(), Vec::new());
-        for (k, own) in self.potentials.iter().enumerate() {
+        for (k, potential_document) in self.potentials.iter().enumerate() {
             let field = format!("potentials[{k}].stiffness");
-            steps.push(own.step(k)?);
-            if own.scale.is_some() || own.force.is_some() {
+            steps.push(potential_document.step(k)?);
+            if potential_document.scale.is_some() || potential_document.force.is_some() {
                 let remedy = "scale and force have no place along an orbit: leave them out";
                 return Err(Error::input(&format!("potentials[{k}]"), "given", remedy));
             }
-            let own = own.stiffness.read(&field, arrays)?.matrices(&field)?;
-            check_symmetric(&field, &own, self.accuracy()?)?;
-            kicks.push(own);
+            let matrixes = potential_document.stiffness.read(&field, arrays)?.matrices(&field)?;
+            check_symmetric(&field, &matrixes, self.accuracy()?)?;
+            kicks.push(matrixes);
         }
-        let n = kicks.first().and_then(|own: &Vec<DMatrix<f64>>| own.first()).map_or(0, DMatrix::nrows);
+        let n = kicks.first().and_then(|kicks: &Vec<DMatrix<f64>>| kicks.first()).map_or(0, DMatrix::nrows);
         if n == 0 || n > LARGEST {
             return Err(Error::input("potentials", n, format!("give 1 to {LARGEST} degrees of freedom")));
         }
         let masses = self.masses(n, arrays)?.ok_or_else(|| Error::missing("masses", "give them"))?;
-        let own = Along::new(&masses, &steps, &kicks)?.at_accuracy(self.accuracy()?)?;
+        let along = Along::new(&masses, &steps, &kicks)?.at_accuracy(self.accuracy()?)?;
         if let Some(at) = &self.rigid {
             let ends = at.read("rigid", arrays)?.matrices("rigid")?;
             if self.keep_rigid || self.periodic || self.positions.is_some() || self.turned.is_some() {
                 let remedy = "stands in place of positions, turned, periodic and keep_rigid: leave these out";
                 return Err(Error::input("rigid", "given", remedy));
             }
-            return Ok(Model::Along(Box::new(own.free_of(&ends)?)));
+            return Ok(Model::Along(Box::new(along.free_of(&ends)?)));
         }
         let turned = self.turned.as_ref().map(|at| at.read("turned", arrays)).transpose()?;
-        let turned = turned.map(|own| triples(&own.into_values(), n)).transpose()?;
+        let turned = turned.map(|turned| triples(&turned.into_values(), n)).transpose()?;
         Ok(Model::Along(Box::new(match (self.positions(n, arrays)?, turned) {
-            _ if self.keep_rigid => own,
-            _ if self.periodic => own.in_box()?,
-            (Some(start), Some(turned)) => own.turning([&start, &turned])?,
-            (None, None) => own,
+            _ if self.keep_rigid => along,
+            _ if self.periodic => along.in_box()?,
+            (Some(start), Some(turned)) => along.turning([&start, &turned])?,
+            (None, None) => along,
             (start, _) => {
                 let missing = if start.is_some() { "turned" } else { "positions" };
                 let remedy =
@@ -288,7 +293,7 @@ struct Read {
 impl Document {
     /// Whether some stiffness is sparse.
     pub fn is_sparse(&self) -> bool {
-        self.potentials.iter().any(|own| matches!(own.stiffness, Reference::Csr { .. }))
+        self.potentials.iter().any(|potential| matches!(potential.stiffness, Reference::Csr { .. }))
     }
 
     /// The mass of each degree of freedom, where masses are given.
@@ -297,8 +302,8 @@ impl Document {
             (Some(_), Some(_)) => {
                 Err(Error::input("mass_matrix", "given", "stands in place of masses: give one of them"))
             }
-            (Some(own), None) => own.read("masses", n, arrays).map(Some),
-            (None, Some(own)) => own.read("mass_matrix", n, arrays).map(Some),
+            (Some(masses_document), None) => masses_document.read("masses", n, arrays).map(Some),
+            (None, Some(masses_document)) => masses_document.read("mass_matrix", n, arrays).map(Some),
             (None, None) => Ok(None),
         }
     }
@@ -306,14 +311,14 @@ impl Document {
     /// The positions of the particles, where they are given. Elements and bonds are checked against the number of particles.
     pub fn positions(&self, n: usize, arrays: &Arrays) -> Result<Option<Vec<[f64; 3]>>> {
         let positions = self.positions.as_ref().map(|at| at.read("positions", arrays)).transpose()?;
-        let positions = positions.map(|own| triples(&own.into_values(), n)).transpose()?;
+        let positions = positions.map(|positions| triples(&positions.into_values(), n)).transpose()?;
         self.check_atoms(n).map(|()| positions)
     }
 
     /// The accuracy that the file gives, or the usual one.
     pub fn accuracy(&self) -> Result<f64> {
         let given = self.accuracy.as_ref().map(|number| number.read("accuracy")).transpose()?;
-        Ok(given.map_or(USUAL_ACCURACY, |own| to_f64(&own)))
+        Ok(given.map_or(USUAL_ACCURACY, |value| to_f64(&value)))
     }
 
     /// That elements and bonds are those of the particles that there are.
@@ -343,19 +348,19 @@ impl Document {
         };
         // By the masses as given: heavy hydrogens are hydrogens still.
         let named = self.constraints.as_ref();
-        let pairs = named.map(|own| Particles { masses, positions }.pairs(own)).transpose()?;
+        let pairs = named.map(|named| Particles { masses, positions }.pairs(named)).transpose()?;
         let old = body.is_weighted.then(|| masses.clone());
         if let Some(mass) = &self.hydrogen_mass {
             *masses = Particles { masses, positions }.heavier(to_f64(&mass.read("hydrogen_mass")?))?;
         }
-        read.iter_mut().for_each(|own| reweigh(&mut own.stiffness, old.as_deref(), masses));
+        read.iter_mut().for_each(|read| reweigh(&mut read.stiffness, old.as_deref(), masses));
         body.is_weighted = true;
         let Some(pairs) = pairs else { return Ok(()) };
         let particles = Particles { masses, positions };
-        for (k, (own, read)) in self.potentials.iter().zip(read).enumerate() {
+        for (k, (potential_document, read)) in self.potentials.iter().zip(read).enumerate() {
             let field = format!("potentials[{k}].force");
             let remedy = "give the force of each potential at the positions: its tension bends the bonds that are held";
-            let force = own.force.as_ref().ok_or_else(|| Error::missing(&field, remedy))?;
+            let force = potential_document.force.as_ref().ok_or_else(|| Error::missing(&field, remedy))?;
             let force: Vec<f64> =
                 force.read(&field, arrays)?.into_values().iter().map(|x| x * read.scale).collect();
             particles.bend(&mut read.stiffness, &force, &pairs)?;
@@ -380,8 +385,8 @@ impl PotentialDocument {
         let field = |name: &str| format!("potentials[{k}].{name}");
         let step = self.step(k)?;
         let stiffness = self.stiffness.read(&field("stiffness"), arrays)?.matrix(&field("stiffness"))?;
-        let scale = self.scale.as_ref().map(|own| own.read(&field("scale"))).transpose()?;
-        let scale = scale.map_or(1.0, |own| to_f64(&own));
+        let scale = self.scale.as_ref().map(|scale| scale.read(&field("scale"))).transpose()?;
+        let scale = scale.map_or(1.0, |value| to_f64(&value));
         Ok(Read { step, scale, stiffness: stiffness * scale })
     }
 }
@@ -390,9 +395,9 @@ impl PotentialDocument {
 /// taken.
 fn check_symmetric(field: &str, kicks: &[DMatrix<f64>], accuracy: f64) -> Result<()> {
     let largest = kicks.iter().map(DMatrix::norm).fold(0.0, f64::max);
-    let square = kicks.iter().enumerate().filter(|(_, own)| own.is_square());
-    for (k, own) in square {
-        let off = own - own.transpose();
+    let square = kicks.iter().enumerate().filter(|(_, matrix)| matrix.is_square());
+    for (k, matrix) in square {
+        let off = matrix - matrix.transpose();
         if off.norm() / 2.0 > accuracy * largest {
             let (i, j) = off.map(f64::abs).iamax_full();
             let remedy = format!(
@@ -400,7 +405,7 @@ fn check_symmetric(field: &str, kicks: &[DMatrix<f64>], accuracy: f64) -> Result
                  accuracy that covers it",
                 off[(i, j)].abs()
             );
-            return Err(Error::input(&format!("{field}[{k}][{i}][{j}]"), own[(i, j)], remedy));
+            return Err(Error::input(&format!("{field}[{k}][{i}][{j}]"), matrix[(i, j)], remedy));
         }
     }
     Ok(())

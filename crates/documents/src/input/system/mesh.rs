@@ -65,13 +65,13 @@ impl MeshDocument {
         };
         at_most("mesh.nodes", self.nodes.len())?;
         let nodes = read("nodes", &self.nodes)?;
-        let element = |(e, own): (usize, &Vec<Number>)| {
+        let element = |(e, numbers): (usize, &Vec<Number>)| {
             let index = |i: &Number| i.index(&format!("mesh.elements[{e}]"), nodes.len());
-            own.iter().map(index).collect::<Result<Vec<_>>>()
+            numbers.iter().map(index).collect::<Result<Vec<_>>>()
         };
         let elements: Vec<_> = self.elements.iter().enumerate().map(element).collect::<Result<_>>()?;
         let optional = |name: &str, given: &Option<Number>, default: Rational| {
-            given.as_ref().map_or(Ok(default), |own| own.read(&format!("mesh.{name}")))
+            given.as_ref().map_or(Ok(default), |number| number.read(&format!("mesh.{name}")))
         };
         let material = Material {
             young: self.young.read("mesh.young")?,
@@ -96,13 +96,13 @@ impl MeshDocument {
         }
         let mut mesh = Mesh {
             nodes,
-            elements: elements.into_iter().map(|own| (own, Rational::zero())).collect(),
+            elements: elements.into_iter().map(|element| (element, Rational::zero())).collect(),
             fixed,
             material,
         };
         mesh.check()?;
         let steps = self.steps_of(&mesh)?;
-        mesh.elements.iter_mut().zip(steps).for_each(|((_, own), step)| *own = step);
+        mesh.elements.iter_mut().zip(steps).for_each(|((_, value), step)| *value = step);
         Ok(mesh)
     }
 
@@ -118,8 +118,8 @@ impl MeshDocument {
             }
             (None, Some(steps), Some(classes), None) if classes.len() == n => {
                 let steps = numbers("mesh.steps", steps)?;
-                let class = |(e, own): (usize, &Number)| {
-                    Ok(steps[own.index(&format!("mesh.classes[{e}]"), steps.len())?].clone())
+                let class = |(e, number): (usize, &Number)| {
+                    Ok(steps[number.index(&format!("mesh.classes[{e}]"), steps.len())?].clone())
                 };
                 classes.iter().enumerate().map(class).collect()
             }

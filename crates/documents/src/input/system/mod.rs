@@ -141,7 +141,7 @@ impl SystemFile {
     /// This file with other texts in some of its fields, where they are given.
     #[must_use]
     pub fn with<const N: usize>(&self, fields: [(&str, Option<String>); N]) -> SystemFile {
-        fields.into_iter().filter_map(|(key, own)| Some((key, own?))).fold(
+        fields.into_iter().filter_map(|(key, text)| Some((key, text?))).fold(
             self.clone(),
             |mut file, (key, own)| {
                 file.source[key] = own.into();
@@ -232,7 +232,7 @@ impl SystemScene {
         let given = document.labels.as_ref().map(|labels| spread(labels, model.size())).transpose()?;
         let labels = given.or(labels);
         let scene = SystemScene { source, arrays, model, bonds, labels, friction: None };
-        let friction = document.friction.as_ref().map(|own| own.read("friction")).transpose()?;
+        let friction = document.friction.as_ref().map(|friction| friction.read("friction")).transpose()?;
         let method = document.method.as_deref().map(str::parse).transpose()?;
         scene.asked(None, false, friction.as_ref(), method)
     }
@@ -252,22 +252,22 @@ impl SystemScene {
         let exact = "is for stiffnesses by reference: these are exact";
         if let Some(accuracy) = accuracy {
             self.model = match self.model {
-                Model::Measured(own) => Model::Measured(own.at_accuracy(accuracy)?),
-                Model::NoGradient(own) => Model::NoGradient(Box::new(own.at_accuracy(accuracy)?)),
-                Model::Along(own) => Model::Along(Box::new(own.at_accuracy(accuracy)?)),
-                Model::Sparse(own) => Model::Sparse(Box::new(own.at_accuracy(accuracy)?)),
+                Model::Measured(measured_system) => Model::Measured(measured_system.at_accuracy(accuracy)?),
+                Model::NoGradient(jacobians) => Model::NoGradient(Box::new(jacobians.at_accuracy(accuracy)?)),
+                Model::Along(along) => Model::Along(Box::new(along.at_accuracy(accuracy)?)),
+                Model::Sparse(sparse_system) => Model::Sparse(Box::new(sparse_system.at_accuracy(accuracy)?)),
                 _ => return Err(Error::input("accuracy", accuracy, exact)),
             };
         }
         if keeps_rigid {
-            let Model::Measured(own) = self.model else {
+            let Model::Measured(measured_system) = self.model else {
                 let no_gradient = "say \"keep_rigid\": true in the file";
                 let is_by_reference =
                     matches!(self.model, Model::NoGradient(_) | Model::Along(_) | Model::Sparse(_));
                 let remedy = if is_by_reference { no_gradient } else { exact };
                 return Err(Error::input("rigid motions", "kept", remedy));
             };
-            self.model = Model::Measured(own.keeping_rigid());
+            self.model = Model::Measured(measured_system.keeping_rigid());
         }
         if let Some(method) = method {
             self.model = with_method(self.model, self.bonds.as_ref(), method)?;
@@ -325,7 +325,7 @@ impl SystemScene {
     /// # Errors
     /// Where no orbit is found; as [`decide_along`](systems::decide_along).
     pub fn own_orbit(&self, limits: &Limits) -> Result<Option<OwnOrbit>> {
-        let Some(nonlinear) = self.bonds.as_ref().filter(|own| !own.is_harmonic) else { return Ok(None) };
+        let Some(nonlinear) = self.bonds.as_ref().filter(|bonds| !bonds.is_harmonic) else { return Ok(None) };
         let masses: Vec<f64> = self.masses()?.iter().map(to_f64).collect();
         nonlinear.own_orbit(&masses, limits)
     }
@@ -341,9 +341,9 @@ impl SystemScene {
     /// A mass matrix that is not diagonal, steps that are irrational, and as [`Simulation::new`].
     pub fn linear_simulation(&self, x: Vec<f64>, p: Vec<f64>) -> Result<Simulation<f64, avi::Linear<f64>>> {
         match &self.model {
-            Model::Oscillator(own) if !own.has_rational_steps => {
+            Model::Oscillator(oscillator) if !oscillator.has_rational_steps => {
                 let remedy = "a run needs rational steps: choose a unit of time in which they are";
-                return Err(Error::input("step", &own.unit, remedy));
+                return Err(Error::input("step", &oscillator.unit, remedy));
             }
             _ => {}
         }
@@ -372,7 +372,9 @@ impl SystemScene {
 
     fn masses(&self) -> Result<Vec<Rational>> {
         match &self.model {
-            Model::Measured(own) => own.refuse_constraints().and(own.refuse_method("a run"))?,
+            Model::Measured(measured_system) => {
+                measured_system.refuse_constraints().and(measured_system.refuse_method("a run"))?
+            }
             Model::NoGradient(_) => {
                 return Err(Error::input("symmetric", "false", "a run is for forces that are gradients"));
             }
@@ -402,7 +404,7 @@ impl SystemScene {
 
 /// The model under another integrator, unless bonds are there whose forces are not linear.
 fn with_method(model: Model, bonds: Option<&Nonlinear>, method: Method) -> Result<Model> {
-    match bonds.filter(|own| !own.is_harmonic) {
+    match bonds.filter(|bonds| !bonds.is_harmonic) {
         Some(_) => {
             Err(Error::input("method", method, "is for linear systems: give springs in place of bonds"))
         }
@@ -467,13 +469,14 @@ impl Document {
         if self.symmetric == Some(false) {
             return Ok((Model::NoGradient(Box::new(self.jacobians()?)), None));
         }
-        if let Some(own) = self.oscillator()? {
-            return Ok((Model::Oscillator(own), None));
+        if let Some(oscillator) = self.oscillator()? {
+            return Ok((Model::Oscillator(oscillator), None));
         }
         let (mass, potentials) = (self.mass()?, self.potentials()?);
         let n = mass.size();
-        let has_bonds = potentials.iter().any(|own| !own.bonds.is_empty());
-        let linear = potentials.iter().enumerate().map(|(k, own)| own.linear(k, n));
+        let has_bonds = potentials.iter().any(|potential| !potential.bonds.is_empty());
+        let linear =
+            potentials.iter().enumerate().map(|(k, potential_document)| potential_document.linear(k, n));
         match linear.collect::<Result<Vec<_>>>() {
             Ok(linear) if has_bonds => {
                 let (system, bonds) = self.at_equilibrium(mass, potentials, linear)?;

@@ -18,7 +18,7 @@ pub fn of_archive(npz: &str, steps: [&Rational; 2]) -> Value {
     let at = |array: &str| json!({"npz": npz, "array": array});
     let step = |step: &Rational| (step / Rational::from_integer(1000.into())).to_string();
     let potential =
-        |name: &str, own: &Rational| json!({"name": name, "step": step(own), "stiffness": at(name)});
+        |name: &str, value: &Rational| json!({"name": name, "step": step(value), "stiffness": at(name)});
     json!({"schema": super::SCHEMA, "title": npz, "time_unit": "ps", "mass_weighted": true, "masses": at("masses"), "positions": at("positions"),
         "potentials": [potential("fast", steps[0]), potential("slow", steps[1])]})
 }
@@ -31,10 +31,10 @@ impl SystemScene {
     pub fn molecule(&self) -> Result<(Molecule, Scheme)> {
         let (scheme, unit) = (self.scheme()?, self.femtoseconds()?);
         let (source, body, accuracy): (Arc<dyn Source>, _, _) = match self.model.many_levels()? {
-            Some(own) => (Arc::new(own.levels), own.body, own.accuracy),
+            Some(many_levels) => (Arc::new(many_levels.levels), many_levels.body, many_levels.accuracy),
             None => {
-                let own = self.model.two_levels()?;
-                (Arc::new(own.kernel.clone()), own.body, own.accuracy)
+                let two_levels = self.model.two_levels()?;
+                (Arc::new(two_levels.kernel.clone()), two_levels.body, two_levels.accuracy)
             }
         };
         Ok((Molecule::new(source, unit, self.names(body)?, accuracy), scheme))
@@ -45,12 +45,12 @@ impl SystemScene {
     /// # Errors
     /// As [`SystemScene::femtoseconds`]; labels that do not fit.
     pub fn direct(&self) -> Result<Option<Direct>> {
-        let Some(own) = self.model.jacobians() else { return Ok(None) };
-        let names = match own.accuracy() {
-            Some(_) => self.names(own.body())?,
+        let Some(jacobians) = self.model.jacobians() else { return Ok(None) };
+        let names = match jacobians.accuracy() {
+            Some(_) => self.names(jacobians.body())?,
             None => Names::of_labels(self.labels.clone().unwrap_or_default()),
         };
-        Ok(Some(Direct::new(own.clone(), self.femtoseconds()?, names)))
+        Ok(Some(Direct::new(jacobians.clone(), self.femtoseconds()?, names)))
     }
 
     /// The names of atoms, from the labels, elements and bonds of the file.
@@ -74,7 +74,7 @@ impl SystemScene {
         else {
             return Ok(Names::of_labels(labels));
         };
-        let of_atoms = |masses: &[f64]| masses.chunks_exact(3).map(|own| own[0]).collect::<Vec<_>>();
+        let of_atoms = |masses: &[f64]| masses.chunks_exact(3).map(|values| values[0]).collect::<Vec<_>>();
         let given = masses.read("masses", moving.len(), &self.arrays)?;
         let told =
             Told { labels, elements: elements.unwrap_or_default(), bonds: bonded, masses: of_atoms(&given) };
@@ -87,7 +87,7 @@ impl SystemScene {
     /// A file without `time_unit`, or with another than fs, ps, ns or s; as [`Model::measured_steps`](systems::Model::measured_steps).
     pub fn scheme(&self) -> Result<Scheme> {
         let steps = match self.model.jacobians() {
-            Some(own) => own.steps(),
+            Some(jacobians) => jacobians.steps(),
             None => self.model.measured_steps()?,
         };
         let unit = self.femtoseconds()?;

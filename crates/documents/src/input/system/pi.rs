@@ -11,9 +11,17 @@ impl Document {
     /// The system with a rational in the place of π, where stiffnesses involve it; `None` where all numbers are rational.
     pub fn beside_pi(&self, mass: Symmetric) -> Result<Option<System>> {
         let n = mass.size();
-        let potentials = self.potentials()?.iter().enumerate().map(|(k, own)| own.with_pi(k, n));
+        let potentials = self
+            .potentials()?
+            .iter()
+            .enumerate()
+            .map(|(k, potential_document)| potential_document.with_pi(k, n));
         let potentials = potentials.collect::<Result<Vec<_>>>()?;
-        if potentials.iter().flat_map(|own| own.stiffness.values()).all(|x| x.as_rational().is_some()) {
+        if potentials
+            .iter()
+            .flat_map(|potential| potential.stiffness.values())
+            .all(|x| x.as_rational().is_some())
+        {
             return Ok(None);
         }
         beside_pi(mass, &potentials).map(Some)

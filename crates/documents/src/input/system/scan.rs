@@ -139,10 +139,10 @@ impl SystemScene {
     pub fn number(&self, path: &str) -> (String, i8) {
         let keys: Vec<&str> = path.split('.').collect();
         let text = |value: &Value| value.as_str().map_or_else(|| value.to_string(), String::from);
-        let ends = |own: &Value, keys: [&str; 2]| {
+        let ends = |value: &Value, keys: [&str; 2]| {
             let ends = keys.map(|key| match key.parse::<usize>() {
-                Ok(i) => own.get(i).map_or(Value::Null, Value::clone),
-                Err(_) => own.get(key).map_or(Value::Null, Value::clone),
+                Ok(i) => value.get(i).map_or(Value::Null, Value::clone),
+                Err(_) => value.get(key).map_or(Value::Null, Value::clone),
             });
             let shown = ends.iter().filter(|end| !end.is_null()).map(text).collect::<Vec<_>>();
             if shown.len() < 2 { format!("{} to its place", shown.concat()) } else { shown.join("–") }
@@ -195,22 +195,26 @@ impl SystemScene {
         let is_step = |(path, _): &(&str, &Rational)| {
             *path == OUTER || path.starts_with("potentials.") && path.ends_with(".step")
         };
-        if let Model::Sparse(own) = &self.model
+        if let Model::Sparse(sparse_system) = &self.model
             && numbers.iter().all(is_step)
-            && let Some(own) = sparse::with_steps(own, [&self.source, &file])?
+            && let Some(sparse_system) = sparse::with_steps(sparse_system, [&self.source, &file])?
         {
-            return Ok(SystemScene { source: file, model: Model::Sparse(Box::new(own)), ..self.clone() });
+            return Ok(SystemScene {
+                source: file,
+                model: Model::Sparse(Box::new(sparse_system)),
+                ..self.clone()
+            });
         }
         let mut scene = SystemScene::from_json_in(self.arrays.clone(), file)?;
         let method = self.model.method();
         if scene.model.method() != method {
             scene.model = with_method(scene.model, scene.bonds.as_ref(), method)?;
         }
-        if let (Model::Measured(own), Model::Measured(old)) = (&mut scene.model, &self.model) {
-            own.follow(old);
+        if let (Model::Measured(measured_system), Model::Measured(old)) = (&mut scene.model, &self.model) {
+            measured_system.follow(old);
         }
-        if let (Model::Sparse(own), Model::Sparse(old)) = (&mut scene.model, &self.model) {
-            own.follow(old);
+        if let (Model::Sparse(sparse_system), Model::Sparse(old)) = (&mut scene.model, &self.model) {
+            sparse_system.follow(old);
         }
         Ok(scene)
     }
@@ -222,15 +226,15 @@ fn scale_steps(file: &mut Value, outer: &Rational, field: &str) -> Result<()> {
         return Err(Error::input(field, outer, "steps are positive"));
     }
     let mut steps: Vec<&mut Value> = Vec::new();
-    for (key, own) in file.as_object_mut().into_iter().flatten() {
-        match (key.as_str(), own) {
+    for (key, value) in file.as_object_mut().into_iter().flatten() {
+        match (key.as_str(), value) {
             ("potentials", Value::Array(all)) => {
-                steps.extend(all.iter_mut().filter_map(|own| own.get_mut("step")));
+                steps.extend(all.iter_mut().filter_map(|value| value.get_mut("step")));
             }
-            ("build" | "mesh", Value::Object(own)) => {
-                for (key, own) in own.iter_mut() {
-                    match (key.as_str(), own) {
-                        ("step", own) => steps.push(own),
+            ("build" | "mesh", Value::Object(object)) => {
+                for (key, value) in object.iter_mut() {
+                    match (key.as_str(), value) {
+                        ("step", value) => steps.push(value),
                         ("steps", Value::Array(all)) => steps.extend(all),
                         _ => {}
                     }
@@ -239,13 +243,14 @@ fn scale_steps(file: &mut Value, outer: &Rational, field: &str) -> Result<()> {
             _ => {}
         }
     }
-    let read = |own: &&mut Value| Number::from((**own).clone()).read("step");
+    let read = |value: &&mut Value| Number::from((**value).clone()).read("step");
     let given = steps.iter().map(read).collect::<Result<Vec<_>>>()?;
-    let longest = given.iter().max().cloned().filter(|own| *own > Rational::default()).ok_or_else(|| {
-        Error::input(field, OUTER, "the file has no steps: name another number of it, as mesh.courant")
-    })?;
+    let longest =
+        given.iter().max().cloned().filter(|value| *value > Rational::default()).ok_or_else(|| {
+            Error::input(field, OUTER, "the file has no steps: name another number of it, as mesh.courant")
+        })?;
     let factor = outer / longest;
-    steps.into_iter().zip(given).for_each(|(own, step)| *own = (step * &factor).to_string().into());
+    steps.into_iter().zip(given).for_each(|(value, step)| *value = (step * &factor).to_string().into());
     Ok(())
 }
 

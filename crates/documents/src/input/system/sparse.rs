@@ -39,8 +39,11 @@ pub(super) fn read(document: &Document, arrays: &Arrays) -> Result<SparseSystem>
         return local_steps(document, arrays);
     }
     let mut levels = Vec::new();
-    for (k, own) in document.potentials.iter().enumerate() {
-        levels.push((own.step(k)?, rows(&own.stiffness, &format!("potentials[{k}].stiffness"), arrays)?));
+    for (k, potential_document) in document.potentials.iter().enumerate() {
+        levels.push((
+            potential_document.step(k)?,
+            rows(&potential_document.stiffness, &format!("potentials[{k}].stiffness"), arrays)?,
+        ));
     }
     levels.sort_by(|a, b| a.0.cmp(&b.0));
     let [(inner, (n, fast)), (outer, (m, slow))] = &levels[..] else {
@@ -61,15 +64,15 @@ pub(super) fn read(document: &Document, arrays: &Arrays) -> Result<SparseSystem>
         None => (Mat::zeros(*n, 0), ""),
     };
     let count = rigid.ncols();
-    let own = SparseLevels::new(&masses, [fast, slow], rigid)?;
-    let held = own.removed().to_vec();
+    let sparse_levels = SparseLevels::new(&masses, [fast, slow], rigid)?;
+    let held = sparse_levels.removed().to_vec();
     let removed = (count > 0).then_some(Removed { count, found_by, held, total: 0.0 });
-    SparseSystem::new(own, [inner, outer], document.accuracy()?, removed)
+    SparseSystem::new(sparse_levels, [inner, outer], document.accuracy()?, removed)
 }
 
 /// Two levels that a file gives, with the steps of another in which nothing else differs: their stiffnesses are not read again. `None` where the fast one is no
 /// longer the fast one, or there are no two levels.
-pub(super) fn with_steps(own: &SparseSystem, files: [&Value; 2]) -> Result<Option<SparseSystem>> {
+pub(super) fn with_steps(sparse_system: &SparseSystem, files: [&Value; 2]) -> Result<Option<SparseSystem>> {
     let steps = |file: &Value| -> Result<Vec<Rational>> {
         let document = measured::parse(file)?;
         document.potentials.iter().enumerate().map(|(k, potential)| potential.step(k)).collect()
@@ -79,7 +82,7 @@ pub(super) fn with_steps(own: &SparseSystem, files: [&Value; 2]) -> Result<Optio
         ([a, b], [c, d]) if a > b && c > d => [d.clone(), c.clone()],
         _ => return Ok(None),
     };
-    own.with_steps(own_steps.each_ref()).transpose()
+    sparse_system.with_steps(own_steps.each_ref()).transpose()
 }
 
 /// One stiffness with local time steps.
@@ -119,7 +122,7 @@ fn local_steps(document: &Document, arrays: &Arrays) -> Result<SparseSystem> {
         return refused("potentials", format!("{n} rows"), &format!("give 1 to {LARGEST}"));
     }
     let masses = document.masses(n, arrays)?.ok_or_else(|| Error::missing("masses", "give them"))?;
-    let levels = levels.iter().enumerate().map(|(l, own)| own.read(l, n, arrays));
+    let levels = levels.iter().enumerate().map(|(l, level_document)| level_document.read(l, n, arrays));
     let (levels, step) = (levels.collect::<Result<_>>()?, potential.step(0)?);
     SparseSystem::with_local_steps(SparseSteps::new(&masses, &stiffness, levels)?, &step)
 }
@@ -128,14 +131,14 @@ impl LevelDocument {
     fn read(&self, l: usize, n: usize, arrays: &Arrays) -> Result<Level> {
         let field = |name: &str| format!("levels[{l}].{name}");
         let fine: BTreeSet<usize> = match &self.fine {
-            FineDocument::List(own) => own.iter().copied().collect(),
+            FineDocument::List(indexes) => indexes.iter().copied().collect(),
             FineDocument::Array(at) => {
-                let own = at.read(&field("fine"), arrays)?.into_values();
+                let values = at.read(&field("fine"), arrays)?.into_values();
                 let is_index = |x: &&f64| **x >= 0.0 && x.fract() == 0.0 && **x < n as f64;
-                if let Some(x) = own.iter().find(|x| !is_index(x)) {
+                if let Some(x) = values.iter().find(|x| !is_index(x)) {
                     return Err(Error::input(&field("fine"), x, format!("indices are 0 to {}", n - 1)));
                 }
-                own.into_iter().map(|x| x as usize).collect()
+                values.into_iter().map(|x| x as usize).collect()
             }
         };
         let substeps = self.substeps.count(&field("substeps"), LocalSteps::MOST_SUBSTEPS as usize)? as u32;
@@ -157,9 +160,14 @@ impl Document {
             |(k, name, given): (usize, &str, bool)| given.then(|| format!("potentials[{k}].{name}"));
         let potentials = self.potentials.iter().enumerate();
         let potentials = potentials
-            .flat_map(|(k, own)| [(k, "scale", own.scale.is_some()), (k, "force", own.force.is_some())])
+            .flat_map(|(k, potential_document)| {
+                [
+                    (k, "scale", potential_document.scale.is_some()),
+                    (k, "force", potential_document.force.is_some()),
+                ]
+            })
             .find_map(of_potential);
-        let found = fields.into_iter().find(|own| own.1).map(|own| own.0.to_string()).or(potentials);
+        let found = fields.into_iter().find(|field| field.1).map(|field| field.0.to_string()).or(potentials);
         found.map_or(Ok(()), |field| {
             Err(Error::input(
                 &field,

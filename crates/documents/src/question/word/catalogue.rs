@@ -56,33 +56,35 @@ impl Question for Methods {
 
     fn show(&self, all: &Self::Answer) -> Document {
         type Of<'a> = &'a Listed;
-        let exact = |of: Of| of.linted.edge().and_then(Edge::rational).map_or(Cell::Missing, Cell::exact);
-        let of = |edge: Option<Ball>| -> Cell { edge.map(|own| own.to_f64_enclosure()).into() };
-        let engines = |of: Of| match of.method.engines {
+        let exact =
+            |listed: Of| listed.linted.edge().and_then(Edge::rational).map_or(Cell::Missing, Cell::exact);
+        let of = |edge: Option<Ball>| -> Cell { edge.map(|edge| edge.to_f64_enclosure()).into() };
+        let engines = |listed: Of| match listed.method.engines {
             [] => Cell::Missing,
             all => Cell::Text(all.join("; ")),
         };
         let table = Record::new()
-            .field(Column::new("name").left(), |of: Of| of.method.name.into())
-            .field(Column::new("order"), |of| of.linted.order.nominal.into())
-            .field(Column::new("evaluations").in_words("cost"), |of| of.linted.cost.total().into())
-            .field(Column::new("palindrome").left(), |of| of.linted.word.asymmetry().is_none().into())
-            .field(Column::new("edge").titled("omega h below", "$\\omega h$ below").enclosure(), move |own| {
-                of(own.linted.edge_omega_h())
-            })
-            .field(Column::new("nominal_edge").in_words("nominally").enclosure(), move |own| {
-                of(own.linted.nominal_edge())
+            .field(Column::new("name").left(), |listed: Of| listed.method.name.into())
+            .field(Column::new("order"), |listed| listed.linted.order.nominal.into())
+            .field(Column::new("evaluations").in_words("cost"), |listed| listed.linted.cost.total().into())
+            .field(Column::new("palindrome").left(), |listed| listed.linted.word.asymmetry().is_none().into())
+            .field(
+                Column::new("edge").titled("omega h below", "$\\omega h$ below").enclosure(),
+                move |listed| of(listed.linted.edge_omega_h()),
+            )
+            .field(Column::new("nominal_edge").in_words("nominally").enclosure(), move |listed| {
+                of(listed.linted.nominal_edge())
             })
             .field(Column::new("edge_s").in_words("(omega h)^2").aside(), exact)
-            .field(Column::new("efficiency").enclosure(), |of| of.linted.efficiency().into())
+            .field(Column::new("efficiency").enclosure(), |listed| listed.linted.efficiency().into())
             .field(
                 Column::new("coupled_edge").titled("omega1 h below", "$\\omega_1 h$ below").enclosure(),
-                move |own| of(own.two.as_ref().and_then(Linted::edge_omega_h)),
+                move |listed| of(listed.two.as_ref().and_then(Linted::edge_omega_h)),
             )
-            .field(Column::new("free").titled("free", "free").left(), |of| of.is_free().into())
+            .field(Column::new("free").titled("free", "free").left(), |listed| listed.is_free().into())
             .field(Column::new("engines").left(), engines)
-            .field(Column::new("word").left().aside(), |of| Cell::exact(&of.linted.word))
-            .field(Column::new("source").left().aside(), |of| of.method.source.into())
+            .field(Column::new("word").left().aside(), |listed| Cell::exact(&listed.linted.word))
+            .field(Column::new("source").left().aside(), |listed| listed.method.source.into())
             .table(
                 "methods",
                 "Published integrators: order on oscillators, cost a step, stable steps, efficiency, engines",
@@ -133,13 +135,13 @@ impl Listed {
         let two = self.two.as_ref()?;
         let limit = Rational::from_integer(64.into());
         match (&two.stability, &two.pieces) {
-            (Some(own), _) => Some(match own.first_edge() {
+            (Some(stability), _) => Some(match stability.first_edge() {
                 Some(edge) => edge.compare(&limit) != Sign::Negative,
-                None => own.begins_stable(),
+                None => stability.begins_stable(),
             }),
-            (_, Some(own)) if own.is_free => Some(true),
-            (_, Some(own)) if own.all.iter().any(|piece| !piece.stable) => Some(false),
-            (_, Some(own)) => (own.all.len() == 1).then_some(true),
+            (_, Some(pieces)) if pieces.is_free => Some(true),
+            (_, Some(pieces)) if pieces.all.iter().any(|piece| !piece.stable) => Some(false),
+            (_, Some(pieces)) => (pieces.all.len() == 1).then_some(true),
             _ => None,
         }
     }

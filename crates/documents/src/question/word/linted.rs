@@ -84,10 +84,10 @@ impl Pieces {
 }
 
 /// Whether an interval meets [lo, hi].
-fn meets(own: &Interval, lo: &Rational, hi: &Rational) -> bool {
+fn meets(interval: &Interval, lo: &Rational, hi: &Rational) -> bool {
     let after = |edge: &Edge, x: &Rational| edge.compare(x) == Sign::Positive;
-    own.lower.as_ref().is_none_or(|lower| !after(lower, hi))
-        && own.upper.as_ref().is_none_or(|upper| after(upper, lo))
+    interval.lower.as_ref().is_none_or(|lower| !after(lower, hi))
+        && interval.upper.as_ref().is_none_or(|upper| after(upper, lo))
 }
 
 /// √s as an enclosure: h √Λ1.
@@ -121,7 +121,7 @@ impl Linted {
 
     /// √Λ1 h there.
     pub(super) fn edge_omega_h(&self) -> Option<Ball> {
-        let enclosed = || self.pieces.as_ref().and_then(|own| Some(own.omega_h(own.edge()?)));
+        let enclosed = || self.pieces.as_ref().and_then(|pieces| Some(pieces.omega_h(pieces.edge()?)));
         self.edge().map(omega_h).or_else(enclosed)
     }
 
@@ -137,46 +137,47 @@ impl Linted {
     pub(super) fn spans(&self, lambda1: Option<&Laurent>) -> Vec<Span> {
         let root = lambda1.map(|lambda1| lambda1.enclosure(BITS).sqrt(BITS).expect("positive"));
         let over = |x: &Option<Ball>| Some(x.as_ref()?.div(root.as_ref()?, BITS)?.to_f64_enclosure());
-        let shown = |own: &&Interval| self.range.as_ref().is_none_or(|(lo, hi)| meets(own, lo, hi));
-        let exact = |own: &Interval| {
+        let shown = |interval: &&Interval| self.range.as_ref().is_none_or(|(lo, hi)| meets(interval, lo, hi));
+        let exact = |interval: &Interval| {
             let ends = [
-                own.lower.as_ref().map_or(Some(Ball::zero()), |edge| Some(omega_h(edge))),
-                own.upper.as_ref().map(omega_h),
+                interval.lower.as_ref().map_or(Some(Ball::zero()), |edge| Some(omega_h(edge))),
+                interval.upper.as_ref().map(omega_h),
             ];
             let square = |edge: &Option<Edge>| edge.as_ref().and_then(Edge::rational);
             Span {
-                stable: own.stable,
+                stable: interval.stable,
                 h: [over(&ends[0]), over(&ends[1])],
                 ends,
-                squares: [square(&own.lower), square(&own.upper)],
-                includes: own.includes.map(Some),
+                squares: [square(&interval.lower), square(&interval.upper)],
+                includes: interval.includes.map(Some),
             }
         };
-        let enclosed = |(own, pieces): (&Piece, &Pieces)| {
-            let upper = (own.upper.1 < pieces.range.1).then_some(own.upper);
+        let enclosed = |(piece, pieces): (&Piece, &Pieces)| {
+            let upper = (piece.upper.1 < pieces.range.1).then_some(piece.upper);
             Span {
-                stable: own.stable,
-                ends: [Some(pieces.omega_h(own.lower)), upper.map(|own| pieces.omega_h(own))],
-                h: lambda1.map_or([None; 2], |_| [Some(own.lower), upper]),
+                stable: piece.stable,
+                ends: [Some(pieces.omega_h(piece.lower)), upper.map(|upper| pieces.omega_h(upper))],
+                h: lambda1.map_or([None; 2], |_| [Some(piece.lower), upper]),
                 squares: [None, None],
                 includes: [None; 2],
             }
         };
-        let exactly = self.stability.iter().flat_map(|own| &own.intervals).filter(shown).map(exact);
-        let pieces = self.pieces.iter().flat_map(|all| all.all.iter().map(move |own| (own, all)));
+        let exactly =
+            self.stability.iter().flat_map(|stability| &stability.intervals).filter(shown).map(exact);
+        let pieces = self.pieces.iter().flat_map(|all| all.all.iter().map(move |piece| (piece, all)));
         exactly.chain(pieces.map(enclosed)).collect()
     }
 
     /// ω h at the nominal edge an evaluation, gradients and solves counted as one each.
     pub(super) fn efficiency(&self) -> Option<(f64, f64)> {
         let total = Ball::from_integer(&self.cost.total().into());
-        self.nominal_edge()?.div(&total, BITS).map(|own| own.to_f64_enclosure())
+        self.nominal_edge()?.div(&total, BITS).map(|ball| ball.to_f64_enclosure())
     }
 
     /// Evaluations per unit of ω h at the nominal edge.
     pub(super) fn per_unit(&self) -> Option<(f64, f64)> {
         let total = Ball::from_integer(&self.cost.total().into());
-        total.div(&self.nominal_edge()?, BITS).map(|own| own.to_f64_enclosure())
+        total.div(&self.nominal_edge()?, BITS).map(|ball| ball.to_f64_enclosure())
     }
 
     /// The unit of steps: two forces have frequencies of their own.

@@ -18,7 +18,7 @@ impl Linted {
         type Of<'a> = &'a Span;
         let exact = |square: &Option<Rational>| square.as_ref().map_or(Cell::Missing, Cell::exact);
         let record = Record::new()
-            .field(Column::new("stable").left(), |of: Of| of.stable.into())
+            .field(Column::new("stable").left(), |span: Of| span.stable.into())
             .field(
                 Column::new("lower")
                     .titled(
@@ -30,25 +30,25 @@ impl Linted {
                         },
                     )
                     .enclosure(),
-                |of| of.ends[0].as_ref().map(positive).into(),
+                |span| span.ends[0].as_ref().map(positive).into(),
             )
-            .field(Column::new("upper").titled("to", "to").enclosure(), |of| {
-                of.ends[1].as_ref().map(Ball::to_f64_enclosure).into()
+            .field(Column::new("upper").titled("to", "to").enclosure(), |span| {
+                span.ends[1].as_ref().map(Ball::to_f64_enclosure).into()
             })
-            .field(Column::new("lower_s").in_words("lower (omega h)^2 exactly").aside(), move |of| {
-                exact(&of.squares[0])
+            .field(Column::new("lower_s").in_words("lower (omega h)^2 exactly").aside(), move |span| {
+                exact(&span.squares[0])
             })
-            .field(Column::new("upper_s").in_words("upper (omega h)^2 exactly").aside(), move |of| {
-                exact(&of.squares[1])
+            .field(Column::new("upper_s").in_words("upper (omega h)^2 exactly").aside(), move |span| {
+                exact(&span.squares[1])
             })
-            .field(Column::new("lower_included").in_words("with lower end").aside(), |of| {
-                of.includes[0].into()
+            .field(Column::new("lower_included").in_words("with lower end").aside(), |span| {
+                span.includes[0].into()
             })
-            .field(Column::new("upper_included").in_words("with upper end").aside(), |of| {
-                of.includes[1].into()
+            .field(Column::new("upper_included").in_words("with upper end").aside(), |span| {
+                span.includes[1].into()
             })
-            .field(Column::new("h_lower").titled("h from", "$h$ from").enclosure(), |of| of.h[0].into())
-            .field(Column::new("h_upper").titled("h to", "$h$ to").enclosure(), |of| of.h[1].into());
+            .field(Column::new("h_lower").titled("h from", "$h$ from").enclosure(), |span| span.h[0].into())
+            .field(Column::new("h_upper").titled("h to", "$h$ to").enclosure(), |span| span.h[1].into());
         record.table("intervals", "Stable and unstable steps of the word", &self.spans(lambda1))
     }
 
@@ -102,9 +102,9 @@ impl Linted {
                     let exact = edge.rational().map_or(String::new(), |s| format!(" = sqrt({s})"));
                     let below = if edge.coexistence { "<=" } else { "<" };
                     let ends = omega_h(edge).to_f64_enclosure();
-                    let nominal = self.nominal_edge().map(|own| own.to_f64_enclosure()).filter(|own| *own != ends);
-                    let nominal = nominal.map_or(String::new(), |own| {
-                        let own = enclosed(own);
+                    let nominal = self.nominal_edge().map(|ball| ball.to_f64_enclosure()).filter(|pair| *pair != ends);
+                    let nominal = nominal.map_or(String::new(), |pair| {
+                        let own = enclosed(pair);
                         format!("; {own} but for unstable intervals below 1e-9, as rounded coefficients open them")
                     });
                     format!("0 < {unit} {below} {}{exact}{nominal}", enclosed(ends))
@@ -147,7 +147,8 @@ impl Linted {
             (true, [fast, slow]) => format!("{} of force 1, {slow} of force 2", counted(fast, "evaluation")),
         };
         let more = [(cost.gradients, "gradient"), (cost.solves, "linear solve"), (cost.flows, "exact flow")];
-        let more = more.into_iter().filter(|(n, _)| *n > 0).map(|(n, of)| format!(", {}", counted(n, of)));
+        let more =
+            more.into_iter().filter(|(n, _)| *n > 0).map(|(n, text)| format!(", {}", counted(n, text)));
         let mut lines = vec![("cost", format!("{counts}{} a step", more.collect::<String>()))];
         if let Some((most, least)) = self.efficiency().zip(self.per_unit()) {
             let (most, least) = (enclosed(most), enclosed(least));
@@ -233,69 +234,74 @@ pub(super) fn record(question: &Word) -> Record<'_, Linted> {
         let terms: Vec<String> = terms.collect();
         Cell::Text(if terms.is_empty() { "0".into() } else { terms.join(" + ") })
     };
-    let term = |of: &Option<(u64, Radical)>, power: bool| match of {
+    let term = |pair: &Option<(u64, Radical)>, power: bool| match pair {
         None => Cell::Missing,
         Some((k, _)) if power => (*k).into(),
         Some((_, c)) => Cell::Text(c.text(ToString::to_string)),
     };
-    let sum = move |of: Of, name: &str| {
-        of.sums.iter().find(|(own, _)| *own == name).map_or(Cell::Missing, |(_, sum)| text(sum))
+    let sum = move |linted: Of, name: &str| {
+        linted.sums.iter().find(|(text, _)| *text == name).map_or(Cell::Missing, |(_, sum)| text(sum))
     };
-    let at = |of: Of, which: fn(&At) -> &Option<Ball>| -> Cell {
-        of.at.as_ref().zip(question.h.as_ref()).and_then(|(found, h)| rate(which(found), h)).into()
+    let at = |linted: Of, which: fn(&At) -> &Option<Ball>| -> Cell {
+        linted.at.as_ref().zip(question.h.as_ref()).and_then(|(found, h)| rate(which(found), h)).into()
     };
     let mut record = Record::new()
-        .json("word", |of: Of| Cell::exact(&of.word))
-        .json("consistent", |of| of.word.is_consistent().into());
+        .json("word", |linted: Of| Cell::exact(&linted.word))
+        .json("consistent", |linted| linted.word.is_consistent().into());
     for name in ["D", "K", "K1", "K2", "O"] {
-        record = record.json(format!("sums.{name}"), move |of| sum(of, name));
+        record = record.json(format!("sums.{name}"), move |linted| sum(linted, name));
     }
     record = record
-        .json("palindrome", |of| of.word.asymmetry().is_none().into())
-        .json("differs.letter", |of| of.word.asymmetry().map(|place| place.letter as u64).into())
-        .json("differs.there", |of| {
-            of.word.asymmetry().map_or(Cell::Missing, |place| Cell::Text(place.there))
+        .json("palindrome", |linted| linted.word.asymmetry().is_none().into())
+        .json("differs.letter", |linted| linted.word.asymmetry().map(|place| place.letter as u64).into())
+        .json("differs.there", |linted| {
+            linted.word.asymmetry().map_or(Cell::Missing, |place| Cell::Text(place.there))
         })
-        .json("differs.mirrored", |of| {
-            of.word.asymmetry().map_or(Cell::Missing, |place| Cell::Text(place.mirrored))
+        .json("differs.mirrored", |linted| {
+            linted.word.asymmetry().map_or(Cell::Missing, |place| Cell::Text(place.mirrored))
         })
-        .json("order", |of| of.order.order.into())
-        .json("nominal_order", |of| of.order.nominal.into());
+        .json("order", |linted| linted.order.order.into())
+        .json("nominal_order", |linted| linted.order.nominal.into());
     for (i, name) in ["A", "B", "C", "D"].into_iter().enumerate() {
-        record = record.json(format!("error.{name}"), move |of| in_rho(&of.order.error[i]));
+        record = record.json(format!("error.{name}"), move |linted| in_rho(&linted.order.error[i]));
     }
     record
-        .json("frequency.power", move |of| term(&of.order.frequency, true))
-        .json("frequency.coefficient", move |of| term(&of.order.frequency, false))
-        .json("impedance.power", move |of| term(&of.order.impedance, true))
-        .json("impedance.coefficient", move |of| term(&of.order.impedance, false))
-        .json("edge.omega_h", |of| of.edge_omega_h().map(|edge| edge.to_f64_enclosure()).into())
-        .json("edge.s", |of| {
-            of.edge_omega_h()
-                .map(|edge| of.edge().map_or_else(|| edge.square(BITS), Edge::s).to_f64_enclosure())
+        .json("frequency.power", move |linted| term(&linted.order.frequency, true))
+        .json("frequency.coefficient", move |linted| term(&linted.order.frequency, false))
+        .json("impedance.power", move |linted| term(&linted.order.impedance, true))
+        .json("impedance.coefficient", move |linted| term(&linted.order.impedance, false))
+        .json("edge.omega_h", |linted| linted.edge_omega_h().map(|edge| edge.to_f64_enclosure()).into())
+        .json("edge.s", |linted| {
+            linted
+                .edge_omega_h()
+                .map(|edge| linted.edge().map_or_else(|| edge.square(BITS), Edge::s).to_f64_enclosure())
                 .into()
         })
-        .json("edge.exact", |of| of.edge().and_then(Edge::rational).map_or(Cell::Missing, Cell::exact))
-        .json("edge.side", |of| of.edge().map(|edge| i64::from(edge.side)).into())
-        .json("edge.polynomial", |of| of.edge().map_or(Cell::Missing, |edge| Cell::Text(polynomial(edge))))
-        .json("free", |of| of.pieces.as_ref().map(|own| own.is_free).into())
-        .json("nominal_edge", |of| of.nominal_edge().map(|own| own.to_f64_enclosure()).into())
-        .json("evaluations.first", |of| of.cost.evaluations[0].into())
-        .json("evaluations.second", |of| of.cost.evaluations[1].into())
-        .json("evaluations.gradients", |of| of.cost.gradients.into())
-        .json("evaluations.solves", |of| of.cost.solves.into())
-        .json("evaluations.flows", |of| of.cost.flows.into())
-        .json("per_unit", |of| of.per_unit().into())
-        .json("efficiency", |of| of.efficiency().into())
-        .json("verdict.kind", |of| of.at.as_ref().map(|found| found.kind).into())
-        .json("verdict.stable", |of| {
-            of.at.as_ref().filter(|own| own.kind != "edge").map(At::is_stable).into()
+        .json("edge.exact", |linted| {
+            linted.edge().and_then(Edge::rational).map_or(Cell::Missing, Cell::exact)
         })
-        .json("verdict.side", |of| of.at.as_ref().map(|found| i64::from(found.side)).into())
-        .json("verdict.trace", |of| of.at.as_ref().map(|found| found.trace.to_f64_enclosure()).into())
-        .json("verdict.growth_rate", move |of| at(of, |found| &found.ln_multiplier))
-        .json("verdict.frequency", move |of| at(of, |found| &found.angle))
-        .json("verdict.impedance", move |of| at(of, |found| &found.impedance))
+        .json("edge.side", |linted| linted.edge().map(|edge| i64::from(edge.side)).into())
+        .json("edge.polynomial", |linted| {
+            linted.edge().map_or(Cell::Missing, |edge| Cell::Text(polynomial(edge)))
+        })
+        .json("free", |linted| linted.pieces.as_ref().map(|pieces| pieces.is_free).into())
+        .json("nominal_edge", |linted| linted.nominal_edge().map(|ball| ball.to_f64_enclosure()).into())
+        .json("evaluations.first", |linted| linted.cost.evaluations[0].into())
+        .json("evaluations.second", |linted| linted.cost.evaluations[1].into())
+        .json("evaluations.gradients", |linted| linted.cost.gradients.into())
+        .json("evaluations.solves", |linted| linted.cost.solves.into())
+        .json("evaluations.flows", |linted| linted.cost.flows.into())
+        .json("per_unit", |linted| linted.per_unit().into())
+        .json("efficiency", |linted| linted.efficiency().into())
+        .json("verdict.kind", |linted| linted.at.as_ref().map(|found| found.kind).into())
+        .json("verdict.stable", |linted| {
+            linted.at.as_ref().filter(|place| place.kind != "edge").map(At::is_stable).into()
+        })
+        .json("verdict.side", |linted| linted.at.as_ref().map(|found| i64::from(found.side)).into())
+        .json("verdict.trace", |linted| linted.at.as_ref().map(|found| found.trace.to_f64_enclosure()).into())
+        .json("verdict.growth_rate", move |linted| at(linted, |found| &found.ln_multiplier))
+        .json("verdict.frequency", move |linted| at(linted, |found| &found.angle))
+        .json("verdict.impedance", move |linted| at(linted, |found| &found.impedance))
 }
 
 /// The polynomial of an edge, its coefficients exact.

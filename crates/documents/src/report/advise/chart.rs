@@ -73,9 +73,9 @@ fn blocks<'a, T>(
     of: impl Fn(&'a T) -> (Vec<Line>, Status, &'a Option<Rational>),
 ) -> Vec<Block> {
     let mut found: Vec<Block> = Vec::new();
-    for own in all {
-        let (ratio, outer) = (ratio(scheme(own)), scheme(own).outer());
-        let (lines, status, safe) = of(own);
+    for number in all {
+        let (ratio, outer) = (ratio(scheme(number)), scheme(number).outer());
+        let (lines, status, safe) = of(number);
         let chosen = (to_f64(outer), format!("{}: {}", length(outer, unit), status.name()));
         match found.iter_mut().find(|block| block.ratio == ratio) {
             Some(block) => block.chosen.push(chosen),
@@ -91,11 +91,11 @@ fn blocks<'a, T>(
 pub(super) fn of_periods(advice: &Advice, title: &str) -> Figure {
     let lines = |answer: &Answer| {
         let modes = answer.rows.iter().map(|row| mode(advice, answer, row));
-        modes.chain(answer.pairs.iter().map(|own| pair(advice, answer, own))).collect()
+        modes.chain(answer.pairs.iter().map(|pair| pair(advice, answer, pair))).collect()
     };
     let of = |answer| (lines(answer), answer.status, &answer.safe);
     let ends = advice.schemes.iter().flat_map(|answer| &answer.rows).filter_map(|row| row.first.as_ref());
-    let right = ends.map(|of| of.upper.unwrap_or(of.lower).1).fold(0.0, f64::max);
+    let right = ends.map(|ends| ends.upper.unwrap_or(ends.lower).1).fold(0.0, f64::max);
     let near = "two modes may resonate (first order)";
     let foot = advice.modes.iter().fold(Foot::default(), |foot, mode| foot.words(&named(mode, advice.unit)));
     let foot = within(foot, &advice.band, advice.friction.as_ref(), advice.unit);
@@ -107,77 +107,84 @@ pub(super) fn of_periods(advice: &Advice, title: &str) -> Figure {
 pub(super) fn within(foot: Foot, band: &Rational, friction: Option<&Rational>, unit: TimeUnit) -> Foot {
     let foot = foot.words(&format!("all periods within {}", percent(band)));
     let rate = |rate: &Rational| unit.rate(decimal(&(rate * Rational::from_integer(unit.in_rates().into()))));
-    friction.map_or(foot.clone(), |own| foot.words(&format!("friction {}", rate(own))))
+    friction.map_or(foot.clone(), |value| foot.words(&format!("friction {}", rate(value))))
 }
 
 /// Safe up to what is published, caution up to the band's edge, the unstable intervals over what is not advised; no step is called stable where a clock
 /// has no period.
-fn mode(advice: &Advice, answer: &Answer, own: &Row) -> Line {
+fn mode(advice: &Advice, answer: &Answer, row: &Row) -> Line {
     let alone = answer.scheme.steps().len() == 1;
     let known = !advice.silent && !advice.lacks_fast && advice.beads.is_none();
-    let band = own.first.as_ref().filter(|_| known).map_or(0.0, |first| first.lower.0)
+    let band = row.first.as_ref().filter(|_| known).map_or(0.0, |first| first.lower.0)
         * (1.0 - to_f64(&advice.band));
-    let first = own.first.iter().filter(|of| alone || of.upper.is_some());
-    let ends = |of: &Unstable| [of.lower.0, of.upper.map_or(f64::INFINITY, |upper| upper.1)];
+    let first = row.first.iter().filter(|unstable| alone || unstable.upper.is_some());
+    let ends =
+        |unstable: &Unstable| [unstable.lower.0, unstable.upper.map_or(f64::INFINITY, |upper| upper.1)];
     Line {
-        label: literal(&advice.modes[own.mode].name),
+        label: literal(&advice.modes[row.mode].name),
         published: cap(&advice.caps, band),
         band,
-        unstable: first.chain(&own.inside).chain(&own.intervals).map(ends).collect(),
+        unstable: first.chain(&row.inside).chain(&row.intervals).map(ends).collect(),
         ..Line::default()
     }
 }
 
 /// A pair is proven stable as far as all couplings are.
-fn pair(advice: &Advice, answer: &Answer, own: &Pair) -> Line {
+fn pair(advice: &Advice, answer: &Answer, pair: &Pair) -> Line {
     Line {
-        label: literal(&own.modes.map(|i| advice.modes[i].name.as_str()).join(" + ")),
+        label: literal(&pair.modes.map(|i| advice.modes[i].name.as_str()).join(" + ")),
         published: cap(&advice.caps, answer.band_edge.0),
         band: answer.band_edge.0,
-        near: Some(own.near),
+        near: Some(pair.near),
         ..Line::default()
     }
 }
 
 /// The molecule and each group of its fast modes, alike.
 pub(super) fn of_molecule(findings: &Findings, title: &str) -> Figure {
-    let of = |own| (molecule(findings, own), own.status, &own.safe);
-    let far =
-        |own: &Finding| own.growing.last().and_then(|last| last.upper).or(own.first.map(|first| first.1));
+    let of = |finding| (molecule(findings, finding), finding.status, &finding.safe);
+    let far = |finding: &Finding| {
+        finding.growing.last().and_then(|last| last.upper).or(finding.first.map(|first| first.1))
+    };
     let right = findings.schemes.iter().filter_map(far).fold(0.0, f64::max);
     let near = "half a turn of these modes alone";
     let unit = TimeUnit::Femtoseconds;
     let foot = within(Foot::default(), &findings.band, findings.friction.as_ref(), unit);
-    draw(&blocks(&findings.schemes, (|own: &Finding| &own.scheme, unit), of), right, (title, near), unit)
-        .footed(&foot)
+    draw(
+        &blocks(&findings.schemes, (|finding: &Finding| &finding.scheme, unit), of),
+        right,
+        (title, near),
+        unit,
+    )
+    .footed(&foot)
 }
 
 /// The published bound on the outermost step, `band` where there is none.
 fn cap(caps: &Caps, band: f64) -> f64 {
-    caps.outer().map_or(band, |(own, _)| to_f64(own))
+    caps.outer().map_or(band, |(value, _)| to_f64(value))
 }
 
 /// The whole first; below it where each group alone has turned half way round in an outer step.
-fn molecule(findings: &Findings, own: &Finding) -> Vec<Line> {
-    let band = own.band_edge.unwrap_or(0.0);
+fn molecule(findings: &Findings, finding: &Finding) -> Vec<Line> {
+    let band = finding.band_edge.unwrap_or(0.0);
     let published = cap(&findings.caps, band);
-    let proven = own.first.zip(own.first_upper).map(|(first, upper)| [first.1, upper]);
+    let proven = finding.first.zip(finding.first_upper).map(|(first, upper)| [first.1, upper]);
     let ends = |growing: &Growing| [growing.lower, growing.upper.unwrap_or(f64::INFINITY)];
     let whole = Line {
         label: "all, coupled".into(),
         published,
         band,
         unstable: proven.into_iter().collect(),
-        sampled: own.growing.iter().map(ends).collect(),
+        sampled: finding.growing.iter().map(ends).collect(),
         near: None,
     };
-    let parts = to_f64(&(own.scheme.outer() / own.scheme.inner()));
+    let parts = to_f64(&(finding.scheme.outer() / finding.scheme.inner()));
     let half = |period: f64| parts * period / PI * (PI / (2.0 * parts)).sin();
-    let group = |own: &Group| Line {
-        label: format!("{}, {} fs", called(own), nearest(own.period, 4)),
+    let group = |group: &Group| Line {
+        label: format!("{}, {} fs", called(group), nearest(group.period, 4)),
         published,
         band,
-        near: Some(half(own.period.0)),
+        near: Some(half(group.period.0)),
         ..Line::default()
     };
     [whole].into_iter().chain(findings.groups.iter().take(MOST_ROWS).map(group)).collect()
@@ -229,25 +236,25 @@ fn axis(unit: TimeUnit) -> &'static str {
 /// Levers that would let the step grow: a row each, the steps to take and those that are proven for the band.
 pub fn levers(levers: &Levers, title: &str, unit: TimeUnit) -> Figure {
     let (rows, mut layers) = (levers.rows.len(), Layers::default());
-    let ends = |own: &Lever| {
-        let step = own.step.as_ref().map(|(step, _)| to_f64(step));
-        [own.first.map(|first| first.1), own.band_edge.map(|edge| edge.1), step]
+    let ends = |lever: &Lever| {
+        let step = lever.step.as_ref().map(|(step, _)| to_f64(step));
+        [lever.first.map(|first| first.1), lever.band_edge.map(|edge| edge.1), step]
     };
     let right = 1.08 * levers.rows.iter().flat_map(ends).flatten().fold(0.0, f64::max);
     let mut ticks = Vec::new();
-    for (n, own) in levers.rows.iter().enumerate() {
+    for (n, lever) in levers.rows.iter().enumerate() {
         let at = (rows - 1 - n) as f64;
-        let step = own.step.as_ref().map_or(0.0, |(step, _)| to_f64(step));
-        let masked = matches!(own.step, Some((_, Bound::Friction)));
+        let step = lever.step.as_ref().map_or(0.0, |(step, _)| to_f64(step));
+        let masked = matches!(lever.step, Some((_, Bound::Friction)));
         let line = Line {
             published: if masked { 0.0 } else { step },
-            band: own.band_edge.map_or(0.0, |edge| edge.0),
+            band: lever.band_edge.map_or(0.0, |edge| edge.0),
             sampled: masked.then_some([0.0, step]).into_iter().collect(),
-            near: own.first.map(|first| first.0),
+            near: lever.first.map(|first| first.0),
             ..Line::default()
         };
         layers.add(&line, at, right);
-        let name = if own.is_free { format!("{} (none)", own.name) } else { own.name.clone() };
+        let name = if lever.is_free { format!("{} (none)", lever.name) } else { lever.name.clone() };
         let name = literal(&name);
         ticks.push(Tick { at, label: Some(name) });
     }

@@ -34,12 +34,12 @@ pub(super) fn document(findings: &DirectFindings, reading: Option<&Reading>, not
         .entry("ladder", ladder.to_json_rows())
         .entry(
             "published",
-            published(best.scheme.steps().len(), [FASTEST; 2], |of: &Caution| {
-                (findings.fastest / of.place.parts()).into()
+            published(best.scheme.steps().len(), [FASTEST; 2], |caution: &Caution| {
+                (findings.fastest / caution.place.parts()).into()
             }),
         )
         .entry("unknown", UNKNOWN.to_vec())
-        .entries(reading.map(|own| ("engine", tables::engine(step, own))));
+        .entries(reading.map(|reading| ("engine", tables::engine(step, reading))));
     let has_friction = findings.friction.is_some();
     let shown = |key: &str| match key {
         "damped" | "masked" => has_friction,
@@ -73,7 +73,7 @@ fn rate(rate: Option<(f64, f64)>) -> String {
 fn summary(findings: &DirectFindings, reading: Option<&Reading>, notes: &[String]) -> Vec<String> {
     let best = &findings.schemes[0];
     let mut lines = vec![choice(findings, best)];
-    lines.extend(findings.schemes.iter().map(|own| line(findings, own)));
+    lines.extend(findings.schemes.iter().map(|scheme| line(findings, scheme)));
     if let Some(reading) = reading {
         lines.extend(read_from(advised(&best.scheme, &best.safe), reading));
         lines.extend(lines::grompp(reading, FASTEST, |n| {
@@ -146,43 +146,51 @@ fn choice(findings: &DirectFindings, best: &DirectFinding) -> String {
     }
 }
 
-fn line(findings: &DirectFindings, own: &DirectFinding) -> String {
-    let band = match (own.adds, own.in_band) {
+fn line(findings: &DirectFindings, direct_finding: &DirectFinding) -> String {
+    let band = match (direct_finding.adds, direct_finding.in_band) {
         (Adds::Little, Adds::Little) => String::new(),
         (Adds::Little, _) => {
             format!("; with all periods {} shorter that is not proven: do not use", percent(&findings.band))
         }
         _ => ": do not use".into(),
     };
-    let adds = match own.adds {
-        Adds::Little if own.rate == Some((0.0, 0.0)) && findings.accuracy.is_some() => {
+    let adds = match direct_finding.adds {
+        Adds::Little if direct_finding.rate == Some((0.0, 0.0)) && findings.accuracy.is_some() => {
             "stable (proven of the Jacobians given)".into()
         }
-        Adds::Little if own.rate == Some((0.0, 0.0)) => "stable (proven)".into(),
+        Adds::Little if direct_finding.rate == Some((0.0, 0.0)) => "stable (proven)".into(),
         Adds::Little => format!(
             "grows as the forces do by themselves or up to twice as fast (proven), {}",
-            rate(own.rate)
+            rate(direct_finding.rate)
         ),
         Adds::Much => format!(
             "grows more than twice as fast as the forces do by themselves (proven), {}",
-            rate(own.rate)
+            rate(direct_finding.rate)
         ),
         Adds::NotTold => {
-            format!("not told: {} with the steps, {} without", rate(own.rate), rate(findings.without_steps))
+            format!(
+                "not told: {} with the steps, {} without",
+                rate(direct_finding.rate),
+                rate(findings.without_steps)
+            )
         }
     };
-    let of_steps = own.added.filter(|_| own.rate != Some((0.0, 0.0))).map_or_else(String::new, |(lo, hi)| {
-        if is_nothing((lo, hi), own.rate) {
-            return ", of which the steps add nothing within rounding".into();
-        }
-        format!(", of which the steps add {}/ps", nearest((1000.0 * lo, 1000.0 * hi), 3))
-    });
-    let tenfold = own.tenfold_steps.map_or_else(String::new, |steps| {
-        let ps = |steps: f64| steps * number::rational::to_f64(own.scheme.outer()) / 1000.0;
-        let most = own.atoms.as_ref().map_or_else(String::new, |own| format!(", {own} moving most"));
+    let of_steps = direct_finding.added.filter(|_| direct_finding.rate != Some((0.0, 0.0))).map_or_else(
+        String::new,
+        |(lo, hi)| {
+            if is_nothing((lo, hi), direct_finding.rate) {
+                return ", of which the steps add nothing within rounding".into();
+            }
+            format!(", of which the steps add {}/ps", nearest((1000.0 * lo, 1000.0 * hi), 3))
+        },
+    );
+    let tenfold = direct_finding.tenfold_steps.map_or_else(String::new, |steps| {
+        let ps = |steps: f64| steps * number::rational::to_f64(direct_finding.scheme.outer()) / 1000.0;
+        let most =
+            direct_finding.atoms.as_ref().map_or_else(String::new, |own| format!(", {own} moving most"));
         format!("; tenfold in {} ps{most}", nearest((ps(steps.0), ps(steps.1)), 3))
     });
-    let masks = match (own.is_damped, own.masking) {
+    let masks = match (direct_finding.is_damped, direct_finding.masking) {
         (Some(true), _) => "; masked by the friction given (proven)".into(),
         (Some(false), Some(mask)) => {
             format!(
@@ -195,8 +203,8 @@ fn line(findings: &DirectFindings, own: &DirectFinding) -> String {
         }
         _ => String::new(),
     };
-    let run = within(own.within_run, &findings.length, TimeUnit::Femtoseconds);
-    format!("{:7} {adds}{of_steps}{tenfold}{masks}{run}{band}", fs(own.scheme.outer()))
+    let run = within(direct_finding.within_run, &findings.length, TimeUnit::Femtoseconds);
+    format!("{:7} {adds}{of_steps}{tenfold}{masks}{run}{band}", fs(direct_finding.scheme.outer()))
 }
 
 /// The modes that the advice rests on.
@@ -229,39 +237,48 @@ fn rows(findings: &DirectFindings) -> Table {
     let exact = |x: &Option<Rational>| Cell::from(x.as_ref().map(Cell::exact));
     let column = |key: &str, title: &str| Column::new(key).in_words(title);
     Record::new()
-        .field(column("outer", "outer step").in_unit("fs"), |own: &DirectFinding| {
-            Cell::exact(own.scheme.outer())
+        .field(column("outer", "outer step").in_unit("fs"), |direct_finding: &DirectFinding| {
+            Cell::exact(direct_finding.scheme.outer())
         })
-        .field(column("status", "the steps add").left(), |own| own.adds.name().into())
-        .field(column("in_band", "in the band").left(), |own| own.in_band.name().into())
-        .field(rates("growth_rate", "growth"), |own| own.rate.map(per_ps).into())
-        .field(rates("added_by_steps", "of which by steps"), |own| own.added.map(per_ps).into())
-        .field(rates("within_accuracy", "within the accuracy"), |own| own.within_accuracy.map(per_ps).into())
-        .field(enclosed("tenfold_steps", "tenfold in steps"), |own| own.tenfold_steps.into())
-        .field(column("atoms", "moving most").left(), |own| own.atoms.as_deref().into())
-        .field(column("masked_above", "masked by a friction").in_unit("1/ps"), |own| {
-            own.masking.map(|own| 1000.0 * own).into()
+        .field(column("status", "the steps add").left(), |direct_finding| direct_finding.adds.name().into())
+        .field(column("in_band", "in the band").left(), |direct_finding| direct_finding.in_band.name().into())
+        .field(rates("growth_rate", "growth"), |direct_finding| direct_finding.rate.map(per_ps).into())
+        .field(rates("added_by_steps", "of which by steps"), |direct_finding| {
+            direct_finding.added.map(per_ps).into()
         })
-        .field(Column::new("damped"), |own| own.is_damped.into())
-        .field(Column::new("largest").in_unit("fs"), move |own| exact(&own.largest))
-        .field(Column::new("safe").in_unit("fs"), move |own| exact(&own.safe))
-        .field(column("masked", "masked up to").in_unit("fs"), move |own| exact(&own.masked))
-        .field(Column::new("within_run"), |own| own.within_run.into())
+        .field(rates("within_accuracy", "within the accuracy"), |direct_finding| {
+            direct_finding.within_accuracy.map(per_ps).into()
+        })
+        .field(enclosed("tenfold_steps", "tenfold in steps"), |direct_finding| {
+            direct_finding.tenfold_steps.into()
+        })
+        .field(column("atoms", "moving most").left(), |direct_finding| direct_finding.atoms.as_deref().into())
+        .field(column("masked_above", "masked by a friction").in_unit("1/ps"), |direct_finding| {
+            direct_finding.masking.map(|masking| 1000.0 * masking).into()
+        })
+        .field(Column::new("damped"), |direct_finding| direct_finding.is_damped.into())
+        .field(Column::new("largest").in_unit("fs"), move |direct_finding| exact(&direct_finding.largest))
+        .field(Column::new("safe").in_unit("fs"), move |direct_finding| exact(&direct_finding.safe))
+        .field(column("masked", "masked up to").in_unit("fs"), move |direct_finding| {
+            exact(&direct_finding.masked)
+        })
+        .field(Column::new("within_run"), |direct_finding| direct_finding.within_run.into())
         .table("rows", "Each scheme of steps", &findings.schemes)
 }
 
 fn ladder(findings: &DirectFindings) -> Table {
     let schemes = (1u64..).zip(&findings.schemes);
-    let all: Vec<(u64, &Rung)> =
-        schemes.flat_map(|(n, own)| own.ladder.iter().map(move |rung| (n, rung))).collect();
+    let all: Vec<(u64, &Rung)> = schemes
+        .flat_map(|(n, direct_finding)| direct_finding.ladder.iter().map(move |rung| (n, rung)))
+        .collect();
     let column = |key: &str, title: &str| Column::new(key).in_words(title);
     Record::new()
-        .field(Column::new("scheme"), |own: &(u64, &Rung)| own.0.into())
-        .field(Column::new("multiple"), |own| own.1.multiple.into())
-        .field(column("outer", "outer step").in_unit("fs"), |own| Cell::exact(&own.1.outer))
-        .field(rates("growth_rate", "growth"), |own| own.1.rate.map(per_ps).into())
-        .field(column("status", "the steps add").left(), |own| own.1.adds.name().into())
-        .field(column("in_band", "in the band").left(), |own| own.1.in_band.name().into())
-        .field(Column::new("damped"), |own| own.1.is_damped.into())
+        .field(Column::new("scheme"), |pair: &(u64, &Rung)| pair.0.into())
+        .field(Column::new("multiple"), |pair| pair.1.multiple.into())
+        .field(column("outer", "outer step").in_unit("fs"), |pair| Cell::exact(&pair.1.outer))
+        .field(rates("growth_rate", "growth"), |pair| pair.1.rate.map(per_ps).into())
+        .field(column("status", "the steps add").left(), |pair| pair.1.adds.name().into())
+        .field(column("in_band", "in the band").left(), |pair| pair.1.in_band.name().into())
+        .field(Column::new("damped"), |pair| pair.1.is_damped.into())
         .table("ladder", "Every multiple of the step before the outermost one that was looked at", &all)
 }

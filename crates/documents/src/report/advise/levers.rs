@@ -16,7 +16,7 @@ use number::rational::to_f64;
 fn method(way: Way) -> &'static str {
     match way {
         Way::Verlet | Way::Respa | Way::Hydrogens | Way::Held | Way::HeldAndHeavy => "kicks and drifts",
-        Way::Molly(own) => own.name(),
+        Way::Molly(trigonometric) => trigonometric.name(),
         Way::Equilibrium => "molly-equilibrium",
         Way::ImplicitExplicit => "implicit-explicit",
         Way::Friction => "kicks and drifts with friction",
@@ -34,27 +34,35 @@ fn record(unit: TimeUnit) -> Record<'static, Lever> {
     let per = &rate[1..];
     let column = |key: &str, title: &str| Column::new(key).in_words(title);
     let rounded = |x: Option<Rational>| Cell::from(x.as_ref().map(to_f64));
-    let step = |of: &Lever| of.step.as_ref().map(|(step, _)| step.clone());
+    let step = |lever: &Lever| lever.step.as_ref().map(|(step, _)| step.clone());
     Record::new()
-        .field(Column::new("lever").left(), |of: &Lever| of.name.as_str().into())
-        .field(Column::new("method").left(), |of| method(of.way).into())
-        .field(enclosed("first", "first unstable").in_unit(time), |of| of.first.into())
-        .field(column("first_exact", "exactly").in_unit(time), |of| of.exact.as_ref().map(Cell::exact).into())
-        .field(Column::new("free"), |of| of.is_free.into())
-        .field(enclosed("band_edge", "proven below").in_unit(time), |of| of.band_edge.into())
-        .field(column("step", "take").in_unit(time), move |of| step(of).as_ref().map(Cell::exact).into())
-        .field(column("bound", "bounded by").left(), |of| {
-            of.step.as_ref().map(|(_, bound)| bound.name()).into()
+        .field(Column::new("lever").left(), |lever: &Lever| lever.name.as_str().into())
+        .field(Column::new("method").left(), |lever| method(lever.way).into())
+        .field(enclosed("first", "first unstable").in_unit(time), |lever| lever.first.into())
+        .field(column("first_exact", "exactly").in_unit(time), |lever| {
+            lever.exact.as_ref().map(Cell::exact).into()
         })
-        .field(Column::new("inner").in_unit(time), |of| of.inner.as_ref().map(Cell::exact).into())
-        .field(column("slow_per_ps", &format!("slow{per}")), move |of| rounded(of.slow_per_ps(unit)))
-        .field(column("fast_per_ps", &format!("fast{per}")), move |of| rounded(of.fast_per_ps(unit)))
-        .field(column("solves_per_ps", &format!("solves{per}")), move |of| rounded(of.solves_per_ps(unit)))
-        .field(Column::new("gain"), move |of| rounded(of.gain.clone()))
-        .field(column("engines", "who has it").left(), |of| {
-            joined(of.way.engines(), |own| format!("{} {}", own.name, own.keyword))
+        .field(Column::new("free"), |lever| lever.is_free.into())
+        .field(enclosed("band_edge", "proven below").in_unit(time), |lever| lever.band_edge.into())
+        .field(column("step", "take").in_unit(time), move |lever| {
+            step(lever).as_ref().map(Cell::exact).into()
         })
-        .field(Column::new("sources").left(), |of| joined(of.way.engines(), |own| own.source.into()))
+        .field(column("bound", "bounded by").left(), |lever| {
+            lever.step.as_ref().map(|(_, bound)| bound.name()).into()
+        })
+        .field(Column::new("inner").in_unit(time), |lever| lever.inner.as_ref().map(Cell::exact).into())
+        .field(column("slow_per_ps", &format!("slow{per}")), move |lever| rounded(lever.slow_per_ps(unit)))
+        .field(column("fast_per_ps", &format!("fast{per}")), move |lever| rounded(lever.fast_per_ps(unit)))
+        .field(column("solves_per_ps", &format!("solves{per}")), move |lever| {
+            rounded(lever.solves_per_ps(unit))
+        })
+        .field(Column::new("gain"), move |lever| rounded(lever.gain.clone()))
+        .field(column("engines", "who has it").left(), |lever| {
+            joined(lever.way.engines(), |engine| format!("{} {}", engine.name, engine.keyword))
+        })
+        .field(Column::new("sources").left(), |lever| {
+            joined(lever.way.engines(), |engine| engine.source.into())
+        })
 }
 
 /// For people: three digits; who has it stands in lines.
@@ -63,21 +71,21 @@ fn shown(levers: &Levers, full: &Table, unit: TimeUnit) -> Table {
         ["lever", "first", "band_edge", "step", "bound", "slow_per_ps", "fast_per_ps", "gain"]
             .map(Into::into)
             .into();
-    let mut table = for_people(full, |key| columns.iter().any(|own| own == key));
+    let mut table = for_people(full, |key| columns.iter().any(|text| text == key));
     let rows: Vec<Vec<Cell>> = table.rows().to_vec();
     table = Table::new(full.name(), full.caption(), table.columns().to_vec());
     let text = |x: &Rational| Cell::Exact(nearest((to_f64(x), to_f64(x)), 3));
-    for (own, mut row) in levers.rows.iter().zip(rows) {
-        if own.is_free {
+    for (lever, mut row) in levers.rows.iter().zip(rows) {
+        if lever.is_free {
             row[1] = Cell::Text("none".into());
         }
-        row[3] = own.step.as_ref().map(|(step, _)| Cell::Exact(decimal(step))).into();
-        row[5] = own.slow_per_ps(unit).as_ref().map(text).into();
-        row[6] = match own.solves_per_ps(unit) {
+        row[3] = lever.step.as_ref().map(|(step, _)| Cell::Exact(decimal(step))).into();
+        row[5] = lever.slow_per_ps(unit).as_ref().map(text).into();
+        row[6] = match lever.solves_per_ps(unit) {
             Some(solves) => Cell::Text(format!("{} solves", nearest((to_f64(&solves), to_f64(&solves)), 3))),
-            None => own.fast_per_ps(unit).as_ref().map(text).into(),
+            None => lever.fast_per_ps(unit).as_ref().map(text).into(),
         };
-        row[7] = own.gain.as_ref().map(text).into();
+        row[7] = lever.gain.as_ref().map(text).into();
         table.push(row);
     }
     table
@@ -99,11 +107,11 @@ pub(super) fn longer(levers: Option<&Levers>) -> String {
     let Some(levers) = levers else { return "longer: what would let the step grow was not looked at".into() };
     let one = Rational::from_integer(1.into());
     let mut best: Vec<(&Lever, &Rational, &Rational)> = levers.rows.iter().filter_map(gained).collect();
-    best.retain(|(own, _, gain)| **gain > one && !matches!(own.way, Way::Respa | Way::Friction));
+    best.retain(|(lever, _, gain)| **gain > one && !matches!(lever.way, Way::Respa | Way::Friction));
     best.sort_by(|a, b| b.2.cmp(a.2));
-    let shown = |(own, step, gain): &(&Lever, &Rational, &Rational)| {
+    let shown = |(lever, step, gain): &(&Lever, &Rational, &Rational)| {
         let gain = to_f64(gain);
-        format!("{} fs by {} ({} times)", decimal(step), own.name, nearest((gain, gain), 3))
+        format!("{} fs by {} ({} times)", decimal(step), lever.name, nearest((gain, gain), 3))
     };
     let shown: Vec<String> = best.iter().take(3).map(shown).collect();
     if shown.is_empty() {
@@ -113,18 +121,18 @@ pub(super) fn longer(levers: Option<&Levers>) -> String {
     }
 }
 
-fn gained(own: &Lever) -> Option<(&Lever, &Rational, &Rational)> {
-    let (step, _) = own.step.as_ref()?;
-    Some((own, step, own.gain.as_ref()?))
+fn gained(lever: &Lever) -> Option<(&Lever, &Rational, &Rational)> {
+    let (step, _) = lever.step.as_ref()?;
+    Some((lever, step, lever.gain.as_ref()?))
 }
 
 /// The lines beside the table.
 pub(super) fn lines(levers: &Levers, unit: TimeUnit) -> Vec<String> {
     let mut lines = Vec::new();
-    let best = levers.rows.iter().filter(|own| own.gain.is_some() && own.way != Way::Friction);
+    let best = levers.rows.iter().filter(|lever| lever.gain.is_some() && lever.way != Way::Friction);
     let best = best.max_by(|a, b| a.gain.cmp(&b.gain).then(std::cmp::Ordering::Greater));
-    if let Some((own, (step, bound))) = best.and_then(|own| Some((own, own.step.as_ref()?))) {
-        let gain = own.gain.as_ref().map_or(1.0, to_f64);
+    if let Some((lever, (step, bound))) = best.and_then(|best| Some((best, best.step.as_ref()?))) {
+        let gain = lever.gain.as_ref().map_or(1.0, to_f64);
         let word = if gain > 1.0 {
             format!(
                 ", {} times that of kicks and drifts as given or at another ratio",
@@ -136,11 +144,12 @@ pub(super) fn lines(levers: &Levers, unit: TimeUnit) -> Vec<String> {
         lines.push(format!(
             "  levers     the longest step: {} by {} (bounded by {}){word}",
             unit.of(decimal(step)),
-            own.name,
+            lever.name,
             bound.name()
         ));
     }
-    let solved = |own: &Lever| matches!(own.way, Way::Molly(_) | Way::Equilibrium | Way::ImplicitExplicit);
+    let solved =
+        |lever: &Lever| matches!(lever.way, Way::Molly(_) | Way::Equilibrium | Way::ImplicitExplicit);
     if levers.rows.iter().any(solved) {
         lines.push(
             "             MOLLY and implicit-explicit: by linear theory alone; T/3 is published of kicks and drifts. MOLLY follows the fast motion \
@@ -148,23 +157,27 @@ pub(super) fn lines(levers: &Levers, unit: TimeUnit) -> Vec<String> {
                 .into(),
         );
     }
-    if levers.rows.iter().any(|own| matches!(own.step, Some((_, Bound::Friction)))) {
+    if levers.rows.iter().any(|lever| matches!(lever.step, Some((_, Bound::Friction)))) {
         lines.push(
             "             friction: it hides what grows for the periods given; no advice rests on it".into(),
         );
     }
-    let unknown = |own: &&Lever| matches!(own.way, Way::Molly(_) | Way::ImplicitExplicit);
-    let unknown: Vec<&str> = levers.rows.iter().filter(unknown).map(|own| own.name.as_str()).collect();
+    let unknown = |lever: &&Lever| matches!(lever.way, Way::Molly(_) | Way::ImplicitExplicit);
+    let unknown: Vec<&str> = levers.rows.iter().filter(unknown).map(|lever| lever.name.as_str()).collect();
     if !unknown.is_empty() {
         lines.push(format!("             {}: no engine is known to have them", unknown.join("; ")));
     }
     let mut shown: Vec<Way> = Vec::new();
-    for own in levers.rows.iter().filter(|own| !own.way.engines().is_empty()) {
-        if !shown.contains(&own.way) {
-            shown.push(own.way);
-            let all: Vec<String> =
-                own.way.engines().iter().map(|own| format!("{} {}", own.name, own.keyword)).collect();
-            let name = if own.way == Way::Respa { "as given, other ratios" } else { &own.name };
+    for lever in levers.rows.iter().filter(|lever| !lever.way.engines().is_empty()) {
+        if !shown.contains(&lever.way) {
+            shown.push(lever.way);
+            let all: Vec<String> = lever
+                .way
+                .engines()
+                .iter()
+                .map(|engine| format!("{} {}", engine.name, engine.keyword))
+                .collect();
+            let name = if lever.way == Way::Respa { "as given, other ratios" } else { &lever.name };
             lines.push(format!("             {name}: {}", all.join("; ")));
         }
     }

@@ -26,10 +26,10 @@ pub(super) fn unknown(advice: &Advice) -> &'static [&'static str] {
 }
 
 /// Both ends, each to five digits.
-fn interval(of: &Unstable, unit: TimeUnit) -> String {
-    match of.upper {
-        Some(upper) => unit.of(format!("{}-{}", nearest(of.lower, 5), nearest(upper, 5))),
-        None => format!("{} and above", unit.of(nearest(of.lower, 5))),
+fn interval(unstable: &Unstable, unit: TimeUnit) -> String {
+    match unstable.upper {
+        Some(upper) => unit.of(format!("{}-{}", nearest(unstable.lower, 5), nearest(upper, 5))),
+        None => format!("{} and above", unit.of(nearest(unstable.lower, 5))),
     }
 }
 
@@ -45,7 +45,7 @@ pub(super) fn of(advice: &Advice, reading: Option<&Reading>) -> Vec<String> {
         lines.extend((!advice.lacks_fast).then(of_bonds).flatten());
     }
     lines.extend(reasons(advice));
-    lines.extend(advice.levers.iter().flat_map(|own| super::levers::lines(own, advice.unit)));
+    lines.extend(advice.levers.iter().flat_map(|lever| super::levers::lines(lever, advice.unit)));
     lines
 }
 
@@ -137,8 +137,8 @@ fn next(advice: &Advice, answer: &Answer) -> String {
 /// On which condition a scheme is stable where a clock has no period: its forces' own steps are no longer than all others'.
 fn slow_forces(advice: &Advice, answer: &Answer) -> String {
     let Some(proven) = answer.needs else { return String::new() };
-    let own = proven.max(shortest_of(to_f64(answer.scheme.outer())));
-    let [own, proven] = [own, proven].map(|x| advice.unit.of(few(x * 1.005, 3)));
+    let value = proven.max(shortest_of(to_f64(answer.scheme.outer())));
+    let [own, proven] = [value, proven].map(|x| advice.unit.of(few(x * 1.005, 3)));
     format!(
         " where the forces of the clock without a period have periods above {own} (proven stable above {proven})"
     )
@@ -147,17 +147,17 @@ fn slow_forces(advice: &Advice, answer: &Answer) -> String {
 /// What a step is not below.
 fn not_below(advice: &Advice, answer: &Answer) -> String {
     let (scheme, unit) = (&answer.scheme, advice.unit);
-    if let Some((clock, own)) = advice.caps.too_long(scheme) {
+    if let Some((clock, value)) = advice.caps.too_long(scheme) {
         return format!(
             "the step of {} is not below T/6.28 = {} of its own forces",
             length(&scheme.steps()[clock], unit),
-            cap(own, unit)
+            cap(value, unit)
         );
     }
     let third = || unit.of(nearest(advice.modes[advice.fastest].part(3), 3));
     match advice.caps.outer() {
         Some((_, Bound::Third)) => format!("not below T/3 = {}", third()),
-        Some((own, bound)) => format!("not below {} = {}", bound.name(), cap(own, unit)),
+        Some((value, bound)) => format!("not below {} = {}", bound.name(), cap(value, unit)),
         None => "not below what is published".into(),
     }
 }
@@ -312,8 +312,14 @@ pub(super) fn friction(rate: &Rational, unit: TimeUnit) -> String {
 }
 
 /// A period that is known by name, and where it comes from.
-fn typical(own: &Typical) -> String {
-    format!("{} is {} fs, the shortest period {} ({})", own.asked(), own.period, own.what, own.source)
+fn typical(typical: &Typical) -> String {
+    format!(
+        "{} is {} fs, the shortest period {} ({})",
+        typical.asked(),
+        typical.period,
+        typical.what,
+        typical.source
+    )
 }
 
 /// Ring modes by name: their periods, and where kicks meet them.
@@ -345,7 +351,7 @@ fn reasons(advice: &Advice) -> Vec<String> {
         answer.scheme.steps().windows(2).map(|pair| decimal(&(&pair[1] / &pair[0]))).collect();
     let ratio =
         if ratios.is_empty() { String::new() } else { format!(" at the ratio {}", ratios.join(" x ")) };
-    let inner = advice.caps.inner().map(|own| cap(own, unit));
+    let inner = advice.caps.inner().map(|value| cap(value, unit));
     let mut lines = vec![format!(
         "  proven     {}every outer step below {}{ratio} is stable for all periods within {}{}",
         if advice.lacks_fast {
@@ -389,7 +395,7 @@ fn reasons(advice: &Advice) -> Vec<String> {
         lines.push(format!("  engines    {why}: OpenMM, LAMMPS, GROMACS and NAMD refuse that; the scheme is decided above all the same"));
     }
     lines.extend(missing(advice));
-    lines.extend(advice.modes.iter().filter_map(|own| match own.origin {
+    lines.extend(advice.modes.iter().filter_map(|mode| match mode.origin {
         Origin::Typical(known) => {
             let word = if known.is_fast { "fast" } else { "slow" };
             let own = if known.is_fast { "; your molecule may have a faster one" } else { "" };
@@ -421,7 +427,7 @@ fn missing(advice: &Advice) -> Vec<String> {
         let of = |all: &[Typical]| {
             let shown = all
                 .iter()
-                .map(|own| format!("{} {} fs", own.asked(), own.period))
+                .map(|typical| format!("{} {} fs", typical.asked(), typical.period))
                 .collect::<Vec<_>>()
                 .join(", ");
             format!("  fast       {shown}: {}", all[0].source)

@@ -37,8 +37,8 @@ pub enum View<'a> {
 
 /// The document `kickdrift/advise/1`, `kickdrift/advise-system/1` or `kickdrift/advise-direct/1`, but for the input; with what an engine's text says, where the steps are
 /// those of one; for people with `notes` on how it was read.
-pub fn document(of: View, reading: Option<&Reading>, notes: &[String]) -> Document {
-    match of {
+pub fn document(view: View, reading: Option<&Reading>, notes: &[String]) -> Document {
+    match view {
         View::Periods(advice) => of_periods(advice, reading),
         View::Hessians(findings) => molecule::document(findings, reading, notes),
         View::Direct(findings) => direct::document(findings, reading, notes),
@@ -47,8 +47,8 @@ pub fn document(of: View, reading: Option<&Reading>, notes: &[String]) -> Docume
 
 /// Each mode and each pair of modes, or the molecule and each group of its fast modes, at each scheme's own ratio, and the schemes' outer steps as lines
 /// through their rows. Of forces that are no gradient the growth over the outer step; `None` where there is one step alone.
-pub fn figure(of: View, title: &str) -> Option<plot::Figure> {
-    match of {
+pub fn figure(view: View, title: &str) -> Option<plot::Figure> {
+    match view {
         View::Periods(advice) => Some(chart::of_periods(advice, title)),
         View::Hessians(findings) => Some(chart::of_molecule(findings, title)),
         View::Direct(findings) => growth::figure(findings, title),
@@ -63,7 +63,7 @@ fn of_periods(advice: &Advice, reading: Option<&Reading>) -> Document {
     let on_first = advice.modes.iter().filter(|mode| mode.clock == Some(0));
     let inner = on_first.max_by(|a, b| a.stiffness.cmp(&b.stiffness)).unwrap_or(fastest);
     let whose = [fastest, inner];
-    let limit = |of: &Caution| whose[usize::from(of.inner)].at(of.place).into();
+    let limit = |caution: &Caution| whose[usize::from(caution.inner)].at(caution.place).into();
     let steps = advice.schemes[0].scheme.steps().len();
     let rows = row_table(advice, true);
     let document = Document::new("advise")
@@ -77,7 +77,7 @@ fn of_periods(advice: &Advice, reading: Option<&Reading>) -> Document {
             if advice.lacks_fast {
                 Vec::<Value>::new().into()
             } else {
-                published(steps, whose.map(|own| own.name.as_str()), limit)
+                published(steps, whose.map(|whose| whose.name.as_str()), limit)
             },
         )
         .entry("unknown", lines::unknown(advice).to_vec());
@@ -87,7 +87,7 @@ fn of_periods(advice: &Advice, reading: Option<&Reading>) -> Document {
     let document = levers::add(document, advice.levers.as_ref(), advice.unit).and_rows(modes);
     let document = if pairs.rows().is_empty() { document } else { document.and_rows(pairs) };
     let step = lines::of_answer(&advice.schemes[0]);
-    let document = document.entries(reading.map(|own| ("engine", engine(step, own))));
+    let document = document.entries(reading.map(|reading| ("engine", engine(step, reading))));
     document.summary(&lines::of(advice, reading))
 }
 
@@ -127,7 +127,7 @@ fn scheme_table(advice: &Advice) -> Table {
         .field(Column::new("band_edge").enclosure(), |answer| answer.band_edge.into())
         .field(Column::new("largest"), |answer| answer.largest.as_ref().map(Cell::exact).into())
         .field(Column::new("safe"), |answer| answer.safe.as_ref().map(Cell::exact).into())
-        .field(Column::new("bound"), |answer| answer.bound.map(|own| own.name()).into())
+        .field(Column::new("bound"), |answer| answer.bound.map(|bound| bound.name()).into())
         .field(Column::new("needs"), |answer| answer.needs.into())
         .field(Column::new("within_run"), |answer| answer.within_run.into())
         .table("schemes", "", &advice.schemes)
@@ -151,33 +151,36 @@ fn row_table(advice: &Advice, all: bool) -> Table {
         let one = move |row| Named { scheme: n + 1, answer, mode: "", row };
         answer.rows.iter().map(one)
     });
-    let named: Vec<Named> = named.map(|of| Named { mode: &advice.modes[of.row.mode].name, ..of }).collect();
+    let named: Vec<Named> =
+        named.map(|named| Named { mode: &advice.modes[named.row.mode].name, ..named }).collect();
     let mut record = Record::new()
-        .field(Column::new("scheme"), |of: &Named| (of.scheme as u64).into())
-        .field(Column::new("outer").in_words("outer step").in_unit(time), move |of| {
-            let outer = of.answer.scheme.outer();
+        .field(Column::new("scheme"), |named: &Named| (named.scheme as u64).into())
+        .field(Column::new("outer").in_words("outer step").in_unit(time), move |named| {
+            let outer = named.answer.scheme.outer();
             if all { Cell::exact(outer) } else { Cell::Exact(decimal(outer)) }
         })
-        .field(Column::new("mode").left(), |of| of.mode.into())
-        .field(Column::new("kind").left(), |of| of.row.found.kind.name().into())
-        .field(enclosed("trace", "Tr"), |of| of.row.found.trace.into())
-        .field(enclosed("growth_rate", "growth").in_unit(rate), move |of| per(unit, of.row.found.rate).into())
-        .field(enclosed("tenfold_steps", "tenfold in steps"), |of| of.row.tenfold_steps.into())
-        .field(enclosed("masked_above", "masked above a friction").in_unit(rate), move |of| {
-            of.row.masking.as_ref().map(|own| per(unit, (own.grows, own.least()))).into()
+        .field(Column::new("mode").left(), |named| named.mode.into())
+        .field(Column::new("kind").left(), |named| named.row.found.kind.name().into())
+        .field(enclosed("trace", "Tr"), |named| named.row.found.trace.into())
+        .field(enclosed("growth_rate", "growth").in_unit(rate), move |named| {
+            per(unit, named.row.found.rate).into()
         })
-        .field(Column::new("masked_below").in_words("masked below").in_unit(rate), move |of| {
-            let end = |own: &Masked| {
-                Some((f64::from(unit.in_rates()) * own.ranges[0].1).next_down())
-                    .filter(|end| end.is_finite() && !own.stays())
+        .field(enclosed("tenfold_steps", "tenfold in steps"), |named| named.row.tenfold_steps.into())
+        .field(enclosed("masked_above", "masked above a friction").in_unit(rate), move |named| {
+            named.row.masking.as_ref().map(|masking| per(unit, (masking.grows, masking.least()))).into()
+        })
+        .field(Column::new("masked_below").in_words("masked below").in_unit(rate), move |named| {
+            let end = |masked: &Masked| {
+                Some((f64::from(unit.in_rates()) * masked.ranges[0].1).next_down())
+                    .filter(|end| end.is_finite() && !masked.stays())
             };
-            of.row.masking.as_ref().and_then(end).into()
+            named.row.masking.as_ref().and_then(end).into()
         })
-        .field(Column::new("damped"), |of| of.row.is_damped.into());
+        .field(Column::new("damped"), |named| named.row.is_damped.into());
     let ratios: [(&str, Ratio); 2] = [("ratios_lower", |(lo, _)| lo), ("ratios_upper", |(_, hi)| hi)];
     for (key, end) in ratios.into_iter().filter(|_| all) {
-        record =
-            record.field(Column::new(key), move |of| of.row.ratios.as_ref().map(end).map(Cell::exact).into());
+        record = record
+            .field(Column::new(key), move |named| named.row.ratios.as_ref().map(end).map(Cell::exact).into());
     }
     let places: [(&str, &str, Which); 4] = [
         ("first", "first unstable", |row| row.first.as_ref()),
@@ -187,14 +190,14 @@ fn row_table(advice: &Advice, all: bool) -> Table {
     ];
     let shown = if all { 4 } else { 1 };
     let ends: [(&str, &str, End); 2] =
-        [("lower", "from", |of| Some(of.lower)), ("upper", "to", |of| of.upper)];
+        [("lower", "from", |unstable| Some(unstable.lower)), ("upper", "to", |unstable| unstable.upper)];
     for (key, title, which) in places.into_iter().take(shown) {
         for (end, word, find) in ends {
             let column = enclosed(&format!("{key}_{end}"), &format!("{title} {word}")).in_unit(time);
-            record = record.field(column, move |of| which(of.row).and_then(find).into());
+            record = record.field(column, move |named| which(named.row).and_then(find).into());
         }
         let worst = Column::new(&format!("{key}_tenfold_steps")).in_words("worst: tenfold in steps");
-        record = record.field(worst, move |of| match which(of.row).and_then(|of| of.worst) {
+        record = record.field(worst, move |named| match which(named.row).and_then(|which| which.worst) {
             Some(worst) if !all => Cell::Exact(nearest((worst.steps, worst.steps), 4)),
             worst => worst.map(|worst| worst.steps).into(),
         });
@@ -204,8 +207,8 @@ fn row_table(advice: &Advice, all: bool) -> Table {
     if all {
         return table;
     }
-    let masked = named.iter().any(|of| of.row.masking.is_some());
-    let bounded = named.iter().any(|of| of.row.masking.as_ref().is_some_and(|own| !own.stays()));
+    let masked = named.iter().any(|named| named.row.masking.is_some());
+    let bounded = named.iter().any(|named| named.row.masking.as_ref().is_some_and(|masked| !masked.stays()));
     for_people(&table, |key| match key {
         "masked_above" => masked,
         "masked_below" => bounded,
@@ -218,14 +221,14 @@ fn interval_table(advice: &Advice) -> Table {
     let answers = advice.schemes.iter().enumerate();
     let rows = answers.flat_map(|(n, answer)| answer.rows.iter().map(move |row| (n as u64 + 1, row)));
     let all: Vec<(u64, usize, &Unstable)> =
-        rows.flat_map(|(n, row)| row.intervals.iter().map(move |own| (n, row.mode, own))).collect();
+        rows.flat_map(|(n, row)| row.intervals.iter().map(move |interval| (n, row.mode, interval))).collect();
     let record = Record::new()
-        .field(Column::new("scheme"), |of: &(u64, usize, &Unstable)| of.0.into())
-        .field(Column::new("mode"), |of| advice.modes[of.1].name.as_str().into())
-        .field(Column::new("m"), |of| of.2.label.into())
-        .field(Column::new("lower").enclosure(), |of| of.2.lower.into())
-        .field(Column::new("upper").enclosure(), |of| of.2.upper.into())
-        .field(Column::new("tenfold_steps"), |of| of.2.worst.map(|worst| worst.steps).into());
+        .field(Column::new("scheme"), |triple: &(u64, usize, &Unstable)| triple.0.into())
+        .field(Column::new("mode"), |triple| advice.modes[triple.1].name.as_str().into())
+        .field(Column::new("m"), |triple| triple.2.label.into())
+        .field(Column::new("lower").enclosure(), |triple| triple.2.lower.into())
+        .field(Column::new("upper").enclosure(), |triple| triple.2.upper.into())
+        .field(Column::new("tenfold_steps"), |triple| triple.2.worst.map(|worst| worst.steps).into());
     record.table("intervals", "", &all)
 }
 
@@ -241,12 +244,12 @@ fn pair_table(advice: &Advice) -> Table {
         pairs.flat_map(|(n, answer)| answer.pairs.iter().map(move |pair| (n + 1, pair))).collect();
     let name = |i: usize| Cell::from(advice.modes[i].name.as_str());
     let record = Record::new()
-        .field(Column::new("scheme"), |of: &(usize, &Pair)| (of.0 as u64).into())
-        .field(Column::new("first").left(), move |of: &(usize, &Pair)| name(of.1.modes[0]))
-        .field(Column::new("second").left(), move |of: &(usize, &Pair)| name(of.1.modes[1]))
+        .field(Column::new("scheme"), |pair: &(usize, &Pair)| (pair.0 as u64).into())
+        .field(Column::new("first").left(), move |pair: &(usize, &Pair)| name(pair.1.modes[0]))
+        .field(Column::new("second").left(), move |pair: &(usize, &Pair)| name(pair.1.modes[1]))
         .field(
             Column::new("near").in_words("outer step near").in_unit(advice.unit.names()[0]),
-            |of: &(usize, &Pair)| super::decimal::rounded(of.1.near, 4).into(),
+            |pair: &(usize, &Pair)| super::decimal::rounded(pair.1.near, 4).into(),
         );
     record.table("pairs", "Where two modes may resonate with each other (first order, not proven)", &pairs)
 }

@@ -22,9 +22,9 @@ pub(super) fn document(findings: &Findings, reading: Option<&Reading>, notes: &[
     let (best, between) = (&findings.schemes[0], &findings.between);
     let document = Document::new("advise-system")
         .entries((!between.is_empty()).then(|| ("between_periods", between.clone())))
-        .entry("rigid_motions.count", removed.map(|own| own.count))
-        .entry("rigid_motions.found_by", removed.map(|own| own.found_by))
-        .entry("rigid_motions.held", removed.map(|own| own.held.clone()))
+        .entry("rigid_motions.count", removed.map(|removed| removed.count))
+        .entry("rigid_motions.found_by", removed.map(|removed| removed.found_by))
+        .entry("rigid_motions.held", removed.map(|removed| removed.held.clone()))
         .entry("accuracy", findings.accuracy)
         .entry("slow_period", findings.slow)
         .entry("groups", groups.to_json_rows())
@@ -32,12 +32,12 @@ pub(super) fn document(findings: &Findings, reading: Option<&Reading>, notes: &[
         .entry("intervals", intervals.to_json_rows())
         .entry(
             "published",
-            published(best.scheme.steps().len(), [called(fastest); 2], |of: &Caution| {
-                (fastest.period.0 / of.place.parts()).into()
+            published(best.scheme.steps().len(), [called(fastest); 2], |caution: &Caution| {
+                (fastest.period.0 / caution.place.parts()).into()
             }),
         )
         .entry("unknown", UNKNOWN.to_vec())
-        .entries(reading.map(|own| ("engine", tables::engine(advised_step(best), own))))
+        .entries(reading.map(|reading| ("engine", tables::engine(advised_step(best), reading))))
         .long_rows(for_people(&rows, |key| match key {
             "holds" => false,
             "masked_above" | "damped" => findings.friction.is_some(),
@@ -73,7 +73,7 @@ fn summary(findings: &Findings, reading: Option<&Reading>, notes: &[String]) -> 
     let choice = Choice { scheme, safe, bound, largest, caps, band: &band, fastest, edge, harmonic, unit };
     let mut lines =
         vec![choice.words(), limit(&name, findings, best), super::levers::longer(findings.levers.as_ref())];
-    lines.extend(findings.schemes.iter().map(|own| line(findings, own)));
+    lines.extend(findings.schemes.iter().map(|scheme| line(findings, scheme)));
     if let Some(reading) = reading {
         lines.extend(read_from(advised_step(best), reading));
         lines.extend(lines::grompp(reading, &name, |n| rounded(period / n as f64, 3)));
@@ -87,11 +87,11 @@ fn summary(findings: &Findings, reading: Option<&Reading>, notes: &[String]) -> 
             findings.accuracy
         ));
     }
-    let inner = findings.caps.inner().map(|own| cap(own, unit));
+    let inner = findings.caps.inner().map(|value| cap(value, unit));
     lines.push(lines::published(&name, best.scheme.steps().len(), inner, |place| {
         unit.of(rounded(period / place.parts(), 4))
     }));
-    lines.extend((2..).zip(&findings.between).map(|(level, own)| between(level, *own)));
+    lines.extend((2..).zip(&findings.between).map(|(level, value)| between(level, *value)));
     lines.extend((best.scheme.steps().len() > 1).then(|| slow(findings.slow)));
     lines.push(format!("  unknown    {}", UNKNOWN[0]));
     lines.extend(notes.iter().map(|note| format!("  read       {note}")));
@@ -106,7 +106,7 @@ fn summary(findings: &Findings, reading: Option<&Reading>, notes: &[String]) -> 
         ));
         lines.extend(removed.warning(findings.accuracy).map(|own| format!("  rigid      {own}")));
     }
-    lines.extend(findings.levers.iter().flat_map(|own| super::levers::lines(own, unit)));
+    lines.extend(findings.levers.iter().flat_map(|lever| super::levers::lines(lever, unit)));
     lines
 }
 
@@ -130,8 +130,8 @@ fn rounded(x: f64, digits: usize) -> String {
 }
 
 /// The bound of the outer step.
-fn limit(name: &str, findings: &Findings, own: &Finding) -> String {
-    let first = own.first.map_or_else(String::new, |(lo, hi)| {
+fn limit(name: &str, findings: &Findings, finding: &Finding) -> String {
+    let first = finding.first.map_or_else(String::new, |(lo, hi)| {
         format!("; the first unstable outer step is {} fs (proven)", nearest((lo, hi), 4))
     });
     let period = findings.groups[0].period.0;
@@ -176,8 +176,8 @@ fn slow(period: f64) -> String {
 }
 
 /// "5.0226-5.0228 fs (tenfold in ...), 5.0229-5.032 fs (...)".
-fn interval(own: &Finding) -> Option<String> {
-    let (lo, hi) = own.first?;
+fn interval(finding: &Finding) -> Option<String> {
+    let (lo, hi) = finding.first?;
     let one = |(n, growing): (usize, &Growing)| {
         let lower = if n == 0 { nearest((lo, hi), 5) } else { rounded(growing.lower, 5) };
         let end = growing.upper.map_or_else(|| " and on".into(), |upper| format!("-{}", rounded(upper, 5)));
@@ -185,46 +185,50 @@ fn interval(own: &Finding) -> Option<String> {
         let worst = rounded(std::f64::consts::LN_10 / (rate * at), 3);
         format!("{lower}{end} fs (at worst tenfold in {worst} steps)")
     };
-    Some(own.growing.iter().enumerate().map(one).collect::<Vec<_>>().join(", "))
+    Some(finding.growing.iter().enumerate().map(one).collect::<Vec<_>>().join(", "))
 }
 
-fn line(findings: &Findings, own: &Finding) -> String {
-    let outer = to_f64(own.scheme.outer());
+fn line(findings: &Findings, finding: &Finding) -> String {
+    let outer = to_f64(finding.scheme.outer());
     let next = || {
-        let margin = own.first.map_or_else(String::new, |(lo, hi)| {
+        let margin = finding.first.map_or_else(String::new, |(lo, hi)| {
             format!(", margin {} fs", nearest((lo - outer, hi - outer), 3))
         });
-        interval(own).map_or_else(String::new, |next| format!("; next unstable interval {next}{margin}"))
+        interval(finding).map_or_else(String::new, |next| format!("; next unstable interval {next}{margin}"))
     };
-    let what = match own.status {
+    let what = match finding.status {
         Status::Safe => format!("safe{}", next()),
-        Status::Caution => format!("stable{}; caution: {}", next(), not_below(findings, own)),
+        Status::Caution => format!("stable{}; caution: {}", next(), not_below(findings, finding)),
         Status::Near => {
             format!("stable{}: less than the band of {}: do not use", next(), percent(&findings.band))
         }
         Status::Island => {
-            format!("stable, but above the unstable {}: do not use", interval(own).unwrap_or_default())
+            format!("stable, but above the unstable {}: do not use", interval(finding).unwrap_or_default())
         }
         Status::NotTold => {
             format!(
                 "not told: nothing is proven of all Hessians within {:.0e} of their norms{}: do not use",
                 findings.accuracy,
-                if own.rate == Some(0.0) { ", though those given are stable".into() } else { grows(own) }
+                if finding.rate == Some(0.0) {
+                    ", though those given are stable".into()
+                } else {
+                    grows(finding)
+                }
             )
         }
-        Status::Unstable => format!("unstable{}: do not use", grows(own)),
+        Status::Unstable => format!("unstable{}: do not use", grows(finding)),
     };
-    let within = within(own.within_run, &findings.length, TimeUnit::Femtoseconds);
-    format!("{:7} {what}{within}", fs(own.scheme.outer()))
+    let within = within(finding.within_run, &findings.length, TimeUnit::Femtoseconds);
+    format!("{:7} {what}{within}", fs(finding.scheme.outer()))
 }
 
 /// What a step is not below.
-fn not_below(findings: &Findings, own: &Finding) -> String {
+fn not_below(findings: &Findings, finding: &Finding) -> String {
     let unit = TimeUnit::Femtoseconds;
-    if let Some((clock, cap)) = findings.caps.too_long(&own.scheme) {
+    if let Some((clock, cap)) = findings.caps.too_long(&finding.scheme) {
         return format!(
             "the step of {} is not below T/6.28 = {} of its own forces",
-            fs(&own.scheme.steps()[clock]),
+            fs(&finding.scheme.steps()[clock]),
             self::cap(cap, unit)
         );
     }
@@ -237,11 +241,11 @@ fn not_below(findings: &Findings, own: &Finding) -> String {
 }
 
 /// ": tenfold in ...".
-fn grows(own: &Finding) -> String {
-    let Some((steps, rate)) = own.tenfold_steps().zip(own.rate) else { return String::new() };
-    let named = own.name.as_ref().map_or_else(String::new, |name| format!(", {name}"));
-    let atoms = own.atoms.as_ref().map_or_else(String::new, |atoms| format!(", {atoms} moving most"));
-    let friction = match (own.is_damped, own.masking) {
+fn grows(finding: &Finding) -> String {
+    let Some((steps, rate)) = finding.tenfold_steps().zip(finding.rate) else { return String::new() };
+    let named = finding.name.as_ref().map_or_else(String::new, |name| format!(", {name}"));
+    let atoms = finding.atoms.as_ref().map_or_else(String::new, |atoms| format!(", {atoms} moving most"));
+    let friction = match (finding.is_damped, finding.masking) {
         (Some(true), _) => "masked by the friction given, which hides it and does not cure it".into(),
         (Some(false), Some(mask)) => {
             format!(
@@ -260,19 +264,21 @@ fn grows(own: &Finding) -> String {
     format!(
         ": tenfold in {} outer steps = {} ps, {}/ps{named}{atoms} ({friction})",
         rounded(steps, 3),
-        rounded(steps * to_f64(own.scheme.outer()) / 1000.0, 3),
+        rounded(steps * to_f64(finding.scheme.outer()) / 1000.0, 3),
         rounded(1000.0 * rate, 3)
     )
 }
 
 fn groups(findings: &Findings) -> Table {
     Record::new()
-        .field(Column::new("count"), |own: &Group| (own.count as u64).into())
-        .field(Column::new("shortest").in_words("shortest period").in_unit("fs"), |own| own.period.0.into())
-        .field(Column::new("longest").in_unit("fs"), |own| own.period.1.into())
-        .field(Column::new("half").in_words("T/2"), |own| (own.period.0 / 2.0).into())
-        .field(Column::new("name").in_words("modes").left(), |own| own.name.as_deref().into())
-        .field(Column::new("atoms").in_words("the fastest moves").left(), |own| own.atoms.as_str().into())
+        .field(Column::new("count"), |group: &Group| (group.count as u64).into())
+        .field(Column::new("shortest").in_words("shortest period").in_unit("fs"), |group| {
+            group.period.0.into()
+        })
+        .field(Column::new("longest").in_unit("fs"), |group| group.period.1.into())
+        .field(Column::new("half").in_words("T/2"), |group| (group.period.0 / 2.0).into())
+        .field(Column::new("name").in_words("modes").left(), |group| group.name.as_deref().into())
+        .field(Column::new("atoms").in_words("the fastest moves").left(), |group| group.atoms.as_str().into())
         .table("groups", "Modes of the fast stiffness alone, the fastest first", &findings.groups)
 }
 
@@ -280,19 +286,19 @@ fn groups(findings: &Findings) -> Table {
 fn intervals(findings: &Findings) -> Table {
     let schemes = (1u64..).zip(&findings.schemes);
     let found: Vec<(u64, &Growing)> =
-        schemes.flat_map(|(n, own)| own.growing.iter().map(move |growing| (n, growing))).collect();
+        schemes.flat_map(|(n, finding)| finding.growing.iter().map(move |growing| (n, growing))).collect();
     let column = |key: &str, title: &str| Column::new(key).in_words(title);
     let record = Record::new()
-        .field(Column::new("scheme"), |own: &(u64, &Growing)| own.0.into())
-        .field(column("lower", "grows from").in_unit("fs"), |own| own.1.lower.into())
-        .field(column("upper", "to").in_unit("fs"), |own| own.1.upper.into())
-        .field(column("stable_again", "stable again").in_unit("fs"), |own| own.1.stable_again.into())
-        .field(column("worst_outer", "worst at").in_unit("fs"), |own| own.1.worst.0.into())
-        .field(column("worst_growth_rate", "growth there").in_unit("1/ps"), |own| {
-            (1000.0 * own.1.worst.1).into()
+        .field(Column::new("scheme"), |pair: &(u64, &Growing)| pair.0.into())
+        .field(column("lower", "grows from").in_unit("fs"), |pair| pair.1.lower.into())
+        .field(column("upper", "to").in_unit("fs"), |pair| pair.1.upper.into())
+        .field(column("stable_again", "stable again").in_unit("fs"), |pair| pair.1.stable_again.into())
+        .field(column("worst_outer", "worst at").in_unit("fs"), |pair| pair.1.worst.0.into())
+        .field(column("worst_growth_rate", "growth there").in_unit("1/ps"), |pair| {
+            (1000.0 * pair.1.worst.1).into()
         })
-        .field(column("worst_tenfold_steps", "tenfold in steps"), |own| {
-            (std::f64::consts::LN_10 / (own.1.worst.0 * own.1.worst.1)).into()
+        .field(column("worst_tenfold_steps", "tenfold in steps"), |pair| {
+            (std::f64::consts::LN_10 / (pair.1.worst.0 * pair.1.worst.1)).into()
         });
     record.table("intervals", "Unstable intervals of the outer step: the beginning of the first and that it is stable again proven, the rest sampled", &found)
 }
@@ -302,22 +308,26 @@ fn rows(findings: &Findings) -> Table {
     let per_ps = |rate: Option<f64>| Cell::from(rate.map(|rate| 1000.0 * rate));
     let column = |key: &str, title: &str| Column::new(key).in_words(title);
     Record::new()
-        .field(column("outer", "outer step").in_unit("fs"), |own: &Finding| Cell::exact(own.scheme.outer()))
-        .field(Column::new("status").left(), |own| own.status.name().into())
-        .field(Column::new("holds").left(), |own| own.holds.name().into())
-        .field(column("margin", "margin of the stiffness"), |own| own.margin.into())
-        .field(enclosed("first", "first unstable from").in_unit("fs"), |own| own.first.into())
-        .field(column("first_upper", "at least to").in_unit("fs"), |own| own.first_upper.into())
-        .field(column("growth_rate", "growth").in_unit("1/ps"), move |own| per_ps(own.rate))
-        .field(column("tenfold_steps", "tenfold in steps"), |own| own.tenfold_steps().into())
-        .field(column("name", "growing").left(), |own| own.name.as_deref().into())
-        .field(column("atoms", "moving most").left(), |own| own.atoms.as_deref().into())
-        .field(column("masked_above", "masked by a friction").in_unit("1/ps"), move |own| per_ps(own.masking))
-        .field(Column::new("damped"), |own| own.is_damped.into())
-        .field(column("band_edge", "stable below").in_unit("fs"), |own| own.band_edge.into())
-        .field(Column::new("largest").in_unit("fs"), move |own| exact(&own.largest))
-        .field(Column::new("safe").in_unit("fs"), move |own| exact(&own.safe))
-        .field(Column::new("bound").left(), |own| own.bound.map(|own| own.name()).into())
-        .field(Column::new("within_run"), |own| own.within_run.into())
+        .field(column("outer", "outer step").in_unit("fs"), |finding: &Finding| {
+            Cell::exact(finding.scheme.outer())
+        })
+        .field(Column::new("status").left(), |finding| finding.status.name().into())
+        .field(Column::new("holds").left(), |finding| finding.holds.name().into())
+        .field(column("margin", "margin of the stiffness"), |finding| finding.margin.into())
+        .field(enclosed("first", "first unstable from").in_unit("fs"), |finding| finding.first.into())
+        .field(column("first_upper", "at least to").in_unit("fs"), |finding| finding.first_upper.into())
+        .field(column("growth_rate", "growth").in_unit("1/ps"), move |finding| per_ps(finding.rate))
+        .field(column("tenfold_steps", "tenfold in steps"), |finding| finding.tenfold_steps().into())
+        .field(column("name", "growing").left(), |finding| finding.name.as_deref().into())
+        .field(column("atoms", "moving most").left(), |finding| finding.atoms.as_deref().into())
+        .field(column("masked_above", "masked by a friction").in_unit("1/ps"), move |finding| {
+            per_ps(finding.masking)
+        })
+        .field(Column::new("damped"), |finding| finding.is_damped.into())
+        .field(column("band_edge", "stable below").in_unit("fs"), |finding| finding.band_edge.into())
+        .field(Column::new("largest").in_unit("fs"), move |finding| exact(&finding.largest))
+        .field(Column::new("safe").in_unit("fs"), move |finding| exact(&finding.safe))
+        .field(Column::new("bound").left(), |finding| finding.bound.map(|bound| bound.name()).into())
+        .field(Column::new("within_run"), |finding| finding.within_run.into())
         .table("rows", "The molecule at each scheme of steps", &findings.schemes)
 }

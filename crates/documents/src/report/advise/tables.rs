@@ -19,12 +19,12 @@ pub fn engine(advised: Option<&Rational>, reading: &Reading) -> Value {
 /// its limit in fs.
 pub fn published(steps: usize, modes: [&str; 2], limit: impl Fn(&Caution) -> Cell + Send + Sync) -> Value {
     let record = Record::new()
-        .field(Column::new("mode"), |of: &Caution| modes[usize::from(of.inner)].into())
-        .field(Column::new("place"), |of| Cell::Text(of.place.name()))
-        .field(Column::new("step"), |of| if of.inner { "inner" } else { "outer" }.into())
-        .field(Column::new("limit"), |of| limit(of))
-        .field(Column::new("statement"), |of| of.statement.into())
-        .field(Column::new("source"), |of| of.source.into());
+        .field(Column::new("mode"), |caution: &Caution| modes[usize::from(caution.inner)].into())
+        .field(Column::new("place"), |caution| Cell::Text(caution.place.name()))
+        .field(Column::new("step"), |caution| if caution.inner { "inner" } else { "outer" }.into())
+        .field(Column::new("limit"), |caution| limit(caution))
+        .field(Column::new("statement"), |caution| caution.statement.into())
+        .field(Column::new("source"), |caution| caution.source.into());
     record.all(molecules::published(steps)).into()
 }
 

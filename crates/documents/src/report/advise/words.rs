@@ -111,7 +111,7 @@ impl Choice<'_> {
                 "advice: outer step {}: below T/6.28 = {} of the slow force and proven stable for all periods within {band}; {} is proven too, but \
                  of harmonic forces alone",
                 times(safe),
-                self.caps.slow().map_or_else(String::new, |own| cap(own, unit)),
+                self.caps.slow().map_or_else(String::new, |value| cap(value, unit)),
                 times(largest)
             ),
             (Some(safe), Some(largest)) => format!(
@@ -143,10 +143,10 @@ impl Choice<'_> {
         }
         let edge = unit.of(down(edge));
         match self.caps.outer().filter(|_| self.bound == Some(Bound::Turn)) {
-            Some((own, _)) => format!(
+            Some((value, _)) => format!(
                 "advice: keep the step below {} = T/6.28 of {name}, that is h w <= 1: proven stable is all below {edge} (all periods within {band}), but \
                  of small oscillations; beyond T/6.28 bonds that are not harmonic are lost{}. Say --harmonic if they are harmonic",
-                cap(own, unit),
+                cap(value, unit),
                 self.practice()
             ),
             None => format!(
@@ -160,11 +160,11 @@ impl Choice<'_> {
     /// A step before the outermost one that is too long for any multiple of it.
     fn shorter(&self, largest: &str) -> String {
         let Choice { scheme, band, unit, .. } = *self;
-        if let Some((clock, own)) = self.caps.too_long(scheme) {
+        if let Some((clock, value)) = self.caps.too_long(scheme) {
             let step = length(&scheme.steps()[clock], unit);
             let whose =
                 if clock == 0 { "the fastest motion" } else { "the fastest motion of its own forces" };
-            let own = cap(own, unit);
+            let own = cap(value, unit);
             return format!(
                 "advice: none with a step of {step} inside: it is not below T/6.28 = {own} of {whose} (h w <= 1), beyond which bonds that are not \
                  harmonic are lost{}: take a shorter one, or say --harmonic if they are. Up to {largest} is proven stable for all periods \
@@ -172,8 +172,10 @@ impl Choice<'_> {
                 self.practice()
             );
         }
-        let (own, bound) =
-            self.caps.outer().map_or_else(Default::default, |(own, bound)| (cap(own, unit), bound.name()));
+        let (own, bound) = self
+            .caps
+            .outer()
+            .map_or_else(Default::default, |(value, bound)| (cap(value, unit), bound.name()));
         format!(
             "advice: up to {largest} is proven stable for all periods within {band}; {bound} = {own} is not above the step of {}: shorten that one first",
             length(scheme.last_but_one(), unit)

@@ -25,20 +25,20 @@ const LINE: f64 = 150.0;
 /// # Errors
 /// A term that no line holds.
 pub fn equations(all: &[Equation], input: &Map<String, Value>) -> Result<String> {
-    let lines: Vec<String> = all.iter().map(|own| equation(own, input)).collect::<Result<_>>()?;
+    let lines: Vec<String> = all.iter().map(|equation| equation(equation, input)).collect::<Result<_>>()?;
     Ok(format!(
         "% needs \\usepackage{{amsmath}}\n\\begingroup\\allowdisplaybreaks\n\\begin{{align}}\n{}\n\\end{{align}}\n\\endgroup\n",
         lines.join(" \\\\\n")
     ))
 }
 
-fn equation(own: &Equation, input: &Map<String, Value>) -> Result<String> {
-    let (mut lines, mut filled) = (vec![format!("  {} &=", own.name)], 0.0);
-    for term in &own.terms {
+fn equation(equation: &Equation, input: &Map<String, Value>) -> Result<String> {
+    let (mut lines, mut filled) = (vec![format!("  {} &=", equation.name)], 0.0);
+    for term in &equation.terms {
         let width = wide(term);
         if width > LINE {
             let remedy = "a coefficient is longer than a line of a column: write text, csv or json";
-            return Err(Error::input("equation", &own.key, remedy));
+            return Err(Error::input("equation", &equation.key, remedy));
         }
         if filled + width > LINE {
             lines.push("    &\\quad".into());
@@ -47,10 +47,10 @@ fn equation(own: &Equation, input: &Map<String, Value>) -> Result<String> {
         filled += width;
         *lines.last_mut().expect("it begins with one") += term;
     }
-    if own.terms.is_empty() {
+    if equation.terms.is_empty() {
         lines[0] += " 0";
     }
-    Ok(format!("{} \\label{{eq:{}}}", lines.join(" \\notag \\\\\n"), label(&own.key, input)))
+    Ok(format!("{} \\label{{eq:{}}}", lines.join(" \\notag \\\\\n"), label(&equation.key, input)))
 }
 
 /// A fraction is as wide as the longer of its numbers, in small digits.

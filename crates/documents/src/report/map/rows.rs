@@ -86,27 +86,29 @@ const MOST_TEXTS: usize = 1 << 16;
 fn record(products: Products) -> Record<'static, Written> {
     type Of<'a> = &'a Written;
     let mut record = Record::new()
-        .field(Column::math("h1", "h_1"), |of: Of| Cell::exact(&of.steps[0]))
-        .field(Column::math("h2", "h_2"), |of| Cell::exact(&of.steps[1]))
-        .field(Column::math("p", "p"), |of| of.pair.ratio.p().into())
-        .field(Column::math("q", "q"), |of| of.pair.ratio.q().into())
-        .field(Column::new("kind").left(), |of| of.pair.decision.verdict.kind().name().into())
-        .field(Column::new("side").aside(), |of| i64::from(of.pair.decision.verdict.side()).into())
-        .field(Column::new("decided_by").in_words("decided by").left().aside(), |of| {
-            of.pair.decision.decided_by.name().into()
+        .field(Column::math("h1", "h_1"), |written: Of| Cell::exact(&written.steps[0]))
+        .field(Column::math("h2", "h_2"), |written| Cell::exact(&written.steps[1]))
+        .field(Column::math("p", "p"), |written| written.pair.ratio.p().into())
+        .field(Column::math("q", "q"), |written| written.pair.ratio.q().into())
+        .field(Column::new("kind").left(), |written| written.pair.decision.verdict.kind().name().into())
+        .field(Column::new("side").aside(), |written| i64::from(written.pair.decision.verdict.side()).into())
+        .field(Column::new("decided_by").in_words("decided by").left().aside(), |written| {
+            written.pair.decision.decided_by.name().into()
         });
     if products.label {
         record = record
-            .field(Column::math("m", "m"), |of| of.found.m.into())
-            .field(Column::math("a", "a"), |of| of.found.family.map(|(a, _)| a).into())
-            .field(Column::math("b", "b"), |of| of.found.family.map(|(_, b)| b).into());
+            .field(Column::math("m", "m"), |written| written.found.m.into())
+            .field(Column::math("a", "a"), |written| written.found.family.map(|(a, _)| a).into())
+            .field(Column::math("b", "b"), |written| written.found.family.map(|(_, b)| b).into());
     }
     if products.growth {
         let ends = |found: Option<Enclosure>| Cell::from(found.map(|Enclosure { lo, hi }| (lo, hi)));
         let enclosed = |key, title| Column::new(key).in_words(title).enclosure();
         record = record
-            .field(enclosed("growth_rate", "growth rate"), move |of| ends(of.found.rate))
-            .field(enclosed("steps_until_tenfold", "steps until tenfold"), move |of| ends(of.found.tenfold));
+            .field(enclosed("growth_rate", "growth rate"), move |written| ends(written.found.rate))
+            .field(enclosed("steps_until_tenfold", "steps until tenfold"), move |written| {
+                ends(written.found.tenfold)
+            });
     }
     record
 }

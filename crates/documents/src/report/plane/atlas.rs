@@ -63,12 +63,12 @@ impl Atlas<'_> {
         let mut ranks: Vec<f64> = self.open().map(|segment| rank(segment.a)).collect();
         ranks.sort_unstable_by(f64::total_cmp);
         ranks.dedup();
-        let (own, others) = ranks.split_at(ranks.len().min(FAMILIES));
+        let (values, others) = ranks.split_at(ranks.len().min(FAMILIES));
         // Each curve in a pale shade of its family's hue: the pattern of the line names the family, too.
-        let place = |a| own.iter().position(|&own| own == rank(a));
+        let place = |a| values.iter().position(|&value| value == rank(a));
         let mut panel = self.panel(|a| place(a).map_or(PALE, palette::behind));
-        for (n, &own) in own.iter().enumerate() {
-            panel = entry(panel, palette::family(n), SHAPES[n], &family_name(own));
+        for (n, &value) in values.iter().enumerate() {
+            panel = entry(panel, palette::family(n), SHAPES[n], &family_name(value));
         }
         // The weak ones first: the strong ones lie on top.
         if let Some(&first) = others.first() {
@@ -76,8 +76,8 @@ impl Atlas<'_> {
             let grey = palette::family(FAMILIES);
             panel = self.put(entry(panel, grey, None, "others"), &rest, grey);
         }
-        for (n, &own) in own.iter().enumerate().rev() {
-            let family: Vec<&Segment> = self.open().filter(|segment| rank(segment.a) == own).collect();
+        for (n, &value) in values.iter().enumerate().rev() {
+            let family: Vec<&Segment> = self.open().filter(|segment| rank(segment.a) == value).collect();
             panel = self.put(panel, &family, palette::family(n));
             if let Some(shape) = SHAPES[n] {
                 let long = family.iter().filter(|segment| self.length(segment) > MARKED);

@@ -165,7 +165,7 @@ impl Chart {
         let mut ranks: Vec<f64> = self.growing.filled().map(|(_, _, strength)| -strength).collect();
         ranks.sort_unstable_by(f64::total_cmp);
         ranks.dedup();
-        let (own, others) = ranks.split_at(ranks.len().min(FAMILIES));
+        let (values, others) = ranks.split_at(ranks.len().min(FAMILIES));
         // Each family has a hatch, too, for those who see no colours or few.
         let layer = |n: usize, belongs: &dyn Fn(f64) -> bool| {
             let mut cells = cells(&self.growing, steps, vec![palette::family(n)]);
@@ -173,11 +173,11 @@ impl Chart {
             found.for_each(|(k, l, _)| cells.push(k, l, 0));
             Layer::cells(cells).hatched(Hatch::of_family(n))
         };
-        for (n, &rank) in own.iter().enumerate() {
-            panel = panel.with(layer(n, &|own| own == rank).labelled(&family_name(rank)));
+        for (n, &rank) in values.iter().enumerate() {
+            panel = panel.with(layer(n, &|value| value == rank).labelled(&family_name(rank)));
         }
         match others.first() {
-            Some(&first) => panel.with(layer(FAMILIES, &|own| own >= first).labelled("others")),
+            Some(&first) => panel.with(layer(FAMILIES, &|value| value >= first).labelled("others")),
             None => panel,
         }
     }

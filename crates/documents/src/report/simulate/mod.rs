@@ -50,8 +50,8 @@ pub fn document(run: &Run) -> Document {
 /// The record of a sample.
 fn record() -> Record<'static, Sample> {
     Record::new()
-        .field(Column::new("time"), |of: &Sample| of.time.into())
-        .field(Column::new("energy"), |of| of.energy.into())
-        .field(Column::new("momentum"), |of| of.momentum.into())
-        .field(Column::new("amplitude"), |of| of.amplitude.into())
+        .field(Column::new("time"), |sample: &Sample| sample.time.into())
+        .field(Column::new("energy"), |sample| sample.energy.into())
+        .field(Column::new("momentum"), |sample| sample.momentum.into())
+        .field(Column::new("amplitude"), |sample| sample.amplitude.into())
 }

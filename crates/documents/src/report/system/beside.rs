@@ -36,7 +36,7 @@ pub struct Beside<'a> {
 const LISTED: usize = 4;
 
 /// The entries of a document.
-pub(super) fn entries(own: &Beside, analysis: &Analysis) -> Vec<(&'static str, Value)> {
+pub(super) fn entries(beside: &Beside, analysis: &Analysis) -> Vec<(&'static str, Value)> {
     let moving = |labels: &&[String]| {
         let modes = analysis.parts.iter().flat_map(|part| &part.instabilities);
         let one =
@@ -44,57 +44,60 @@ pub(super) fn entries(own: &Beside, analysis: &Analysis) -> Vec<(&'static str, V
         let all = modes.map(|mode| Value::from(moving(mode).into_iter().map(one).collect::<Vec<_>>()));
         Value::from(all.collect::<Vec<_>>())
     };
-    let orbit = own.orbit.map(|own| {
-        let about = &own.analysis;
+    let orbit = beside.orbit.map(|orbit| {
+        let about = &orbit.analysis;
         json!({
-            "displacement": own.displacement, "start": own.start, "kind": about.kind_name(), "stable": about.holds().is_stable(),
+            "displacement": orbit.displacement, "start": orbit.start, "kind": about.kind_name(), "stable": about.holds().is_stable(),
             "proven": about.is_proof(), "growth_rate": about.growth_rate().map(enclosure),
         })
     });
     let all = [
-        ("time_unit", own.unit.map(Value::from)),
-        ("friction", own.friction.map(friction::value)),
+        ("time_unit", beside.unit.map(Value::from)),
+        ("friction", beside.friction.map(friction::value)),
         ("own_orbit", orbit),
-        ("moving", own.labels.as_ref().map(moving)),
-        ("nearest_unstable", own.nearest.map(nearest::value)),
-        ("local_steps", own.local.map(local_steps)),
-        ("no_gradient", own.no_gradient.map(|own| no_gradient(own, analysis))),
+        ("moving", beside.labels.as_ref().map(moving)),
+        ("nearest_unstable", beside.nearest.map(nearest::value)),
+        ("local_steps", beside.local.map(local_steps)),
+        ("no_gradient", beside.no_gradient.map(|no_gradient| no_gradient(no_gradient, analysis))),
     ];
     all.into_iter().filter_map(|(key, value)| Some((key, value?))).collect()
 }
 
-fn no_gradient(own: &NoGradient, analysis: &Analysis) -> Value {
+fn no_gradient(no_gradient: &NoGradient, analysis: &Analysis) -> Value {
     json!({
-        "asymmetries": own.asymmetries,
-        "without_steps": own.without_steps.map(enclosure),
-        "added_by_steps": own.added_by_steps(analysis).map(enclosure),
-        "within_accuracy": own.within_accuracy.map(enclosure),
-        "masking_friction": own.masking,
+        "asymmetries": no_gradient.asymmetries,
+        "without_steps": no_gradient.without_steps.map(enclosure),
+        "added_by_steps": no_gradient.added_by_steps(analysis).map(enclosure),
+        "within_accuracy": no_gradient.within_accuracy.map(enclosure),
+        "masking_friction": no_gradient.masking,
     })
 }
 
 /// The growth of such forces, with the steps and without; `per` is the unit of time.
-pub(super) fn no_gradient_lines(own: &NoGradient, analysis: &Analysis, per: &str) -> Vec<String> {
-    let asymmetries: Vec<_> =
-        own.asymmetries.iter().map(|&x| if x == 0.0 { "0".into() } else { format!("{x:.2e}") }).collect();
+pub(super) fn no_gradient_lines(no_gradient: &NoGradient, analysis: &Analysis, per: &str) -> Vec<String> {
+    let asymmetries: Vec<_> = no_gradient
+        .asymmetries
+        .iter()
+        .map(|&x| if x == 0.0 { "0".into() } else { format!("{x:.2e}") })
+        .collect();
     let mut lines = vec![
         format!("  forces that are no gradient: |J - J'|/|J + J'| = {}", asymmetries.join(", ")),
-        format!("  without steps growth rate {}", rate_per(own.without_steps, per)),
+        format!("  without steps growth rate {}", rate_per(no_gradient.without_steps, per)),
     ];
-    if let Some((lo, hi)) = own.added_by_steps(analysis) {
+    if let Some((lo, hi)) = no_gradient.added_by_steps(analysis) {
         lines.push(if decimal::is_nothing((lo, hi), analysis.growth_rate()) {
             "  the steps add nothing within rounding".into()
         } else {
             format!("  the steps add {} per {per}", decimal::enclosure(lo, hi))
         });
     }
-    if let Some(ends) = own.within_accuracy {
+    if let Some(ends) = no_gradient.within_accuracy {
         lines.push(format!(
             "  for all matrices within their accuracy growth rate {} per {per}",
             rate(Some(ends))
         ));
     }
-    match own.masking {
+    match no_gradient.masking {
         Some(0.0) => lines.push("  no friction is needed".into()),
         Some(friction) => {
             let friction = decimal::few(friction, 5);
@@ -105,32 +108,33 @@ pub(super) fn no_gradient_lines(own: &NoGradient, analysis: &Analysis, per: &str
     lines
 }
 
-fn local_steps(own: &SchemeSummary) -> Value {
+fn local_steps(scheme_summary: &SchemeSummary) -> Value {
     let level = |&(fine, substeps): &(usize, u32)| json!({"fine": fine, "substeps": substeps});
     let mut value = json!({
-        "scheme": own.scheme.name(),
-        "levels": own.levels.iter().map(level).collect::<Vec<_>>(),
-        "plain_limit": own.plain_limit.map(enclosure),
+        "scheme": scheme_summary.scheme.name(),
+        "levels": scheme_summary.levels.iter().map(level).collect::<Vec<_>>(),
+        "plain_limit": scheme_summary.plain_limit.map(enclosure),
     });
-    if let Some(first) = own.first_unstable {
+    if let Some(first) = scheme_summary.first_unstable {
         value["first_unstable"] = enclosure(first);
     }
     value
 }
 
 /// The scheme, and the limit of plain leapfrog; `unit` is that of times, after a space.
-pub(super) fn local_lines(own: &SchemeSummary, unit: &str) -> Vec<String> {
-    let (name, parts) = match own.scheme {
+pub(super) fn local_lines(scheme_summary: &SchemeSummary, unit: &str) -> Vec<String> {
+    let (name, parts) = match scheme_summary.scheme {
         Scheme::Lts => ("local time steps", "degrees of freedom"),
         Scheme::Avi => ("AVI", "elements"),
     };
-    let level =
-        |&(fine, substeps): &(usize, u32)| format!("{fine} of {} {parts} take {substeps} substeps", own.size);
-    let levels: Vec<_> = own.levels.iter().map(level).collect();
-    let limit = own.plain_limit.map(|(lo, hi)| {
+    let level = |&(fine, substeps): &(usize, u32)| {
+        format!("{fine} of {} {parts} take {substeps} substeps", scheme_summary.size)
+    };
+    let levels: Vec<_> = scheme_summary.levels.iter().map(level).collect();
+    let limit = scheme_summary.plain_limit.map(|(lo, hi)| {
         format!("  plain leapfrog without them is stable below {}{unit}", decimal::enclosure(lo, hi))
     });
-    let first = own.first_unstable.map(|(lo, hi)| {
+    let first = scheme_summary.first_unstable.map(|(lo, hi)| {
         let first = decimal::enclosure(lo, hi);
         format!("  first unstable step: {first}{unit}; every smaller one is proven stable")
     });
@@ -139,20 +143,20 @@ pub(super) fn local_lines(own: &SchemeSummary, unit: &str) -> Vec<String> {
 }
 
 /// The entries as lines of text.
-pub(super) fn lines(own: &Beside, analysis: &Analysis) -> Vec<String> {
+pub(super) fn lines(beside: &Beside, analysis: &Analysis) -> Vec<String> {
     let mut lines = Vec::new();
-    if let Some(labels) = own.labels {
+    if let Some(labels) = beside.labels {
         for (n, mode) in fastest(analysis).0 {
             let named: Vec<_> = moving(mode).iter().map(|&(i, x)| format!("{} {x:.3}", labels[i])).collect();
             lines.push(format!("  growing mode {n} moves most: {}", named.join(", ")));
         }
     }
-    lines.extend(own.friction.into_iter().flat_map(friction::lines));
-    if own.is_orbit_missing {
+    lines.extend(beside.friction.into_iter().flat_map(friction::lines));
+    if beside.is_orbit_missing {
         let line = "  about the equilibrium; an orbit of the integrator's own beside it was not found";
         lines.push(line.into());
     }
-    lines.extend(own.orbit.map(|orbit| orbit_line(orbit, analysis)));
+    lines.extend(beside.orbit.map(|orbit| orbit_line(orbit, analysis)));
     lines
 }
 
@@ -178,8 +182,9 @@ fn moving(mode: &Instability) -> Vec<(usize, f64)> {
     order.iter().take(LISTED).map(moved).collect()
 }
 
-fn orbit_line(own: &OwnOrbit, analysis: &Analysis) -> String {
-    let [here, there] = [analysis, &own.analysis].map(|own| own.growth_rate().filter(|ends| ends.1 > 0.0));
+fn orbit_line(own_orbit: &OwnOrbit, analysis: &Analysis) -> String {
+    let [here, there] =
+        [analysis, &own_orbit.analysis].map(|analysis| analysis.growth_rate().filter(|ends| ends.1 > 0.0));
     let growth = match (here, there) {
         (Some(here), Some(there)) => {
             let more = 100.0 * (middle(there) / middle(here) - 1.0);
@@ -189,10 +194,10 @@ fn orbit_line(own: &OwnOrbit, analysis: &Analysis) -> String {
         (Some(_), None) => "no growth, though some at the equilibrium".into(),
         (None, None) => "no growth, as at the equilibrium".into(),
     };
-    let proven = if own.analysis.is_proof() { "proven for its Hessians" } else { "NOT proven" };
+    let proven = if own_orbit.analysis.is_proof() { "proven for its Hessians" } else { "NOT proven" };
     format!(
         "  the above speaks about the equilibrium; about the integrator's own orbit, {:.3e} beside it, where a run stays: {} ({proven}), {growth}",
-        own.displacement,
-        own.analysis.kind_name(),
+        own_orbit.displacement,
+        own_orbit.analysis.kind_name(),
     )
 }

@@ -58,7 +58,7 @@ impl SystemMap {
             self.points.iter().filter(|point| which(point)).map(place).collect()
         };
         let bounded_below = dots(&|point| point.kind.is_some() && !is_known(point));
-        let fastest = self.points.iter().map(place).fold(0.0, |a: f64, own| a.max(own[1]));
+        let fastest = self.points.iter().map(place).fold(0.0, |a: f64, values| a.max(values[1]));
         let top = if fastest > 0.0 { 1.12 * fastest } else { 1.0 };
         let unstable = self.count(Kind::Hyperbolic) + self.count(Kind::Parabolic);
         let mut panel =
@@ -69,12 +69,12 @@ impl SystemMap {
         // A little above the frame, which would hide them.
         let open: Vec<_> =
             dots(&|point| point.kind.is_none()).into_iter().map(|[x, y]| [x, y.max(0.03 * top)]).collect();
-        for (own, shape, name) in [
+        for (values, shape, name) in [
             (bounded_below, Shape::Triangle, "unstable: grows as fast or faster"),
             (open, Shape::Cross, "not decided"),
         ] {
-            if !own.is_empty() {
-                panel = panel.with(Layer::dots(own, shape, 3.0, INK).labelled(name)).legend(Place::Above);
+            if !values.is_empty() {
+                panel = panel.with(Layer::dots(values, shape, 3.0, INK).labelled(name)).legend(Place::Above);
             }
         }
         Figure::double_column(80.0).named(title).with(panel)
@@ -165,9 +165,9 @@ mod tests {
     #[test]
     fn growth_that_is_not_known_is_not_drawn_as_none() {
         type Known = (Option<Kind>, Option<(f64, f64)>, f64);
-        let map = |own: &[Known]| {
-            let xs: Vec<Rational> = (1..=own.len() as i64).map(|k| ratio(k, 4)).collect();
-            let points = own.iter().zip(&xs).map(|(&(kind, growth_rate, at_least), x)| Point {
+        let map = |triples: &[Known]| {
+            let xs: Vec<Rational> = (1..=triples.len() as i64).map(|k| ratio(k, 4)).collect();
+            let points = triples.iter().zip(&xs).map(|(&(kind, growth_rate, at_least), x)| Point {
                 at: (x.clone(), Rational::default()),
                 kind,
                 growth_rate,
@@ -180,8 +180,8 @@ mod tests {
             [(Some(Kind::Elliptic), Some((0.0, 0.0)), 0.0), (Some(Kind::Hyperbolic), Some((2.0, 2.1)), 2.0)];
         let [open, above] = [(None, None, 0.0), (Some(Kind::Hyperbolic), Some((3.0, f64::INFINITY)), 3.0)];
         let names = ["not decided", "unstable: grows as fast or faster"];
-        let said = |own: &SystemMap| {
-            let svg = own.figure(Colouring::Growth, "growth", &[("step".into(), 1)]).svg();
+        let said = |system_map: &SystemMap| {
+            let svg = system_map.figure(Colouring::Growth, "growth", &[("step".into(), 1)]).svg();
             names.map(|name| svg.contains(&format!("aria-label=\"{name}\"")))
         };
         for (points, keys, runs) in [
@@ -189,8 +189,8 @@ mod tests {
             (vec![stable, open, grows], [true, false], vec![vec![[0.25, 0.0]], vec![[0.75, 2.05]]]),
             (vec![open, stable, above], [true, true], vec![vec![[0.5, 0.0]]]),
         ] {
-            let own = map(&points);
-            assert_eq!((said(&own), own.runs()), (keys, runs));
+            let system_map = map(&points);
+            assert_eq!((said(&system_map), system_map.runs()), (keys, runs));
         }
     }
 }

@@ -21,36 +21,41 @@ const THIN: f64 = 1.0 / 500.0;
 
 /// The steps at which growth is drawn: all over the stretches that are not proven stable.
 pub fn sampled(stretches: &[Stretch]) -> Vec<f64> {
-    let unstable = stretches.iter().filter(|own| own.verdict != Holds::Stable);
-    unstable.flat_map(|own| inside(own, stretches)).collect()
+    let unstable = stretches.iter().filter(|stretch| stretch.verdict != Holds::Stable);
+    unstable.flat_map(|unstable| inside(unstable, stretches)).collect()
 }
 
 /// Those within one stretch, its ends left out.
-fn inside(own: &Stretch, all: &[Stretch]) -> impl Iterator<Item = f64> {
+fn inside(stretch: &Stretch, all: &[Stretch]) -> impl Iterator<Item = f64> {
     let range = all.last().map_or(1.0, |last| last.hi) - all.first().map_or(0.0, |first| first.lo);
-    let (lo, width) = (own.lo, own.hi - own.lo);
+    let (lo, width) = (stretch.lo, stretch.hi - stretch.lo);
     let count = (SAMPLES * width / range).max(FEWEST).ceil();
     (0..count as u32).map(move |k| lo + width * (f64::from(k) + 0.5) / count)
 }
 
 /// The number across, growth rate up, unstable stretches shaded; `rates` are those at [`sampled`].
-pub fn figure(own: &Intervals, rates: &[Option<f64>], title: &str, number: &(String, i8)) -> Figure {
-    let stretches = own.stretches.as_slice();
-    let (lo, hi) = (stretches.first().map_or(0.0, |own| own.lo), stretches.last().map_or(1.0, |own| own.hi));
+pub fn figure(intervals: &Intervals, rates: &[Option<f64>], title: &str, number: &(String, i8)) -> Figure {
+    let stretches = intervals.stretches.as_slice();
+    let (lo, hi) = (
+        stretches.first().map_or(0.0, |stretch| stretch.lo),
+        stretches.last().map_or(1.0, |stretch| stretch.hi),
+    );
     let fastest = rates.iter().flatten().fold(0.0, |a: f64, &x| a.max(x));
     let top = if fastest > 0.0 { 1.12 * fastest } else { 1.0 };
     let shade = |verdict: Holds| {
-        let own = stretches.iter().filter(|own| own.verdict == verdict);
-        own.map(|own| vec![[own.lo, 0.0], [own.hi, 0.0], [own.hi, top], [own.lo, top]]).collect::<Vec<_>>()
+        let filter = stretches.iter().filter(|stretch| stretch.verdict == verdict);
+        filter
+            .map(|stretch| vec![[stretch.lo, 0.0], [stretch.hi, 0.0], [stretch.hi, top], [stretch.lo, top]])
+            .collect::<Vec<_>>()
     };
     let mut line = Vec::new();
     let mut rates = rates.iter();
-    for own in stretches {
+    for stretch in stretches {
         // 0 over what is proven stable; elsewhere what was computed.
-        match own.verdict {
-            Holds::Stable => line.extend([[own.lo, 0.0], [own.hi, 0.0]]),
+        match stretch.verdict {
+            Holds::Stable => line.extend([[stretch.lo, 0.0], [stretch.hi, 0.0]]),
             _ => line.extend(
-                inside(own, stretches).zip(&mut rates).filter_map(|(step, rate)| Some([step, (*rate)?])),
+                inside(stretch, stretches).zip(&mut rates).filter_map(|(step, rate)| Some([step, (*rate)?])),
             ),
         }
     }
@@ -59,7 +64,7 @@ pub fn figure(own: &Intervals, rates: &[Option<f64>], title: &str, number: &(Str
         |steps| counted(steps as usize, "inner step in each outer one", "inner steps in each outer one");
     let mut panel = Panel::new(axis(number, lo, hi), Axis::linear("growth rate", 0.0, top).per_time())
         .titled(
-            &[Some(unstable), own.inner_steps.map(inner)]
+            &[Some(unstable), intervals.inner_steps.map(inner)]
                 .into_iter()
                 .flatten()
                 .collect::<Vec<_>>()
@@ -75,9 +80,11 @@ pub fn figure(own: &Intervals, rates: &[Option<f64>], title: &str, number: &(Str
         }
     }
     // One that is thinner than a line would be lost.
-    let thin =
-        stretches.iter().filter(|own| own.verdict == Holds::Unstable && own.hi - own.lo < (hi - lo) * THIN);
-    let thin: Vec<_> = thin.map(|own| 0.5 * (own.lo + own.hi)).map(|at| vec![[at, 0.0], [at, top]]).collect();
+    let thin = stretches
+        .iter()
+        .filter(|stretch| stretch.verdict == Holds::Unstable && stretch.hi - stretch.lo < (hi - lo) * THIN);
+    let thin: Vec<_> =
+        thin.map(|thin| 0.5 * (thin.lo + thin.hi)).map(|at| vec![[at, 0.0], [at, top]]).collect();
     if !thin.is_empty() {
         panel = panel.with(Layer::lines(thin, Stroke::LINE.in_colour(HYPERBOLIC).wide(0.8)));
     }
@@ -86,31 +93,33 @@ pub fn figure(own: &Intervals, rates: &[Option<f64>], title: &str, number: &(Str
 }
 
 /// The document `kickdrift/system-intervals/1`; the caller adds the input.
-pub fn document(own: &Intervals) -> Document {
+pub fn document(intervals: &Intervals) -> Document {
     let record = Record::new()
-        .field(Column::new("lo"), |of: &Stretch| of.lo.into())
-        .field(Column::new("hi"), |of| of.hi.into())
-        .field(Column::new("verdict").left(), |of| of.verdict.name().into());
-    let number = |verdict: Holds| own.stretches.iter().filter(|own| own.verdict == verdict).count();
+        .field(Column::new("lo"), |stretch: &Stretch| stretch.lo.into())
+        .field(Column::new("hi"), |stretch| stretch.hi.into())
+        .field(Column::new("verdict").left(), |stretch| stretch.verdict.name().into());
+    let number =
+        |verdict: Holds| intervals.stretches.iter().filter(|stretch| stretch.verdict == verdict).count();
     let (unstable, undecided) = (number(Holds::Unstable), number(Holds::NotTold));
-    let is_place = |own: &&Stretch| own.verdict == Holds::NotTold && own.lo.next_up() == own.hi;
-    let places = own.stretches.iter().filter(is_place).count();
-    let name = if own.number == "outer" { "the outer step" } else { &own.number };
+    let is_place =
+        |stretch: &&Stretch| stretch.verdict == Holds::NotTold && stretch.lo.next_up() == stretch.hi;
+    let places = intervals.stretches.iter().filter(is_place).count();
+    let name = if intervals.number == "outer" { "the outer step" } else { &intervals.number };
     let inner = |steps| format!(", with {} in each", counted(steps as usize, "inner step", "inner steps"));
     let mut lines = vec![format!(
         "{} of {name}{}",
         counted(unstable, "unstable interval", "unstable intervals"),
-        own.inner_steps.map(inner).unwrap_or_default()
+        intervals.inner_steps.map(inner).unwrap_or_default()
     )];
-    let unproven = undecided - places - own.open.unwrap_or_default();
-    if let Some(open) = own.open.filter(|open| *open > 0) {
+    let unproven = undecided - places - intervals.open.unwrap_or_default();
+    if let Some(open) = intervals.open.filter(|open| *open > 0) {
         lines.push(format!(
             "  {} that the accuracy of the data leaves open (data a thousand times as accurate decide most of each)",
             counted(open, "stretch", "stretches")
         ));
     }
-    if unproven > 0 || own.open.is_none_or(|open| open == 0) {
-        let is_measured = own.open.is_some() && unproven > 0;
+    if unproven > 0 || intervals.open.is_none_or(|open| open == 0) {
+        let is_measured = intervals.open.is_some() && unproven > 0;
         let better = if is_measured { ", not even of data a thousand times as accurate" } else { "" };
         lines
             .push(format!("  {} where nothing is proven{better}", counted(unproven, "stretch", "stretches")));
@@ -121,16 +130,16 @@ pub fn document(own: &Intervals) -> Document {
             "  {all} between neighbouring doubles not decided, the same verdict on both sides"
         ));
     }
-    let first = own.first_unstable();
+    let first = intervals.first_unstable();
     if let Some((lo, hi)) = first {
         lines.push(format!("  the first begins at {}", decimal::enclosure(lo, hi)));
     }
     Document::new("system-intervals")
-        .entry("inner_steps", own.inner_steps)
+        .entry("inner_steps", intervals.inner_steps)
         .entry("unstable", unstable)
         .entry("untold", undecided)
         .entry("first_unstable", first.map(enclosure))
-        .rows(record.table("stretches", "Verdicts on stretches of the number", &own.stretches))
+        .rows(record.table("stretches", "Verdicts on stretches of the number", &intervals.stretches))
         .summary(&lines)
 }
 
@@ -149,11 +158,11 @@ mod tests {
             stretch(after, 1.5, Holds::Stable),
             stretch(1.5, 1.75, Holds::NotTold),
         ];
-        let own =
+        let intervals =
             Intervals { number: "x".into(), is_discrete: false, inner_steps: None, stretches, open: None };
-        let text = document(&own).render(Format::Text).unwrap();
+        let text = document(&intervals).render(Format::Text).unwrap();
         assert!(text.contains("  1 stretch where nothing is proven\n  1 isolated place between"), "{text}");
-        let text = document(&Intervals { open: Some(1), ..own }).render(Format::Text).unwrap();
+        let text = document(&Intervals { open: Some(1), ..intervals }).render(Format::Text).unwrap();
         assert!(text.contains("  1 stretch that the accuracy of the data leaves open"), "{text}");
         assert!(!text.contains("where nothing is proven"), "{text}");
     }

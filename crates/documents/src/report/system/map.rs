@@ -30,7 +30,7 @@ const DIGITS: u32 = 6;
 
 /// An enclosure of a growth rate in so many digits.
 fn outward(rate: Option<(f64, f64)>) -> Option<(f64, f64)> {
-    let (lo, hi) = rate.filter(|own| own.0 > 0.0 || own.1.is_finite())?;
+    let (lo, hi) = rate.filter(|rate| rate.0 > 0.0 || rate.1.is_finite())?;
     let end = |x: f64, n: usize| match from_f64_exact(x).filter(|x| !x.is_zero()) {
         // The double nearest to a decimal number is on the same side of every double.
         Some(x) => decimal::outward(&x, &x, DIGITS)[n].parse().unwrap_or(0.0),
@@ -85,17 +85,17 @@ impl SystemMap {
 
     fn table(&self) -> Table {
         let x = Column::new("x").in_words(&self.names[0]);
-        let record = Record::new().field(x, |of: &Point| Cell::exact(&of.at.0));
+        let record = Record::new().field(x, |point: &Point| Cell::exact(&point.at.0));
         let record = match self.names.get(1) {
-            Some(name) => record.field(Column::new("y").in_words(name), |of| Cell::exact(&of.at.1)),
+            Some(name) => record.field(Column::new("y").in_words(name), |point| Cell::exact(&point.at.1)),
             None => record,
         };
         let caption = ["Verdicts over a number of the system", "Verdicts over two numbers of the system"];
         record
-            .field(Column::new("kind").left(), |of| of.kind_name().into())
-            .field(Column::new("proven"), |of| of.kind.is_some().into())
-            .field(Column::new("growth_rate").titled("growth rate", "growth rate").enclosure(), |of| {
-                outward(of.growth_rate).into()
+            .field(Column::new("kind").left(), |point| point.kind_name().into())
+            .field(Column::new("proven"), |point| point.kind.is_some().into())
+            .field(Column::new("growth_rate").titled("growth rate", "growth rate").enclosure(), |point| {
+                outward(point.growth_rate).into()
             })
             .table("verdicts", caption[self.names.len() - 1], &self.points)
     }

@@ -48,13 +48,13 @@ pub fn document(analysis: &Analysis, beside: &Beside) -> Document {
         .entry("rigid_modes", analysis.rigid_modes.len())
         .entry("parts", parts().map(part).collect::<Vec<_>>())
         .entry("warnings", analysis.warnings.clone())
-        .entries(analysis.measured.as_ref().map(|own| ("measured", measured::value(own))))
+        .entries(analysis.measured.as_ref().map(|measured| ("measured", measured::value(measured))))
         .entries(beside::entries(beside, analysis));
     document.long_rows(table).summary_alone(&lines(analysis, beside))
 }
 
 fn multipliers(n: u64, part: &Part) -> impl Iterator<Item = Own<'_>> {
-    part.multipliers.iter().map(move |own| (n, part, own))
+    part.multipliers.iter().map(move |multiplier| (n, part, multiplier))
 }
 
 fn part((n, part): (u64, &Part)) -> Value {
@@ -64,7 +64,7 @@ fn part((n, part): (u64, &Part)) -> Value {
         "period": part.period.to_string(),
         "kind": part.kind_name(),
         "decided_by": part.evidence.name(),
-        "multipliers": multipliers(n, part).map(|own| record().entries(&own)).collect::<Vec<_>>(),
+        "multipliers": multipliers(n, part).map(|multiplier| record().entries(&multiplier)).collect::<Vec<_>>(),
         "instabilities": part.instabilities.iter().map(instability).collect::<Vec<_>>(),
         "roots": part.roots.as_ref().map(roots),
         "oscillator": part.oscillator.as_ref().map(clocked),
@@ -78,10 +78,10 @@ fn roots(count: &MuCount) -> Value {
     })
 }
 
-fn clocked(own: &Clocked) -> Value {
+fn clocked(clocked: &Clocked) -> Value {
     json!({
-        "trace": enclosure(own.trace.to_f64_enclosure()), "strikes": own.strikes,
-        "label": own.label, "families": own.families,
+        "trace": enclosure(clocked.trace.to_f64_enclosure()), "strikes": clocked.strikes,
+        "label": clocked.label, "families": clocked.families,
     })
 }
 
@@ -146,28 +146,34 @@ fn lines(analysis: &Analysis, beside: &Beside) -> Vec<String> {
         lines.push(format!("  {modes} more slowly: as JSON or CSV all are shown"));
     }
     let per = beside.unit.unwrap_or("unit time");
-    lines
-        .extend(beside.no_gradient.into_iter().flat_map(|own| beside::no_gradient_lines(own, analysis, per)));
-    lines.extend(beside.local.into_iter().flat_map(|own| beside::local_lines(own, &suffix)));
+    lines.extend(
+        beside
+            .no_gradient
+            .into_iter()
+            .flat_map(|no_gradient| beside::no_gradient_lines(no_gradient, analysis, per)),
+    );
+    lines.extend(
+        beside.local.into_iter().flat_map(|scheme_summary| beside::local_lines(scheme_summary, &suffix)),
+    );
     lines.extend(beside.remark.map(|remark| format!("  {remark}")));
     lines.extend(beside::lines(beside, analysis));
     lines.extend(
         analysis
             .measured
             .iter()
-            .flat_map(|own| measured::lines(own, (analysis.clocks, analysis.is_stable()), &suffix)),
+            .flat_map(|measured| measured::lines(measured, (analysis.clocks, analysis.is_stable()), &suffix)),
     );
-    lines.extend(beside.nearest.iter().flat_map(|own| nearest::lines(own, &suffix)));
+    lines.extend(beside.nearest.iter().flat_map(|nearest| nearest::lines(nearest, &suffix)));
     lines.extend(analysis.warnings.iter().map(|warning| format!("  warning: {warning}")));
     lines
 }
 
 /// Trace, label and families of one oscillator in words.
-fn oscillator_lines(own: &Clocked) -> Vec<String> {
-    let (lo, hi) = own.trace.to_f64_enclosure();
+fn oscillator_lines(clocked: &Clocked) -> Vec<String> {
+    let (lo, hi) = clocked.trace.to_f64_enclosure();
     let mut lines = vec![format!("  trace Tr Q = {}", decimal::enclosure(lo, hi))];
-    if let Some(m) = own.label {
-        let families: Vec<String> = own.families.iter().map(|family| terms(family, "h")).collect();
+    if let Some(m) = clocked.label {
+        let families: Vec<String> = clocked.families.iter().map(|family| terms(family, "h")).collect();
         lines.push(format!("  m = {m} half turns a period: 1/T_half near {}", families.join(" = ")));
     }
     lines
@@ -207,16 +213,16 @@ fn described(unstable: &Instability) -> String {
 }
 
 /// "; near w = 0.3 + 3.1 = 2 pi (1/h1 - 1/h3)": the resonance in words.
-fn resonance(own: &Resonance) -> String {
-    let (first, second) = own.frequencies;
+fn resonance(resonance: &Resonance) -> String {
+    let (first, second) = resonance.frequencies;
     if first == 0.0 && second == 0.0 {
         return "; no resonance: the total stiffness is not positive on this mode".into();
     }
-    let sign = if own.sign > 0 { '+' } else { '-' };
-    let sum = match own.m {
+    let sign = if resonance.sign > 0 { '+' } else { '-' };
+    let sum = match resonance.m {
         0 => "0".into(),
-        m if own.family.is_empty() => format!("2 pi {m}/T"),
-        _ => format!("2 pi ({})", terms(&own.family, "h")),
+        m if resonance.family.is_empty() => format!("2 pi {m}/T"),
+        _ => format!("2 pi ({})", terms(&resonance.family, "h")),
     };
     // Four decimals leave nothing of a slow mode.
     let shown = |w: f64| if w == 0.0 || w >= 1e-3 { format!("{w:.4}") } else { format!("{w:.3e}") };

@@ -19,22 +19,26 @@ const STEMS: usize = 60;
 
 /// All multipliers by angle and growth, and below the shapes of the fastest growing ones.
 pub fn figure(analysis: &Analysis, title: &str) -> Figure {
-    let parts = analysis.parts.iter().flat_map(|part| part.instabilities.iter().map(move |own| (own, part)));
-    let mut growing: Vec<Growing> = parts.map(|(own, part)| (own, height(own, part))).collect();
+    let parts = analysis
+        .parts
+        .iter()
+        .flat_map(|part| part.instabilities.iter().map(move |instability| (instability, part)));
+    let mut growing: Vec<Growing> =
+        parts.map(|(instability, part)| (instability, height(instability, part))).collect();
     growing.sort_by(|a, b| b.0.multiplier.size().total_cmp(&a.0.multiplier.size()));
     let shown = &growing[..growing.len().min(MOST_SHAPES)];
     let height = SPECTRUM + SHAPE * shown.len() as f64;
     let first = Figure::double_column(height).columns(1).named(title).with(spectrum(analysis, shown));
-    (1..).zip(shown).fold(first, |figure, (n, own)| figure.with(shape(n, own)))
+    (1..).zip(shown).fold(first, |figure, (n, pair)| figure.with(shape(n, pair)))
 }
 
 /// What grows, and its rate as it is drawn.
 type Growing<'a> = (&'a Instability, f64);
 
 /// The middle of the rate's enclosure, or ln |λ|/T rounded where it has none.
-fn height(own: &Instability, part: &Part) -> f64 {
-    let rounded = || own.multiplier.lambda.norm().ln().abs() / part.period.to_f64();
-    own.growth_rate.filter(|own| own.1.is_finite()).map_or_else(rounded, middle)
+fn height(instability: &Instability, part: &Part) -> f64 {
+    let rounded = || instability.multiplier.lambda.norm().ln().abs() / part.period.to_f64();
+    instability.growth_rate.filter(|growth_rate| growth_rate.1.is_finite()).map_or_else(rounded, middle)
 }
 
 /// ln |λ|/T over arg λ/π.
@@ -42,13 +46,18 @@ fn spectrum(analysis: &Analysis, shown: &[Growing]) -> Panel {
     let (mut still, mut moving) = (Vec::new(), Vec::new());
     for part in &analysis.parts {
         let angle = |z: num_complex::Complex64| z.arg().abs() / std::f64::consts::PI;
-        let unstable: Vec<_> = part.instabilities.iter().map(|own| own.multiplier.mu).collect();
+        let unstable: Vec<_> =
+            part.instabilities.iter().map(|instability| instability.multiplier.mu).collect();
         let stable =
             part.multipliers.iter().filter(|m| !unstable.contains(&m.mu) && !unstable.contains(&m.mu.conj()));
         still.extend(stable.map(|m| [angle(m.lambda), 0.0]));
-        moving.extend(part.instabilities.iter().map(|own| [angle(own.multiplier.lambda), height(own, part)]));
+        moving.extend(
+            part.instabilities
+                .iter()
+                .map(|instability| [angle(instability.multiplier.lambda), height(instability, part)]),
+        );
     }
-    let fastest = moving.iter().fold(0.0, |a: f64, own| a.max(own[1]));
+    let fastest = moving.iter().fold(0.0, |a: f64, values| a.max(values[1]));
     let y = if fastest > 0.0 {
         Axis::linear("growth rate", -0.06 * fastest, 1.15 * fastest)
     } else {
@@ -77,15 +86,15 @@ fn spectrum(analysis: &Analysis, shown: &[Growing]) -> Panel {
 }
 
 /// The positions of a growing solution, one degree of freedom beside the other.
-fn shape(n: usize, own: &Growing) -> Panel {
-    let unstable = own.0;
+fn shape(n: usize, pair: &Growing) -> Panel {
+    let unstable = pair.0;
     let last = unstable.shape.len() as f64 - 1.0;
     let few = unstable.shape.len() <= STEMS;
     let points = |values: &[f64]| (0..).zip(values).map(|(i, &y)| [f64::from(i), y]).collect::<Vec<_>>();
     let (real, imaginary) = (points(&unstable.shape), points(&unstable.quadrature));
     let mut panel =
         Panel::new(Axis::linear("degree of freedom", -0.5, last + 0.5), Axis::linear("shape", -1.15, 1.15))
-            .titled(&format!("{n}  {}", described(own)))
+            .titled(&format!("{n}  {}", described(pair)))
             .with(Layer::lines(vec![vec![[-0.5, 0.0], [last + 0.5, 0.0]]], Stroke::THIN.in_colour(GREY)));
     let beats = unstable.origin == Origin::Collision;
     if beats {
@@ -116,7 +125,7 @@ fn described(&(unstable, height): &Growing) -> String {
     };
     let rate = match unstable.growth_rate {
         Some((lo, hi)) if lo > 0.0 && hi.is_finite() => decimal::shortened(lo, hi, 4).to_string(),
-        Some(own) => rate(Some(own)),
+        Some(pair) => rate(Some(pair)),
         None => format!("about {}", decimal::few(height, 4)),
     };
     let mut text = format!("{kind}, growth {rate}");

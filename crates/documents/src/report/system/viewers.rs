@@ -13,7 +13,7 @@ fn modes<'a>(analysis: &'a Analysis, geometry: &Geometry) -> Result<Vec<(usize, 
         let found = format!("the modes that grow, of a system that is {}", analysis.kind_name());
         return Err(Error::input("output", found, "none is known: choose an unstable step, or another form"));
     }
-    if modes.iter().any(|(_, own)| own.shape.len() != geometry.moved.len()) {
+    if modes.iter().any(|(_, instability)| instability.shape.len() != geometry.moved.len()) {
         let remedy =
             "the modes have other degrees of freedom than the points that the file places: write JSON";
         return Err(Error::input("output", "these modes", remedy));
@@ -29,8 +29,8 @@ fn vectors(shape: &[f64], geometry: &Geometry) -> Vec<[f64; 3]> {
 }
 
 /// Whether a shape turns into another one: then both are written.
-fn turns(own: &Instability) -> bool {
-    own.quadrature.iter().any(|x| *x != 0.0)
+fn turns(instability: &Instability) -> bool {
+    instability.quadrature.iter().any(|x| *x != 0.0)
 }
 
 /// One frame a growing mode, the columns `mode` and, where two modes collide, `quadrature`: positions a quarter turn of the beat later. Rounded.
@@ -39,13 +39,17 @@ fn turns(own: &Instability) -> bool {
 /// Where no mode grows; where the modes are of other points.
 pub fn xyz(analysis: &Analysis, geometry: &Geometry) -> Result<String> {
     let mut text = String::new();
-    for (n, own) in modes(analysis, geometry)? {
+    for (n, instability) in modes(analysis, geometry)? {
         let shapes: Vec<_> =
-            [Some(&own.shape), turns(own).then_some(&own.quadrature)].into_iter().flatten().collect();
+            [Some(&instability.shape), turns(instability).then_some(&instability.quadrature)]
+                .into_iter()
+                .flatten()
+                .collect();
         let names = ["mode", "quadrature"].iter().take(shapes.len()).map(|name| format!(":{name}:R:3"));
-        let lambda = own.multiplier.lambda;
-        let rate =
-            own.growth_rate.map_or(String::new(), |(lo, hi)| format!(" growth_rate=\"{lo:e} {hi:e}\""));
+        let lambda = instability.multiplier.lambda;
+        let rate = instability
+            .growth_rate
+            .map_or(String::new(), |(lo, hi)| format!(" growth_rate=\"{lo:e} {hi:e}\""));
         let _ = writeln!(
             text,
             "{}\nProperties=species:S:1:pos:R:3{} number={n} multiplier=\"{} {}\"{rate}",
@@ -54,9 +58,9 @@ pub fn xyz(analysis: &Analysis, geometry: &Geometry) -> Result<String> {
             lambda.re,
             lambda.im
         );
-        let columns: Vec<_> = shapes.into_iter().map(|own| vectors(own, geometry)).collect();
+        let columns: Vec<_> = shapes.into_iter().map(|shape| vectors(shape, geometry)).collect();
         for (i, (symbol, point)) in geometry.symbols.iter().zip(&geometry.points).enumerate() {
-            let numbers = std::iter::once(point).chain(columns.iter().map(|own| &own[i])).flatten();
+            let numbers = std::iter::once(point).chain(columns.iter().map(|values| &values[i])).flatten();
             let _ = writeln!(text, "{symbol}{}", numbers.map(|x| format!(" {x}")).collect::<String>());
         }
     }
@@ -72,7 +76,7 @@ pub fn vtu(analysis: &Analysis, geometry: &Geometry) -> Result<String> {
     let points: Vec<[usize; 1]> = (0..geometry.points.len()).map(|i| [i]).collect();
     // Where nothing joins the points, each is a cell.
     let cells: Vec<&[usize]> = match geometry.cells.is_empty() {
-        true => points.iter().map(|own| own.as_slice()).collect(),
+        true => points.iter().map(|point| point.as_slice()).collect(),
         false => geometry.cells.iter().map(Vec::as_slice).collect(),
     };
     let list = |numbers: Vec<String>| numbers.join(" ");
@@ -82,12 +86,12 @@ pub fn vtu(analysis: &Analysis, geometry: &Geometry) -> Result<String> {
             "<DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{width}\" format=\"ascii\">{numbers}</DataArray>\n"
         )
     };
-    let shapes = modes.into_iter().flat_map(|(n, own)| {
-        let turned = turns(own).then_some((format!("quadrature {n}"), &own.quadrature));
-        [Some((format!("mode {n}"), &own.shape)), turned].into_iter().flatten()
+    let shapes = modes.into_iter().flat_map(|(n, instability)| {
+        let turned = turns(instability).then_some((format!("quadrature {n}"), &instability.quadrature));
+        [Some((format!("mode {n}"), &instability.shape)), turned].into_iter().flatten()
     });
     let shapes: String =
-        shapes.map(|(name, own)| array("Float64", &name, 3, floats(&vectors(own, geometry)))).collect();
+        shapes.map(|(name, values)| array("Float64", &name, 3, floats(&vectors(values, geometry)))).collect();
     // VTK's vertex, line, triangle and tetrahedron.
     let kind = |cell: &&[usize]| ["1", "3", "5", "10"][cell.len().clamp(1, 4) - 1].to_string();
     let ends = cells.iter().scan(0, |end, cell| {

@@ -8,8 +8,8 @@ const DIGITS: u32 = 8;
 const LEAST_DIGITS: u32 = 5;
 
 /// A growth rate in words.
-pub(super) fn rate(own: Option<(f64, f64)>) -> String {
-    match own {
+pub(super) fn rate(pair: Option<(f64, f64)>) -> String {
+    match pair {
         Some((lo, hi)) if lo > 0.0 && hi.is_finite() => decimal::shortened(lo, hi, DIGITS).to_string(),
         Some((lo, _)) if lo > 0.0 => {
             let lo = from_f64_exact(lo).expect("a finite double");
@@ -25,13 +25,13 @@ pub(super) fn rate(own: Option<(f64, f64)>) -> String {
 }
 
 /// A rate with its unit, where there is a number.
-pub(super) fn rate_per(own: Option<(f64, f64)>, unit: &str) -> String {
-    let unit = if own.is_some_and(|own| own.0 > 0.0 || own.1.is_finite()) {
+pub(super) fn rate_per(pair: Option<(f64, f64)>, unit: &str) -> String {
+    let unit = if pair.is_some_and(|pair| pair.0 > 0.0 || pair.1.is_finite()) {
         format!(" per {unit}")
     } else {
         String::new()
     };
-    rate(own) + &unit
+    rate(pair) + &unit
 }
 
 #[cfg(test)]

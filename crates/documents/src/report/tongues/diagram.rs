@@ -15,17 +15,20 @@ const BESIDE: f64 = 18.0;
 pub fn figure(diagrams: &[Diagram], rho: f64, width_mm: Option<f64>) -> Figure {
     let height = BESIDE + HEIGHT * diagrams.len() as f64;
     let sheet = Figure::new(width_mm.unwrap_or(175.0), height).named("Tongues over stiffness").columns(1);
-    let whole = diagrams.iter().fold(sheet, |figure, own| figure.with(panel(own, rho)));
-    let notes =
-        diagrams.iter().zip(whole.frames()).map(|(own, size)| labels::notes(own, rho, size)).collect();
+    let whole = diagrams.iter().fold(sheet, |figure, diagram| figure.with(panel(diagram, rho)));
+    let notes = diagrams
+        .iter()
+        .zip(whole.frames())
+        .map(|(diagram, size)| labels::notes(diagram, rho, size))
+        .collect();
     whole.noted(notes)
 }
 
-fn panel(own: &Diagram, rho: f64) -> Panel {
+fn panel(diagram: &Diagram, rho: f64) -> Panel {
     let x = Axis::linear("*s* = *h*_1^2*Λ*_1", 0.0, LARGEST_S);
     let mut panel = Panel::new(x, Axis::linear("*ρ* = *Λ*_2/*Λ*_1", 0.0, rho));
-    panel = panel.titled(&format!("*h*_2/*h*_1 = {}; at each tongue *m* (*a*, *b*)", own.ratio));
-    for band in &own.bands {
+    panel = panel.titled(&format!("*h*_2/*h*_1 = {}; at each tongue *m* (*a*, *b*)", diagram.ratio));
+    for band in &diagram.bands {
         // Families differ in shade and in the pattern of their edges.
         let (n, dash) = style(band.family.0);
         let colour = palette::family(n);
@@ -35,11 +38,11 @@ fn panel(own: &Diagram, rho: f64) -> Panel {
         let stroke = Stroke { dash, ..Stroke::THIN.in_colour(INK).wide(0.5) };
         panel = panel.with(Layer::lines(vec![side(0).collect(), side(1).collect()], stroke));
     }
-    let lines = own.resonances.iter().map(|&s| vec![[s, 0.0], [s, rho]]).collect();
+    let lines = diagram.resonances.iter().map(|&s| vec![[s, 0.0], [s, rho]]).collect();
     let stroke = Stroke { dash: Dash::Dashed, ..Stroke::THIN.in_colour(GREY) };
     panel = panel.with(Layer::lines(lines, stroke).labelled("*p*θ = *m*π"));
-    if !own.closings.is_empty() {
-        let layer = Layer::dots(own.closings.clone(), Shape::Ring, 4.5, COEXISTENCE);
+    if !diagram.closings.is_empty() {
+        let layer = Layer::dots(diagram.closings.clone(), Shape::Ring, 4.5, COEXISTENCE);
         panel = panel.with(layer.labelled("closed: *Q* = ±1"));
     }
     panel.legend(Place::Above)

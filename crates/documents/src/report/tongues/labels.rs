@@ -115,9 +115,9 @@ impl Page<'_> {
         }
         let Some([lower, upper]) = self.around(band, span) else { return Vec::new() };
         let side =
-            |n: Option<usize>| n.and_then(|n| self.own.bands.get(n)).and_then(|own| self.around(own, span));
-        let before = side(n.checked_sub(1)).map_or(0.0, |own| own[1]);
-        let after = side(Some(n + 1)).map_or(self.size[0], |own| own[0]).min(self.size[0]);
+            |n: Option<usize>| n.and_then(|n| self.own.bands.get(n)).and_then(|band| self.around(band, span));
+        let before = side(n.checked_sub(1)).map_or(0.0, |values| values[1]);
+        let after = side(Some(n + 1)).map_or(self.size[0], |values| values[0]).min(self.size[0]);
         let found = [(lower - 0.5 * wide, lower - before - wide), (upper + 0.5 * wide, after - upper - wide)];
         found.into_iter().filter(|(_, room)| *room >= 0.0).collect()
     }
@@ -173,8 +173,8 @@ mod tests {
         Diagram { ratio, bands, resonances: Vec::new(), closings: Vec::new() }
     }
 
-    fn said(own: &Diagram, size: [f64; 2]) -> Vec<(String, bool)> {
-        let notes = notes(own, 1.0, size);
+    fn said(diagram: &Diagram, size: [f64; 2]) -> Vec<(String, bool)> {
+        let notes = notes(diagram, 1.0, size);
         notes.iter().map(|note| (note.words(), note.is_turned())).collect()
     }
 
@@ -182,19 +182,19 @@ mod tests {
     fn labels_turn_where_tongues_are_close_and_lose_their_families_where_they_are_closer() {
         let (wide, long) = ([400.0, 120.0], |m: u64, turned| (format!("{m} (−1, 12)"), turned));
         assert_eq!(said(&diagram(&[1.0, 3.0], 0.1), wide), [long(1, false), long(2, false)]);
-        assert_eq!(said(&diagram(&[3.2, 3.45, 3.7], 0.05), wide).iter().filter(|own| own.1).count(), 2);
+        assert_eq!(said(&diagram(&[3.2, 3.45, 3.7], 0.05), wide).iter().filter(|pair| pair.1).count(), 2);
         // Too low for an upright label.
         let low = [400.0, 15.0];
         let short = said(&diagram(&[0.2, 0.45, 0.7, 0.95], 0.05), low);
-        assert!(short.iter().any(|own| own.0 == "1") && short.iter().all(|own| !own.1), "{short:?}");
+        assert!(short.iter().any(|pair| pair.0 == "1") && short.iter().all(|pair| !pair.1), "{short:?}");
     }
 
     #[test]
     fn no_two_labels_meet_and_none_lies_on_another_tongue() {
         for columns in [200.0, 455.0] {
-            let own = diagram(&[0.1, 0.3, 0.9, 1.2, 2.0, 2.4, 3.5], 0.08);
-            let mut page = Page { own: &own, size: [columns, 120.0], taken: Vec::new() };
-            for n in 0..own.bands.len() {
+            let diagram = diagram(&[0.1, 0.3, 0.9, 1.2, 2.0, 2.4, 3.5], 0.08);
+            let mut page = Page { own: &diagram, size: [columns, 120.0], taken: Vec::new() };
+            for n in 0..diagram.bands.len() {
                 page.note(n, 1.0);
             }
             for (i, [left, bottom, right, top]) in page.taken.iter().enumerate() {

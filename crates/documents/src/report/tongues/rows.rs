@@ -20,18 +20,20 @@ const DIGITS: usize = 4;
 /// a tongue has none of it. In the `short` form only the columns that fit a line, rounded numbers in a few digits.
 pub fn record(request: &Request, short: bool) -> Record<'_, Tongue> {
     let record = Record::new()
-        .field(Column::math("p", "p"), |of: &Tongue| of.row.ratio.p().into())
-        .field(Column::math("q", "q"), |of| of.row.ratio.q().into())
-        .field(Column::math("m", "m"), |of| of.row.gap.m.into())
-        .field(Column::math("a", "a"), |of| of.row.family.map(|(a, _)| a).into())
-        .field(Column::math("b", "b"), |of| of.row.family.map(|(_, b)| b).into());
-    let record = Edge { end: "lower", sign: '-', find: |of| Some(&of.lower) }.of(record, request, short);
-    let record = Edge { end: "upper", sign: '+', find: |of| of.upper.as_ref() }.of(record, request, short);
-    let closed = |of: &Tongue| Cell::from(of.row.gap.closed);
+        .field(Column::math("p", "p"), |tongue: &Tongue| tongue.row.ratio.p().into())
+        .field(Column::math("q", "q"), |tongue| tongue.row.ratio.q().into())
+        .field(Column::math("m", "m"), |tongue| tongue.row.gap.m.into())
+        .field(Column::math("a", "a"), |tongue| tongue.row.family.map(|(a, _)| a).into())
+        .field(Column::math("b", "b"), |tongue| tongue.row.family.map(|(_, b)| b).into());
+    let record =
+        Edge { end: "lower", sign: '-', find: |tongue| Some(&tongue.lower) }.of(record, request, short);
+    let record =
+        Edge { end: "upper", sign: '+', find: |tongue| tongue.upper.as_ref() }.of(record, request, short);
+    let closed = |tongue: &Tongue| Cell::from(tongue.row.gap.closed);
     let record = if short { record } else { record.field(Column::new("closed"), closed) };
-    let record = record.field(Column::new("width").enclosure(), move |of| match of.row.gap.upper {
-        Some(_) if of.row.gap.closed && short => "closed".into(),
-        Some(_) => of.row.gap.width.into(),
+    let record = record.field(Column::new("width").enclosure(), move |tongue| match tongue.row.gap.upper {
+        Some(_) if tongue.row.gap.closed && short => "closed".into(),
+        Some(_) => tongue.row.gap.width.into(),
         None => Cell::Missing,
     });
     wanted(record, request, short)
@@ -63,13 +65,13 @@ struct Edge {
 }
 
 impl Edge {
-    fn s(self, of: &Tongue) -> Option<&Bounds> {
-        (self.find)(of).map(|edge| &edge.s)
+    fn s(self, tongue: &Tongue) -> Option<&Bounds> {
+        (self.find)(tongue).map(|edge| &edge.s)
     }
 
     /// h1 (0) or h2 (1).
-    fn step(self, of: &Tongue, n: usize) -> Option<&Bounds> {
-        (self.find)(of)?.steps.as_ref().map(|steps| &steps[n])
+    fn step(self, tongue: &Tongue, n: usize) -> Option<&Bounds> {
+        (self.find)(tongue)?.steps.as_ref().map(|steps| &steps[n])
     }
 
     /// `lo, hi, entry`, with digits `decimal`, with closed forms `exact, on`, with L1 `h1, h2`.
@@ -78,33 +80,33 @@ impl Edge {
         let path = |key: &str| format!("{end}.{key}");
         let column = |key: &str| Column::new(&format!("{end}_{key}"));
         let title = Column::new(end).titled(&format!("{end} edge"), &format!("$s_{sign}$")).enclosure();
-        let mut record = record.field(title, move |of| {
-            let digits = short.then(|| concisely(self.s(of), request)).flatten();
-            digits.unwrap_or_else(|| self.s(of).map(ends).into())
+        let mut record = record.field(title, move |tongue| {
+            let digits = short.then(|| concisely(self.s(tongue), request)).flatten();
+            digits.unwrap_or_else(|| self.s(tongue).map(ends).into())
         });
         if request.digits.is_some() {
             record = record
-                .json(path("decimal.lo"), move |of| decimal(self.s(of), request, 0))
-                .json(path("decimal.hi"), move |of| decimal(self.s(of), request, 1));
+                .json(path("decimal.lo"), move |tongue| decimal(self.s(tongue), request, 0))
+                .json(path("decimal.hi"), move |tongue| decimal(self.s(tongue), request, 1));
         }
-        record = record.at(path("entry"), column("entry").titled("of", "of").left().aside(), move |of| {
-            find(of).map(|edge| edge.entry.name()).into()
+        record = record.at(path("entry"), column("entry").titled("of", "of").left().aside(), move |tongue| {
+            find(tongue).map(|edge| edge.entry.name()).into()
         });
         if request.wanted.exact {
-            let exact = move |of: &Tongue| find(of)?.exact.as_ref().map(Cell::exact);
-            let on = move |of: &Tongue| Cell::from(find(of).and_then(|edge| Some(edge.on?.name())));
+            let exact = move |tongue: &Tongue| find(tongue)?.exact.as_ref().map(Cell::exact);
+            let on = move |tongue: &Tongue| Cell::from(find(tongue).and_then(|edge| Some(edge.on?.name())));
             let title = column("exact").titled("exact", "exact").left();
             record = if short {
-                record.column(title, move |of| exact(of).unwrap_or_else(|| on(of)))
+                record.column(title, move |tongue| exact(tongue).unwrap_or_else(|| on(tongue)))
             } else {
-                let exact = move |of: &Tongue| exact(of).unwrap_or(Cell::Missing);
+                let exact = move |tongue: &Tongue| exact(tongue).unwrap_or(Cell::Missing);
                 record.at(path("exact"), title, exact).at(path("on"), column("on").left(), on)
             };
         }
         if request.digits.is_some() && !short {
             for (n, side) in ["lo", "hi"].into_iter().enumerate() {
                 let title = column(&format!("decimal_{side}")).titled(&format!("{end} {side}"), side);
-                record = record.column(title, move |of| decimal(self.s(of), request, n));
+                record = record.column(title, move |tongue| decimal(self.s(tongue), request, n));
             }
         }
         if request.lambda1.is_some() {
@@ -113,17 +115,17 @@ impl Edge {
                 let title = column(h).titled(&format!("{h} {end}"), &formula).enclosure();
                 // h2 is p/q of h1.
                 let title = if n == 1 { title.aside() } else { title };
-                record = record.at(path(h), title, move |of| {
-                    let digits = short.then(|| concisely(self.step(of, n), request)).flatten();
-                    digits.unwrap_or_else(|| self.step(of, n).map(ends).into())
+                record = record.at(path(h), title, move |tongue| {
+                    let digits = short.then(|| concisely(self.step(tongue, n), request)).flatten();
+                    digits.unwrap_or_else(|| self.step(tongue, n).map(ends).into())
                 });
                 if request.digits.is_some() {
                     record = record
-                        .json(path(&format!("{h}.decimal.lo")), move |of| {
-                            decimal(self.step(of, n), request, 0)
+                        .json(path(&format!("{h}.decimal.lo")), move |tongue| {
+                            decimal(self.step(tongue, n), request, 0)
                         })
-                        .json(path(&format!("{h}.decimal.hi")), move |of| {
-                            decimal(self.step(of, n), request, 1)
+                        .json(path(&format!("{h}.decimal.hi")), move |tongue| {
+                            decimal(self.step(tongue, n), request, 1)
                         });
                 }
             }
@@ -156,10 +158,10 @@ fn wanted<'a>(mut record: Record<'a, Tongue>, request: &'a Request, short: bool)
     };
     let has_steps = request.lambda1.is_some();
     if request.wanted.growth {
-        let s = move |of: &Tongue| float(of.row.peak.map(|peak| peak.s));
-        let ln_multiplier = move |of: &Tongue| float(of.row.peak.map(|peak| peak.ln_multiplier));
-        let rate = move |of: &Tongue| float(of.row.peak.map(|peak| peak.rate));
-        let tenfold = move |of: &Tongue| float(of.row.peak.map(|peak| peak.slow_steps_to_tenfold));
+        let s = move |tongue: &Tongue| float(tongue.row.peak.map(|peak| peak.s));
+        let ln_multiplier = move |tongue: &Tongue| float(tongue.row.peak.map(|peak| peak.ln_multiplier));
+        let rate = move |tongue: &Tongue| float(tongue.row.peak.map(|peak| peak.rate));
+        let tenfold = move |tongue: &Tongue| float(tongue.row.peak.map(|peak| peak.slow_steps_to_tenfold));
         if !short {
             record = record.at("growth.s", titled("growth_s", "fastest at s"), s).at(
                 "growth.ln_multiplier",
@@ -173,53 +175,61 @@ fn wanted<'a>(mut record: Record<'a, Tongue>, request: &'a Request, short: bool)
         record = record.json("growth.steps_until_tenfold", tenfold);
         if has_steps {
             let title = titled("growth_rate", "growth rate");
-            record = record.at("growth.growth_rate", title, move |of| float(of.growth_rate));
+            record = record.at("growth.growth_rate", title, move |tongue| float(tongue.growth_rate));
         }
         record = record.column(titled("steps_until_tenfold", "tenfold in"), tenfold);
     }
     if request.wanted.predicted {
-        let point = |of: &Tongue| of.row.predicted.as_ref().map(|point| point.s);
-        let place = |of: &Tongue| Cell::from(of.row.predicted.as_ref().map(|point| side(point.side)));
-        let position = |of: &Tongue| Cell::from(of.row.predicted.as_ref().map(|point| point.side.name()));
-        let distance = |of: &Tongue| of.row.predicted.as_ref().map(|point| point.distance);
+        let point = |tongue: &Tongue| tongue.row.predicted.as_ref().map(|point| point.s);
+        let place = |tongue: &Tongue| Cell::from(tongue.row.predicted.as_ref().map(|point| side(point.side)));
+        let position =
+            |tongue: &Tongue| Cell::from(tongue.row.predicted.as_ref().map(|point| point.side.name()));
+        let distance = |tongue: &Tongue| tongue.row.predicted.as_ref().map(|point| point.distance);
         let side = titled("side", "predicted point");
         record = if short {
             record.column(side, place)
         } else {
             record
-                .at("predicted.s", titled("predicted_s", "predicted s"), move |of| float(point(of)))
+                .at("predicted.s", titled("predicted_s", "predicted s"), move |tongue| float(point(tongue)))
                 .at("predicted.side", side, place)
                 .at("predicted.position", titled("position", "position"), position)
-                .at("predicted.distance", titled("distance", "distance"), move |of| float(distance(of)))
+                .at("predicted.distance", titled("distance", "distance"), move |tongue| {
+                    float(distance(tongue))
+                })
         };
     }
     if request.wanted.first_order {
-        fn law(of: &Tongue) -> Option<&Law> {
-            of.row.first_order.as_ref()
+        fn law(tongue: &Tongue) -> Option<&Law> {
+            tongue.row.first_order.as_ref()
         }
-        let width = move |of: &Tongue| float(law(of).map(|own| own.width));
+        let width = move |tongue: &Tongue| float(law(tongue).map(|law| law.width));
         if !short {
             let its_error = |key| titled(key, "its error").enclosure();
             record = record
-                .at("first_order.centre", titled("first_order_centre", "centre to first order"), move |of| {
-                    float(law(of).map(|own| own.centre))
-                })
+                .at(
+                    "first_order.centre",
+                    titled("first_order_centre", "centre to first order"),
+                    move |tongue| float(law(tongue).map(|law| law.centre)),
+                )
                 .json("first_order.width", width)
-                .json("first_order.ln_multiplier", move |of| float(law(of).map(|own| own.ln_multiplier)))
-                .at("first_order.centre_error", its_error("centre_error"), move |of| {
-                    law(of).map(|own| own.centre_error).into()
+                .json("first_order.ln_multiplier", move |tongue| {
+                    float(law(tongue).map(|law| law.ln_multiplier))
+                })
+                .at("first_order.centre_error", its_error("centre_error"), move |tongue| {
+                    law(tongue).map(|law| law.centre_error).into()
                 })
                 .column(titled("first_order_width", "width to first order"), width)
-                .at("first_order.width_error", its_error("width_error"), move |of| {
-                    law(of).map(|own| own.width_error).into()
+                .at("first_order.width_error", its_error("width_error"), move |tongue| {
+                    law(tongue).map(|law| law.width_error).into()
                 });
         }
         let title = titled("width_ratio", "width/first order").enclosure();
-        record =
-            record.at("first_order.width_ratio", title, move |of| match law(of).map(|own| own.width_ratio) {
+        record = record.at("first_order.width_ratio", title, move |tongue| {
+            match law(tongue).map(|law| law.width_ratio) {
                 Some((lo, hi)) if short => Cell::Decimal(shortened(lo, hi, DIGITS as u32).to_string()),
                 ends => ends.into(),
-            });
+            }
+        });
     }
     record
 }

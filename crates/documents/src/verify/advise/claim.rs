@@ -134,7 +134,7 @@ impl Claim {
 
     /// Whether nothing is known of the innermost clock.
     pub fn lacks_fast(&self) -> bool {
-        let is_alone = self.input.schemes.first().is_none_or(|own| own.steps().len() == 1);
+        let is_alone = self.input.schemes.first().is_none_or(|schemes| schemes.steps().len() == 1);
         let slow = |mode: &Mode| {
             mode.origin.name().starts_with("slow period") || mode.name.to_lowercase().starts_with("slow")
         };
@@ -213,7 +213,7 @@ impl Claim {
 
     /// The shortest period on any clock but the outermost.
     pub fn fastest(&self) -> Checked<&ModeRow> {
-        let last = self.input.schemes.first().map_or(0, |own| own.steps().len()) as u64;
+        let last = self.input.schemes.first().map_or(0, |scheme| scheme.steps().len()) as u64;
         let inner = self.modes.iter().filter(|mode| last == 1 || mode.clock < last);
         let by = |a: &&ModeRow, b: &&ModeRow| a.stiffness.cmp(&b.stiffness);
         let found = inner.max_by(by).or_else(|| self.modes.iter().max_by(by));
@@ -222,27 +222,27 @@ impl Claim {
     }
 
     /// An interval that is listed: both ends are such, and what lies between is unstable.
-    fn interval(&self, own: &Interval) -> Checked {
-        let mode = self.modes_asked().find(|mode| mode.name == own.mode);
-        let mass = self.mass((own.scheme as usize).wrapping_sub(1), mode)?;
+    fn interval(&self, interval: &Interval) -> Checked {
+        let mode = self.modes_asked().find(|mode| mode.name == interval.mode);
+        let mass = self.mass((interval.scheme as usize).wrapping_sub(1), mode)?;
         let outer = mass.steps.last().cloned().unwrap_or_default();
         let at = |step: f64| mass.scaled(&(exact(step) / &outer));
-        let Some(upper) = own.upper else { return Ok(()) };
-        holds(mode.is_some() && own.lower.hi <= upper.lo, || {
-            format!("interval {} of {} is none", own.m, own.mode)
+        let Some(upper) = interval.upper else { return Ok(()) };
+        holds(mode.is_some() && interval.lower.hi <= upper.lo, || {
+            format!("interval {} of {} is none", interval.m, interval.mode)
         })?;
-        crosses(&at, own.lower, "lower")?;
+        crosses(&at, interval.lower, "lower")?;
         crosses(&at, upper, "upper")?;
-        let inside = at(own.lower.hi / 2.0 + upper.lo / 2.0);
+        let inside = at(interval.lower.hi / 2.0 + upper.lo / 2.0);
         holds(inside.excess()? != Some(Sign::Negative), || {
-            format!("interval {} of {} is stable inside", own.m, own.mode)
+            format!("interval {} of {} is stable inside", interval.m, interval.mode)
         })?;
         // In tongue m the trace has the sign (-1)^m.
         let sign = inside.trace()?.0.sign();
-        holds((sign == Some(Sign::Positive)) == (own.m.is_multiple_of(2)), || {
-            format!("{} is not the label of that interval", own.m)
+        holds((sign == Some(Sign::Positive)) == (interval.m.is_multiple_of(2)), || {
+            format!("{} is not the label of that interval", interval.m)
         })?;
-        fastest_growth(&at, (own.lower.hi, upper.lo), own.tenfold_steps)
+        fastest_growth(&at, (interval.lower.hi, upper.lo), interval.tenfold_steps)
     }
 
     fn pair(&self, pair: &Pair) -> Checked {

@@ -12,19 +12,23 @@ use number::{Ball, Laurent, Rational, Real, Ring, Sign};
 
 impl Claim {
     /// The ends, the step below them, the filters' traces.
-    pub fn lever(&self, own: &LeverRow) -> Checked {
-        match own.method.as_str() {
-            "kicks and drifts" => self.kicks(own),
-            "kicks and drifts with friction" => self.masked(own),
-            _ => self.other_method(own),
+    pub fn lever(&self, lever_row: &LeverRow) -> Checked {
+        match lever_row.method.as_str() {
+            "kicks and drifts" => self.kicks(lever_row),
+            "kicks and drifts with friction" => self.masked(lever_row),
+            _ => self.other_method(lever_row),
         }?;
-        let below = own.step.as_ref().zip(own.band_edge).is_none_or(|(step, edge)| step.0 < exact(edge.hi));
-        holds(below, || format!("the step of {} is beyond its edge", own.lever))
+        let below = lever_row
+            .step
+            .as_ref()
+            .zip(lever_row.band_edge)
+            .is_none_or(|(step, edge)| step.0 < exact(edge.hi));
+        holds(below, || format!("the step of {} is beyond its edge", lever_row.lever))
     }
 
     /// The modes that a lever leaves or changes: a bond's k is its stiffness times the reduced mass.
-    fn modes_of(&self, own: &LeverRow) -> Checked<Vec<Mode>> {
-        let heavy = own.lever.strip_prefix("hydrogens of ").and_then(|rest| rest.strip_suffix(" amu"));
+    fn modes_of(&self, lever_row: &LeverRow) -> Checked<Vec<Mode>> {
+        let heavy = lever_row.lever.strip_prefix("hydrogens of ").and_then(|rest| rest.strip_suffix(" amu"));
         let heavy = heavy.map(|mass| parse_rational("lever", mass)).transpose()?;
         let light = |mass: &Rational| *mass <= Rational::new(11.into(), 10.into());
         let mut modes = Vec::new();
@@ -34,7 +38,7 @@ impl Claim {
                 modes.push(mode);
                 continue;
             };
-            if own.lever == "h-bonds held" {
+            if lever_row.lever == "h-bonds held" {
                 continue;
             }
             let [a, b] = &bond.masses;
@@ -50,17 +54,17 @@ impl Claim {
         Ok(modes)
     }
 
-    fn kicks(&self, own: &LeverRow) -> Checked {
-        let modes = self.modes_of(own)?;
+    fn kicks(&self, lever_row: &LeverRow) -> Checked {
+        let modes = self.modes_of(lever_row)?;
         let mut steps = self.input.schemes.first().map_or_else(Vec::new, |scheme| scheme.steps().to_vec());
-        if let Some(p) = own.lever.strip_prefix("ratio ") {
+        if let Some(p) = lever_row.lever.strip_prefix("ratio ") {
             let count = steps.len();
             holds(count > 1, || "one clock has no ratio".into())?;
             steps[count - 1] = &steps[count - 2] * parse_rational("lever", p)?;
         }
         // The inner steps are those of the scheme, and all columns belong to the ratio of the step that is taken.
-        let is_at_ratio = own.lever.starts_with("ratio ");
-        let outer = match &own.step {
+        let is_at_ratio = lever_row.lever.starts_with("ratio ");
+        let outer = match &lever_row.step {
             Some(step) if !is_at_ratio && steps.len() > 1 => step.0.clone(),
             _ => steps.last().cloned().unwrap_or_default(),
         };
@@ -71,8 +75,8 @@ impl Claim {
         };
         let mass = Mass { stiffness: (0..steps.len()).map(stiffest).collect(), steps };
         let mass = if mass.steps.len() > 1 { mass.with_outer(&outer) } else { mass };
-        let (Some(first), Some(edge)) = (own.first, own.band_edge) else {
-            return holds(false, || format!("{} lacks its edges", own.lever));
+        let (Some(first), Some(edge)) = (lever_row.first, lever_row.band_edge) else {
+            return holds(false, || format!("{} lacks its edges", lever_row.lever));
         };
         let inside = |step: &Rational| mass.scaled(&(step / &outer)).in_first_region();
         let shorter = Rational::one() - &self.input.band;
@@ -81,19 +85,19 @@ impl Claim {
             let right = inside(&(exact(ends.lo) * &factor))? != Some(false)
                 && inside(&(exact(ends.hi) * &factor))? != Some(true);
             holds(right, || {
-                format!("the first region of {} does not end in {}..{}", own.lever, ends.lo, ends.hi)
+                format!("the first region of {} does not end in {}..{}", lever_row.lever, ends.lo, ends.hi)
             })?;
         }
-        let Some(step) = &own.step else { return Ok(()) };
+        let Some(step) = &lever_row.step else { return Ok(()) };
         let taken = mass.scaled(&(&step.0 / &outer));
         holds(taken.scaled(&shorter.recip()).in_first_region()? == Some(true), || {
-            format!("the step of {} is not proven for the band", own.lever)
+            format!("the step of {} is not proven for the band", lever_row.lever)
         })
     }
 
     /// The step is damped; the next one is not, or is not proven to be.
-    fn masked(&self, own: &LeverRow) -> Checked {
-        let (Some(step), Some(rate)) = (&own.step, &self.input.friction) else {
+    fn masked(&self, lever_row: &LeverRow) -> Checked {
+        let (Some(step), Some(rate)) = (&lever_row.step, &self.input.friction) else {
             return holds(false, || "a friction masks no step".into());
         };
         let mass = self.mass(0, None)?;
@@ -110,18 +114,18 @@ impl Claim {
     }
 
     /// Two clocks: the stiffest mode on each, and the same with the band's shortest periods.
-    fn other_method(&self, own: &LeverRow) -> Checked {
+    fn other_method(&self, lever_row: &LeverRow) -> Checked {
         let (given, corner) = (self.mass(0, None)?, self.corner(0)?);
-        let (true, Some(edge)) = (given.stiffness.len() == 2, own.band_edge) else {
-            return holds(false, || format!("{} is of two clocks", own.lever));
+        let (true, Some(edge)) = (given.stiffness.len() == 2, lever_row.band_edge) else {
+            return holds(false, || format!("{} is of two clocks", lever_row.lever));
         };
-        if let Some(first) = own.first {
-            holds(ends_at(&own.method, first, &given), || {
-                format!("{} is not unstable in {}..{}", own.lever, first.lo, first.hi)
+        if let Some(first) = lever_row.first {
+            holds(ends_at(&lever_row.method, first, &given), || {
+                format!("{} is not unstable in {}..{}", lever_row.lever, first.lo, first.hi)
             })?;
         }
-        holds(ends_at(&own.method, edge, &corner), || {
-            format!("{} does not end in {}..{}", own.lever, edge.lo, edge.hi)
+        holds(ends_at(&lever_row.method, edge, &corner), || {
+            format!("{} does not end in {}..{}", lever_row.lever, edge.lo, edge.hi)
         })?;
         let slow = self
             .input
@@ -131,10 +135,10 @@ impl Claim {
             .filter(|mode| mode.clock == Some(1))
             .map(|mode| &mode.stiffness)
             .max();
-        let exact = own.first_exact.as_ref().zip(slow).is_none_or(|(h, slow)| {
+        let exact = lever_row.first_exact.as_ref().zip(slow).is_none_or(|(h, slow)| {
             Laurent::product(&Laurent::product(&h.0, &h.0), slow) == Laurent::from_integer(4)
         });
-        holds(exact, || format!("{} is not unstable at exactly that step", own.lever))
+        holds(exact, || format!("{} is not unstable at exactly that step", lever_row.lever))
     }
 }
 

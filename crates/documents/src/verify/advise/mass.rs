@@ -68,8 +68,8 @@ impl Mass {
         steps[last] = outer.clone();
         if last > 0 && steps[last] == steps[last - 1] {
             steps.pop();
-            let own = stiffness.pop().expect("two clocks");
-            stiffness[last - 1] = stiffness[last - 1].add(&own, BITS);
+            let ball = stiffness.pop().expect("two clocks");
+            stiffness[last - 1] = stiffness[last - 1].add(&ball, BITS);
         }
         Mass { steps, stiffness }
     }
@@ -135,7 +135,7 @@ impl Mass {
         Ok(if both.contains(&Some(false)) {
             Some(false)
         } else {
-            both.iter().all(|own| *own == Some(true)).then_some(true)
+            both.iter().all(|flag| *flag == Some(true)).then_some(true)
         })
     }
 }
@@ -146,16 +146,16 @@ fn positive(nodes: &[(Option<Ball>, Ball)], from: usize, upto: usize) -> Option<
     for j in from..=upto {
         let left = nodes[j].0.clone().unwrap_or_else(Ball::zero);
         let right = nodes.get(j + 1).and_then(|next| next.0.clone()).unwrap_or_else(Ball::zero);
-        let mut own = left.add(&right, BITS).sub(&nodes[j].1, BITS);
+        let mut ball = left.add(&right, BITS).sub(&nodes[j].1, BITS);
         if let Some(before) = pivot {
-            own = own.sub(&left.square(BITS).div(&before, BITS)?, BITS);
+            ball = ball.sub(&left.square(BITS).div(&before, BITS)?, BITS);
         }
-        match own.sign() {
+        match ball.sign() {
             Some(Sign::Positive) => {}
             Some(_) => return Some(false),
             None => return None,
         }
-        pivot = Some(own);
+        pivot = Some(ball);
     }
     Some(true)
 }

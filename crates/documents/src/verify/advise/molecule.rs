@@ -18,10 +18,10 @@ use systems::{Holds, Limits, Potential, System, decide_system};
 /// Another route to what a row proves.
 trait Route {
     /// The products that it costs, about.
-    fn cost(&self, own: &Finding) -> u64;
-    fn row(&self, own: &Finding) -> Checked;
+    fn cost(&self, finding: &Finding) -> u64;
+    fn row(&self, finding: &Finding) -> Checked;
     /// Whether the ends of the region are among what it proves.
-    fn has_ends(&self, own: &Finding) -> bool;
+    fn has_ends(&self, finding: &Finding) -> bool;
     fn route(&self) -> &'static str;
 }
 
@@ -46,10 +46,10 @@ impl Many<'_> {
     fn at(&self, scheme: &Scheme, factor: f64, scales: &[f64]) -> Result<Holds> {
         let exact = |x: f64| from_f64_exact(x).unwrap_or_else(Rational::zero);
         let (unit, factor) = (self.scene.femtoseconds()?, exact(factor));
-        let potential = |((own, step), scale): ((&Potential, &Rational), &f64)| Potential {
-            stiffness: own.stiffness.scaled(&exact(*scale)),
+        let potential = |((potential, step), scale): ((&Potential, &Rational), &f64)| Potential {
+            stiffness: potential.stiffness.scaled(&exact(*scale)),
             step: step * &factor / &unit,
-            ..own.clone()
+            ..potential.clone()
         };
         let all = self.system.potentials().iter().zip(scheme.steps()).zip(scales).map(potential);
         let system = System::new(self.system.mass().clone(), all.collect())?;
@@ -65,28 +65,40 @@ impl Many<'_> {
 }
 
 impl Route for Many<'_> {
-    fn cost(&self, own: &Finding) -> u64 {
-        let kicks = to_f64(&(own.scheme.outer() / own.scheme.inner())).ceil() as u64;
+    fn cost(&self, finding: &Finding) -> u64 {
+        let kicks = to_f64(&(finding.scheme.outer() / finding.scheme.inner())).ceil() as u64;
         // Some eight verdicts, each of some hundred products of matrices.
         (self.system.size() as u64).saturating_pow(3).saturating_mul(8 * (100 + kicks))
     }
 
-    fn row(&self, own: &Finding) -> Checked {
-        let levels = own.scheme.steps().len();
+    fn row(&self, finding: &Finding) -> Checked {
+        let levels = finding.scheme.steps().len();
         let as_given = vec![1.0; levels];
-        if own.holds != Holds::NotTold {
-            self.is(own.holds, (&own.scheme, to_f64(own.scheme.outer()), &as_given), "the scheme")?;
+        if finding.holds != Holds::NotTold {
+            self.is(
+                finding.holds,
+                (&finding.scheme, to_f64(finding.scheme.outer()), &as_given),
+                "the scheme",
+            )?;
         }
-        if let Some((lo, hi)) = own.first {
-            self.is(Holds::Stable, (&own.scheme, lo * (1.0 - ROOM), &as_given), "the last stable step")?;
-            self.is(Holds::Unstable, (&own.scheme, hi * (1.0 + ROOM), &as_given), "the first unstable step")?;
+        if let Some((lo, hi)) = finding.first {
+            self.is(Holds::Stable, (&finding.scheme, lo * (1.0 - ROOM), &as_given), "the last stable step")?;
+            self.is(
+                Holds::Unstable,
+                (&finding.scheme, hi * (1.0 + ROOM), &as_given),
+                "the first unstable step",
+            )?;
         }
-        if let Some(edge) = own.band_edge {
+        if let Some(edge) = finding.band_edge {
             let [most, least] = [1.0 - self.band, 1.0 + self.band].map(|part| part.powi(-2));
             for which in 0..1usize << (levels - 1) {
                 let slower = (0..levels - 1).map(|k| if which >> k & 1 == 1 { least } else { most });
                 let scales: Vec<f64> = [most].into_iter().chain(slower).collect();
-                self.is(Holds::Stable, (&own.scheme, edge * (1.0 - ROOM), &scales), "a corner of the band")?;
+                self.is(
+                    Holds::Stable,
+                    (&finding.scheme, edge * (1.0 - ROOM), &scales),
+                    "a corner of the band",
+                )?;
             }
         }
         Ok(())
@@ -122,40 +134,40 @@ impl Other {
         Ok(Other { hessians: scene.model().hessians()?, off, band, unit })
     }
 
-    fn inner_steps(own: &Finding) -> u64 {
-        to_f64(&(own.scheme.outer() / own.scheme.inner())).round() as u64
+    fn inner_steps(finding: &Finding) -> u64 {
+        to_f64(&(finding.scheme.outer() / finding.scheme.inner())).round() as u64
     }
 
-    fn has_paths(&self, own: &Finding) -> bool {
-        self.hessians.has_paths(Other::inner_steps(own))
+    fn has_paths(&self, finding: &Finding) -> bool {
+        self.hessians.has_paths(Other::inner_steps(finding))
     }
 }
 
 impl Route for Other {
-    fn cost(&self, own: &Finding) -> u64 {
-        let p = Other::inner_steps(own);
-        let paths = if self.has_paths(own) { self.hessians.cost_of_paths(p) } else { 0 };
+    fn cost(&self, finding: &Finding) -> u64 {
+        let p = Other::inner_steps(finding);
+        let paths = if self.has_paths(finding) { self.hessians.cost_of_paths(p) } else { 0 };
         self.hessians.cost_of_period(p).saturating_add(paths)
     }
 
-    fn row(&self, own: &Finding) -> Checked {
-        let (p, outer) = (Other::inner_steps(own), to_f64(own.scheme.outer()));
+    fn row(&self, finding: &Finding) -> Checked {
+        let (p, outer) = (Other::inner_steps(finding), to_f64(finding.scheme.outer()));
         let growth = self.hessians.growth_of_period(outer / self.unit, p) * outer / self.unit;
-        let right = own.rate.is_none_or(|rate| (growth - rate * outer).abs() < GROWTH);
+        let right = finding.rate.is_none_or(|rate| (growth - rate * outer).abs() < GROWTH);
         holds(right, || format!("growth is {growth} in a period"))?;
-        if !self.has_paths(own) {
+        if !self.has_paths(finding) {
             return Ok(());
         }
         let stable = |step: f64, near: Near| self.hessians.paths_prove_stable(step / self.unit, p, near);
         let unstable = |step: f64| self.hessians.paths_prove_unstable(step / self.unit, p);
-        if let Some((lo, hi)) = own.first {
+        if let Some((lo, hi)) = finding.first {
             holds(stable(lo * (1.0 - ROOM), Near::EXACTLY), || format!("is not proven stable up to {lo}"))?;
             holds(unstable(hi * (1.0 + ROOM)), || format!("is not proven unstable from {hi} on"))?;
         }
-        if let Some(upper) = own.first_upper {
+        if let Some(upper) = finding.first_upper {
             holds(unstable(upper * (1.0 - ROOM)), || format!("is not proven unstable up to {upper}"))?;
         }
-        if let Some(edge) = own.band_edge {
+        if let Some(edge) = finding.band_edge {
             let [most, least] = [1.0 - self.band, 1.0 + self.band].map(|part| part.powi(-2));
             for slow in [most, least] {
                 let off = [most * self.off[0], slow * self.off[1]];
@@ -168,8 +180,8 @@ impl Route for Other {
         Ok(())
     }
 
-    fn has_ends(&self, own: &Finding) -> bool {
-        self.has_paths(own)
+    fn has_ends(&self, finding: &Finding) -> bool {
+        self.has_paths(finding)
     }
 
     fn route(&self) -> &'static str {
@@ -192,24 +204,24 @@ impl Recheck for Claim {
     asked!(Advised);
 
     fn check(&self, safe: Safe, context: &Context) -> Result<Outcome> {
-        let Safe::Hessians(own) = safe else { return Err(Error::missing("input.system", REMEDY)) };
-        let (scene, findings) = *own;
+        let Safe::Hessians(pair) = safe else { return Err(Error::missing("input.system", REMEDY)) };
+        let (scene, findings) = *pair;
         let (mut failures, mut not_rechecked) = (Vec::new(), Vec::new());
         let limits =
             Limits { products: context.options.budget.unwrap_or(MOST_PRODUCTS), ..Limits::default() };
         let other = route(&scene, to_f64(&self.input.band), &limits)?;
         let mut spent: u64 = 0;
-        for (row, own) in (1..).zip(&findings.schemes) {
-            let cost = spent.saturating_add(other.cost(own));
+        for (row, finding) in (1..).zip(&findings.schemes) {
+            let cost = spent.saturating_add(other.cost(finding));
             if let Err(error) = limits.allow(cost, || format!("schemes 1 to {row}")) {
                 not_rechecked.push(too_costly(&format!("row {row}"), &error));
                 continue;
             }
             spent = cost;
-            let place = || format!("outer step {} fs", own.scheme.outer());
-            failures.extend(context.failure(row, place, other.row(own))?);
+            let place = || format!("outer step {} fs", finding.scheme.outer());
+            failures.extend(context.failure(row, place, other.row(finding))?);
         }
-        if !findings.schemes.iter().all(|own| other.has_ends(own)) {
+        if !findings.schemes.iter().all(|scheme| other.has_ends(scheme)) {
             let why = "first, band_edge by the other route: too many steps for the action's matrix, computed again only";
             not_rechecked.push(why.into());
         }

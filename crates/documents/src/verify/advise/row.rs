@@ -73,23 +73,23 @@ impl Claim {
     }
 
     /// Damped by the frictions that are said to mask, some larger ones where all are, and not by the one that is said not to.
-    fn friction(&self, row: &Row, own: &Mass) -> Checked {
+    fn friction(&self, row: &Row, mass: &Mass) -> Checked {
         let per_fs = |per_ps: f64| exact(per_ps) / Rational::from_integer(self.per().into());
         if let Some(masked) = row.masked_above {
             let grows = *row.kind == Kind::Hyperbolic && masked.lo > 0.0;
-            let right = grows && own.is_damped(&per_fs(masked.lo))? != Some(true);
+            let right = grows && mass.is_damped(&per_fs(masked.lo))? != Some(true);
             holds(right, || "masked_above is not the friction that masks it".into())?;
             let (lo, hi) = (masked.hi, row.masked_below);
             let others =
                 hi.map_or([2.0, 30.0, 1e3].map(|times| times * lo), |hi| [hi, lo + (hi - lo) / 2.0, lo]);
             for friction in [lo].into_iter().chain(others) {
-                let masks = own.is_damped(&per_fs(friction))? != Some(false);
+                let masks = mass.is_damped(&per_fs(friction))? != Some(false);
                 holds(masks, || format!("a friction of {friction}/ps does not mask it"))?;
             }
         }
         match (row.damped, &self.input.friction) {
             (Some(said), Some(friction)) => {
-                let truth = own.is_damped(friction)?;
+                let truth = mass.is_damped(friction)?;
                 holds(truth.is_none_or(|truth| truth == said), || format!("damped is not {said}"))
             }
             (said, given) => holds(said.is_none() || given.is_some(), || "damped without a friction".into()),

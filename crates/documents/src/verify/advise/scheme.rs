@@ -60,8 +60,8 @@ impl Claim {
     /// Whether all steps are below what is published, with this outermost one.
     fn is_published(&self, given: &Mass, outer: &Rational) -> Checked<bool> {
         let last = given.steps.len() - 1;
-        let own = (0..last).all(|k| self.is_below_turn(given, k, &given.steps[k]));
-        Ok(own
+        let flag = (0..last).all(|k| self.is_below_turn(given, k, &given.steps[k]));
+        Ok(flag
             && self.is_below_turn(given, last, outer)
             && (last == 0 || *outer < exact(self.fastest()?.third.lo)))
     }
@@ -72,7 +72,7 @@ impl Claim {
         let with = |outer: &Rational| -> Checked<bool> {
             Ok(corner.with_outer(outer).in_first_region()? == Some(true))
         };
-        let silent = corner.stiffness.iter().any(|own| own.sign() == Some(Sign::Zero)) || self.lacks_fast();
+        let silent = corner.stiffness.iter().any(|ball| ball.sign() == Some(Sign::Zero)) || self.lacks_fast();
         let Some(largest) = &row.largest else {
             return holds(
                 row.safe.is_none() && (silent || count == 1 || !with(&corner.steps[count - 2])?),
@@ -99,8 +99,8 @@ impl Claim {
             return holds(none && row.bound.is_none(), || "safe is missing".into());
         };
         let next = if count == 1 { beside(&safe.0, 1) } else { &safe.0 + &unit };
-        let own = if count == 1 { beside(&safe.0, -1) } else { safe.0.clone() };
-        let bounded = whole(&safe.0) && safe.0 <= largest.0 && self.is_published(given, &own)?;
+        let value = if count == 1 { beside(&safe.0, -1) } else { safe.0.clone() };
+        let bounded = whole(&safe.0) && safe.0 <= largest.0 && self.is_published(given, &value)?;
         let longest = safe.0 == largest.0 || !self.is_published(given, &next)?;
         holds(bounded && longest && self.input.beads.is_none(), || {
             format!("{} is not the longest outer step below what is published", safe.0)

@@ -13,14 +13,14 @@ const MOST: usize = 24;
 /// No potential holds a rigid mode, and there are as many of these as potentials leave free: of effective stiffnesses those that they come from.
 pub fn exactly(scene: &SystemScene, analysis: &Analysis) -> Checked {
     let plain = match scene.model() {
-        Model::Rational(own) | Model::Elements(own, _) => own,
-        Model::LocalSteps(own) => own.plain(),
-        Model::Implicit(own) => own.plain(),
+        Model::Rational(system) | Model::Elements(system, _) => system,
+        Model::LocalSteps(local_steps) => local_steps.plain(),
+        Model::Implicit(implicit_explicit) => implicit_explicit.plain(),
         _ => return Ok(()),
     };
     let modes = &analysis.rigid_modes;
-    for (k, own) in plain.potentials().iter().enumerate() {
-        let is_free = |mode: &Vec<Rational>| own.stiffness.times(mode).iter().all(Zero::is_zero);
+    for (k, potential) in plain.potentials().iter().enumerate() {
+        let is_free = |mode: &Vec<Rational>| potential.stiffness.times(mode).iter().all(Zero::is_zero);
         holds(modes.iter().all(is_free), || format!("potentials[{k}] holds a motion that was set apart"))?;
     }
     if plain.size() > MOST {
@@ -35,14 +35,15 @@ pub fn exactly(scene: &SystemScene, analysis: &Analysis) -> Checked {
 /// That of all rows of all potentials together.
 fn rank(plain: &System) -> usize {
     let n = plain.size();
-    let row = |own: &systems::Symmetric, i: usize| (0..n).map(|j| own.get(i, j)).collect::<Vec<_>>();
+    let row =
+        |symmetric: &systems::Symmetric, i: usize| (0..n).map(|j| symmetric.get(i, j)).collect::<Vec<_>>();
     let mut basis: Vec<(usize, Vec<Rational>)> = Vec::new();
     for potential in plain.potentials() {
         for i in 0..n {
             let mut left = row(&potential.stiffness, i);
-            for (at, own) in &basis {
+            for (at, values) in &basis {
                 let factor = left[*at].clone();
-                left.iter_mut().zip(own).for_each(|(x, y)| *x -= &factor * y);
+                left.iter_mut().zip(values).for_each(|(x, y)| *x -= &factor * y);
             }
             if let Some(at) = left.iter().position(|x| !x.is_zero()) {
                 let pivot = left[at].recip();

@@ -31,13 +31,13 @@ pub fn traces(scene: &SystemScene, analysis: &Analysis) -> Checked {
         let times = times.and_then(|times| i32::try_from(times.to_integer()).ok());
         let times =
             times.ok_or_else(|| Fault::Wrong("the period of a part does not divide the whole".into()))?;
-        turns.extend(part.multipliers.iter().map(|own| {
-            let power = own.lambda.powi(times);
+        turns.extend(part.multipliers.iter().map(|multiplier| {
+            let power = multiplier.lambda.powi(times);
             power + power.inv()
         }));
     }
     let q: DMatrix<f64> = match scene.model() {
-        Model::NoGradient(own) => own.full_period(),
+        Model::NoGradient(jacobians) => jacobians.full_period(),
         other => full_period(other.moving()?.as_ref()),
     };
     let (norm, n) = (q.norm(), q.nrows() as f64 / 2.0);
@@ -119,7 +119,7 @@ impl<'a> Stands<'a> {
         let first = self.levels.is_none().then_some("the first unstable step");
         let all = (!within(*accuracy))
             .then_some("that the verdict holds for all stiffnesses within their accuracy");
-        let far = margin.is_some_and(|own| !within(own)).then_some("the margin");
+        let far = margin.is_some_and(|margin| !within(margin)).then_some("the margin");
         let named: Vec<&str> = [all, far, first].into_iter().flatten().collect();
         (!named.is_empty()).then(|| format!("{}: computed again by the same route alone", named.join(", ")))
     }
@@ -164,8 +164,9 @@ mod tests {
             assert!(growth(&scene, &analysis, &Limits::default()).is_ok());
             // A hundredth more, or any where there is none.
             analysis.parts[0].kind = Some(clocks::verdict::Kind::Hyperbolic);
-            for own in &mut analysis.parts[0].multipliers {
-                own.growth = own.growth.map(|(lo, hi)| (1.01 * lo.max(0.01), 1.01 * hi.max(0.01)));
+            for multiplier in &mut analysis.parts[0].multipliers {
+                multiplier.growth =
+                    multiplier.growth.map(|(lo, hi)| (1.01 * lo.max(0.01), 1.01 * hi.max(0.01)));
             }
             assert!(matches!(growth(&scene, &analysis, &Limits::default()), Err(Fault::Wrong(_))), "{step}");
         }
@@ -178,12 +179,12 @@ mod tests {
         let scene = SystemScene::from_json_in(folder, serde_json::from_str(&text).unwrap()).unwrap();
         let limits = Limits::default();
         let found = scene.model().decide(Route::Cheapest, &limits).unwrap().measured.unwrap();
-        let is_right = |own: &Measured| Stands::of(&scene, own).unwrap().check(&limits).is_ok();
+        let is_right = |measured: &Measured| Stands::of(&scene, measured).unwrap().check(&limits).is_ok();
         assert!(is_right(&found), "{found:?}");
         let (lo, hi) = found.first_unstable.unwrap();
         assert!(!is_right(&Measured { first_unstable: Some((lo * (1.0 + 1e-4), hi)), ..found.clone() }));
         assert!(!is_right(&Measured { first_unstable: Some((lo, hi * (1.0 - 1e-4))), ..found.clone() }));
-        let unseen = |own: &Measured| Stands::of(&scene, own).unwrap().unseen().unwrap_or_default();
+        let unseen = |measured: &Measured| Stands::of(&scene, measured).unwrap().unseen().unwrap_or_default();
         // Paths prove the accuracy, and a margin as large; twice the margin is true of none.
         assert_eq!(unseen(&Measured { margin: Some(found.accuracy), ..found.clone() }), "");
         let twice = 2.0 * found.margin.unwrap();

@@ -51,7 +51,7 @@ rows! {
 
 impl Row {
     fn stretch(&self) -> Checked<Stretch> {
-        let verdict = Holds::ALL.into_iter().find(|own| own.name() == self.verdict);
+        let verdict = Holds::ALL.into_iter().find(|holds| holds.name() == self.verdict);
         let verdict = verdict.ok_or_else(|| Fault::Wrong(format!("{} is no verdict", self.verdict)))?;
         Ok(Stretch { lo: self.lo, hi: self.hi, verdict })
     }
@@ -70,21 +70,26 @@ impl Recheck for Claim {
                 "a document of intervals says of what: whole documents, as kickdrift wrote them, can be rechecked",
             ));
         };
-        let of = self.stretches.len() as u64;
+        let count = self.stretches.len() as u64;
         let (mut failures, mut stretches) = (Vec::new(), Vec::new());
         for (n, row) in (1..).zip(&self.stretches) {
             let place = || format!("{} to {}", row.lo, row.hi);
             let checked = self.joined(n, &found).and_then(|()| row.stretch());
-            failures.extend(context.failure(n as u64, place, checked.map(|own| stretches.push(own)))?);
+            failures.extend(context.failure(
+                n as u64,
+                place,
+                checked.map(|checked| stretches.push(checked)),
+            )?);
         }
-        let covered = self.stretches.last().map(|own| own.hi) == found.stretches.last().map(|own| own.hi);
+        let covered = self.stretches.last().map(|stretches| stretches.hi)
+            == found.stretches.last().map(|stretches| stretches.hi);
         let checked = holds(covered, || "the stretches end before the range does".into());
         failures.extend(context.failure(0, || "the document".into(), checked)?);
         if failures.is_empty() {
-            return Ok(Outcome { rows: of, ..self.stretches(&stretches, &scene, &found, context)? });
+            return Ok(Outcome { rows: count, ..self.stretches(&stretches, &scene, &found, context)? });
         }
         let route = "each stretch begins where the one before it ends";
-        Ok(Outcome { rows: of, route, sample: None, failures, not_rechecked: Vec::new() })
+        Ok(Outcome { rows: count, route, sample: None, failures, not_rechecked: Vec::new() })
     }
 }
 
@@ -95,7 +100,7 @@ impl Claim {
         let row = &self.stretches[n - 1];
         holds(row.lo <= row.hi, || "it ends before it begins".into())?;
         let Some(before) = n.checked_sub(2).map(|before| self.stretches[before].hi) else {
-            let first = found.stretches.first().map_or(row.lo, |own| own.lo);
+            let first = found.stretches.first().map_or(row.lo, |stretch| stretch.lo);
             return same("lo", row.lo, first);
         };
         let is_joined = [before, before.next_up()].contains(&row.lo) || found.is_discrete && row.lo > before;
@@ -114,8 +119,8 @@ impl Claim {
         if !matches!(scene.model(), Model::Measured(_)) || found.is_discrete {
             return outcome(context, ALONE, Ok(()));
         }
-        let all = (1..).zip(stretches).filter(|(_, own)| own.verdict != Holds::NotTold);
-        let decided = Decided { of: stretches.len() as u64, drawn: all.collect(), context };
+        let all = (1..).zip(stretches).filter(|(_, stretch)| stretch.verdict != Holds::NotTold);
+        let decided = Decided { count: stretches.len() as u64, drawn: all.collect(), context };
         let seed = scene.source().to_string();
         let width = self.input.width().unwrap_or_default();
         decided.by_half_periods(&Places::of(scene, &found.number, width)?, &seed)
@@ -125,7 +130,7 @@ impl Claim {
 /// The stretches with a verdict that are looked at, each with its row.
 struct Decided<'a> {
     /// Rows in all.
-    of: u64,
+    count: u64,
     drawn: Vec<(u64, &'a Stretch)>,
     context: &'a Context<'a>,
 }
@@ -142,30 +147,31 @@ impl Decided<'_> {
 
     /// `outcome` with what `check` finds of each.
     fn look(&self, outcome: Outcome, check: impl Fn(&Stretch) -> Checked + Sync) -> Result<Outcome> {
-        let place = |own: &Stretch| format!("{} to {}", own.lo, own.hi);
-        let look = |(row, own): &(u64, &Stretch)| self.context.failure(*row, || place(own), check(own));
+        let place = |stretch: &Stretch| format!("{} to {}", stretch.lo, stretch.hi);
+        let look =
+            |(row, stretch): &(u64, &Stretch)| self.context.failure(*row, || place(stretch), check(stretch));
         let failures = try_map(&self.drawn, look)?;
-        let sample = Some((failures.len() as u64, self.of));
+        let sample = Some((failures.len() as u64, self.count));
         Ok(Outcome { sample, failures: failures.into_iter().flatten().collect(), ..outcome })
     }
 
     /// All, or a sample where that costs too much.
     fn by_half_periods(self, places: &Places, seed: &str) -> Result<Outcome> {
         let (context, limits) = (self.context, self.context.work().products());
-        let allow = |own: &Self| places.allow(own.drawn.len(), &limits);
-        let own = if allow(&self).is_ok() { self } else { self.sampled(seed) };
+        let allow = |decided: &Self| places.allow(decided.drawn.len(), &limits);
+        let decided = if allow(&self).is_ok() { self } else { self.sampled(seed) };
         let (route, between) = if places.has_signs() {
             (HALF, BETWEEN)
         } else {
             (STEP, "that nothing grows between these places")
         };
         let mut found = outcome(context, route, Ok(()))?;
-        if let Err(error) = allow(&own) {
+        if let Err(error) = allow(&decided) {
             found.not_rechecked.push(too_costly("the stretches", &error));
-            return Ok(Outcome { route: ALONE, sample: Some((0, own.of)), ..found });
+            return Ok(Outcome { route: ALONE, sample: Some((0, decided.count)), ..found });
         }
         found.not_rechecked.push(between.into());
-        own.look(found, |stretch| places.stretch(stretch))
+        decided.look(found, |stretch| places.stretch(stretch))
     }
 }
 
@@ -213,7 +219,7 @@ impl<'a> Places<'a> {
     /// Five half periods of each stretch, about as many halvings: kicks on 2n columns, eigenvalues and vectors.
     fn allow(&self, stretches: usize, limits: &Limits) -> Result<()> {
         let (n, kicks) = match &self.system {
-            Some(own) => (own.size() as u64, own.schedule().strikes() / 2 + 1),
+            Some(system) => (system.size() as u64, system.schedule().strikes() / 2 + 1),
             None => (self.scene.model().size() as u64, 1),
         };
         let each = n.saturating_pow(3).saturating_mul(30 + 2 * kicks);
@@ -230,9 +236,9 @@ impl<'a> Places<'a> {
             let rate = scene.model().growth_of_period(&Limits::default())?;
             let growth = rate.map_or(f64::NAN, |rate| rate * to_f64(&outer));
             return Ok(match growth {
-                own if own > STILL => Motion::Grows(own),
+                value if value > STILL => Motion::Grows(value),
                 // Less may be growth all the same: the verdict at this place says.
-                own if own.is_finite() && is_proven_stable(scene.model())? => Motion::Turns(Vec::new()),
+                value if value.is_finite() && is_proven_stable(scene.model())? => Motion::Turns(Vec::new()),
                 _ => Motion::Unclear,
             });
         };
@@ -265,9 +271,13 @@ impl<'a> Places<'a> {
         let mut modes: Vec<(f64, bool)> = (0..n).map(|k| (angle(k), sign(k))).collect();
         modes.sort_by(|x, y| x.0.total_cmp(&y.0));
         let are_apart = modes.windows(2).all(|two| two[0].1 == two[1].1 || two[1].0 - two[0].0 > STILL);
-        let are_off_ends = modes.iter().all(|own| own.0 > STILL && own.0 < std::f64::consts::PI - STILL);
+        let are_off_ends = modes.iter().all(|mode| mode.0 > STILL && mode.0 < std::f64::consts::PI - STILL);
         let turns = are_apart && are_off_ends;
-        Ok(if turns { Motion::Turns(modes.into_iter().map(|own| own.1).collect()) } else { Motion::Unclear })
+        Ok(if turns {
+            Motion::Turns(modes.into_iter().map(|mode| mode.1).collect())
+        } else {
+            Motion::Unclear
+        })
     }
 
     fn stretch(&self, said: &Stretch) -> Checked {
@@ -280,9 +290,9 @@ impl<'a> Places<'a> {
                     return Err(Fault::Wrong(format!("at {place} nothing grows: not unstable")));
                 }
                 (Motion::Turns(signs), Holds::Stable) => {
-                    let own = (place, signs);
-                    before.iter().try_for_each(|before| self.between(before, &own))?;
-                    before = Some(own);
+                    let pair = (place, signs);
+                    before.iter().try_for_each(|before| self.between(before, &pair))?;
+                    before = Some(pair);
                 }
                 _ => {}
             }
@@ -300,8 +310,8 @@ impl<'a> Places<'a> {
             Motion::Grows(growth) => Err(grows(middle, growth)),
             Motion::Unclear => Ok(()),
             Motion::Turns(signs) => {
-                let own = (middle, signs);
-                self.between(low, &own).and_then(|()| self.between(&own, high))
+                let pair = (middle, signs);
+                self.between(low, &pair).and_then(|()| self.between(&pair, high))
             }
         }
     }
@@ -353,15 +363,18 @@ mod tests {
         ] {
             let scene = scene(file, method);
             let (places, all) = found(&scene, path, range, 1e-3);
-            assert!(all.iter().all(|own| places.stretch(own).is_ok()), "{file}, {method:?}, {path}");
-            let is_stable = |own: &Stretch| own.verdict == Holds::Stable;
+            assert!(all.iter().all(|stretch| places.stretch(stretch).is_ok()), "{file}, {method:?}, {path}");
+            let is_stable = |stretch: &Stretch| stretch.verdict == Holds::Stable;
             let (mut moved, mut dropped) = (0, 0);
-            for (k, own) in all.iter().enumerate().filter(|(_, own)| own.verdict == Holds::Unstable) {
-                let by = (own.hi - own.lo) / 2.0;
+            for (k, stretch) in
+                all.iter().enumerate().filter(|(_, stretch)| stretch.verdict == Holds::Unstable)
+            {
+                let by = (stretch.hi - stretch.lo) / 2.0;
                 let after = all[k..].iter().find(|next| is_stable(next));
-                let lies_in = after.is_some_and(|next| next.lo < own.hi + by / 4.0 && own.hi + by < next.hi);
+                let lies_in =
+                    after.is_some_and(|next| next.lo < stretch.hi + by / 4.0 && stretch.hi + by < next.hi);
                 if lies_in {
-                    let right = Stretch { lo: own.lo + by, hi: own.hi + by, ..*own };
+                    let right = Stretch { lo: stretch.lo + by, hi: stretch.hi + by, ..*stretch };
                     assert!(matches!(places.stretch(&right), Err(Fault::Wrong(_))), "{file}: {right:?}");
                     moved += 1;
                 }
@@ -384,7 +397,7 @@ mod tests {
     fn a_narrow_interval_is_found_by_the_order_of_signs() {
         let scene = scene("alanine-dipeptide.json", None);
         let (steps, all) = found(&scene, OUTER, "99/20000..203/40000", 1e-4);
-        let narrow = all.iter().position(|own| own.verdict == Holds::Unstable).unwrap();
+        let narrow = all.iter().position(|stretch| stretch.verdict == Holds::Unstable).unwrap();
         let (lo, hi) = (all[0].lo, all[narrow].hi + 1e-5);
         let whole = Stretch { lo, hi, verdict: Holds::Stable };
         let misses = |part: &f64| matches!(steps.motion(lo + (hi - lo) * part), Ok(Motion::Turns(_)));

@@ -14,12 +14,12 @@ const STEPS: usize = 400;
 const GROWN: f64 = 1e3;
 
 /// Holds a verdict against the run; beside it the claims that no run can check.
-pub fn run(own: &SparseLevels, outer: &Outer, analysis: &Analysis) -> (Checked, Vec<String>) {
+pub fn run(sparse_levels: &SparseLevels, outer: &Outer, analysis: &Analysis) -> (Checked, Vec<String>) {
     let told = analysis.holds();
     if told == Holds::NotTold {
         return (Ok(()), vec!["where the first region ends: by factorizations alone".into()]);
     }
-    let has_grown = growth(own, outer) > GROWN.ln();
+    let has_grown = growth(sparse_levels, outer) > GROWN.ln();
     let checked = holds(told == Holds::Unstable || !has_grown, || {
         format!("it is said to be stable, and positions grow {GROWN} times within {STEPS} outer steps")
     });
@@ -32,13 +32,13 @@ pub fn run(own: &SparseLevels, outer: &Outer, analysis: &Analysis) -> (Checked, 
 }
 
 /// The logarithm of how many times longer positions become over the second half of the run.
-fn growth(own: &SparseLevels, outer: &Outer) -> f64 {
+fn growth(sparse_levels: &SparseLevels, outer: &Outer) -> f64 {
     // Numbers without a pattern, some part of every mode.
     let mut y: Vec<f64> =
-        (1..=own.size()).map(|i| (i as f64 * 0.618_033_988_749_895).fract() - 0.5).collect();
+        (1..=sparse_levels.size()).map(|i| (i as f64 * 0.618_033_988_749_895).fract() - 0.5).collect();
     let mut grown = 0.0;
     for step in 0..STEPS {
-        y = period(own, outer, &y);
+        y = period(sparse_levels, outer, &y);
         let length = y.iter().map(|x| x * x).sum::<f64>().sqrt();
         if step >= STEPS / 2 {
             grown += length.ln();
@@ -49,17 +49,17 @@ fn growth(own: &SparseLevels, outer: &Outer) -> f64 {
 }
 
 /// Positions after an outer step from rest, mass-weighted: half a slow kick, then p steps of velocity Verlet.
-fn period(own: &SparseLevels, outer: &Outer, y: &[f64]) -> Vec<f64> {
+fn period(sparse_levels: &SparseLevels, outer: &Outer, y: &[f64]) -> Vec<f64> {
     let h = outer.step() / outer.inner_steps() as f64;
     let kick =
         |p: &mut [f64], pull: &[f64], by: f64| p.iter_mut().zip(pull).for_each(|(p, pull)| *p -= by * pull);
     let (mut x, mut p) = (y.to_vec(), vec![0.0; y.len()]);
-    let [mut fast, slow] = own.pulls(&x);
+    let [mut fast, slow] = sparse_levels.pulls(&x);
     kick(&mut p, &slow, outer.step() / 2.0);
     for _ in 0..outer.inner_steps() {
         kick(&mut p, &fast, h / 2.0);
         x.iter_mut().zip(&p).for_each(|(x, p)| *x += h * p);
-        [fast, _] = own.pulls(&x);
+        [fast, _] = sparse_levels.pulls(&x);
         kick(&mut p, &fast, h / 2.0);
     }
     x

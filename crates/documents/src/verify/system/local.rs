@@ -23,17 +23,19 @@ const SHARP: f64 = 0.02;
 const RESONANT: f64 = 1e-6;
 
 /// x₊ + x₋ − 2 x = −dt² M⁻¹ K' x, for displacements of one degree of freedom each, exactly.
-pub fn steps(own: &LocalSteps) -> Checked {
-    let (n, mass, square) = (own.plain().size(), own.plain().mass(), own.step() * own.step());
-    let (plain, effective) = (&own.plain().clocks()[0].stiffness, &own.system().clocks()[0].stiffness);
+pub fn steps(local_steps: &LocalSteps) -> Checked {
+    let (n, mass, square) =
+        (local_steps.plain().size(), local_steps.plain().mass(), local_steps.step() * local_steps.step());
+    let (plain, effective) =
+        (&local_steps.plain().clocks()[0].stiffness, &local_steps.system().clocks()[0].stiffness);
     let pull = |x: &[Rational]| {
         plain.times(x).into_iter().enumerate().map(|(i, force)| force / mass.get(i, i)).collect()
     };
-    let scheme = Scheme::new(n, own.levels(), &pull);
+    let scheme = Scheme::new(n, local_steps.levels(), &pull);
     (0..n).step_by(n.div_ceil(MOST)).try_for_each(|k| {
         let mut x = vec![Rational::zero(); n];
         x[k] = Rational::one();
-        let half = scheme.half_turn(0, own.step().clone(), &x, &vec![Rational::zero(); n]);
+        let half = scheme.half_turn(0, local_steps.step().clone(), &x, &vec![Rational::zero(); n]);
         let right = effective.times(&x).into_iter().enumerate().all(|(i, force)| {
             let two = Rational::from_integer(2.into());
             two * (&half[i] - &x[i]) == -&square * force / mass.get(i, i)
@@ -45,13 +47,18 @@ pub fn steps(own: &LocalSteps) -> Checked {
 }
 
 /// The verdict on a large scheme, its growth and its limits.
-pub fn sparse(own: &SparseSteps, dt: f64, analysis: &Analysis, said: Option<&SchemeSummary>) -> Checked {
-    verdict(own, dt, analysis.holds())?;
+pub fn sparse(
+    sparse_steps: &SparseSteps,
+    dt: f64,
+    analysis: &Analysis,
+    said: Option<&SchemeSummary>,
+) -> Checked {
+    verdict(sparse_steps, dt, analysis.holds())?;
     if let Some((lo, hi)) = analysis.growth_rate().filter(|_| analysis.holds() == Holds::Unstable) {
-        let ritz = Extreme::of(own, dt);
+        let ritz = Extreme::of(sparse_steps, dt);
         let shapes = analysis.parts.iter().flat_map(|part| &part.instabilities).map(|mode| {
-            let y = own.weighted(&mode.shape);
-            beyond(dot(&y, &turn(own, dt, &y)) / dot(&y, &y))
+            let y = sparse_steps.weighted(&mode.shape);
+            beyond(dot(&y, &turn(sparse_steps, dt, &y)) / dot(&y, &y))
         });
         // λ + 1/λ = ±(2 + excess).
         let excess = |rate: f64| 4.0 * (0.5 * rate * dt).sinh().powi(2);
@@ -62,27 +69,27 @@ pub fn sparse(own: &SparseSteps, dt: f64, analysis: &Analysis, said: Option<&Sch
         })?;
     }
     let Some(said) = said else { return Ok(()) };
-    let n = own.size();
+    let n = sparse_steps.size();
     if let Some((lo, hi)) = said.plain_limit {
-        let [_, most] = extremes(n, |y| own.pull(y));
+        let [_, most] = extremes(n, |y| sparse_steps.pull(y));
         let found = 2.0 / most.sqrt();
         let right = found >= lo * (1.0 - ROUNDED) && (n > SEEN || found <= hi * (1.0 + ROUNDED));
         holds(right, || format!("plain leapfrog's limit is {found}"))?;
     }
     if let Some((lo, hi)) = said.first_unstable {
-        verdict(own, lo, Holds::Stable)?;
-        let excess = Extreme::of(own, hi).excess;
+        verdict(sparse_steps, lo, Holds::Stable)?;
+        let excess = Extreme::of(sparse_steps, hi).excess;
         holds(n > SEEN || excess > -RESONANT, || format!("nothing is unstable up to a step of {hi}"))?;
     }
     Ok(())
 }
 
 /// No motion beyond the ends where all are said to be stable; some, where all are seen and one is said to grow.
-fn verdict(own: &SparseSteps, dt: f64, said: Holds) -> Checked {
-    let Extreme { excess, room } = Extreme::of(own, dt);
+fn verdict(sparse_steps: &SparseSteps, dt: f64, said: Holds) -> Checked {
+    let Extreme { excess, room } = Extreme::of(sparse_steps, dt);
     let right = match said {
         Holds::Stable => excess <= room,
-        Holds::Unstable => own.size() > SEEN || excess >= -room,
+        Holds::Unstable => sparse_steps.size() > SEEN || excess >= -room,
         Holds::NotTold => true,
     };
     holds(right, || {
@@ -97,8 +104,8 @@ struct Extreme {
 }
 
 impl Extreme {
-    fn of(own: &SparseSteps, dt: f64) -> Extreme {
-        let [least, most] = extremes(own.size(), |y| turn(own, dt, y));
+    fn of(sparse_steps: &SparseSteps, dt: f64) -> Extreme {
+        let [least, most] = extremes(sparse_steps.size(), |y| turn(sparse_steps, dt, y));
         Extreme {
             excess: beyond(least).max(beyond(most)),
             room: ROUNDED * (4.0 + least.abs().max(most.abs())),
@@ -112,9 +119,9 @@ fn beyond(f: f64) -> f64 {
 }
 
 /// f y = 2 y − y(dt) − y(−dt), mass-weighted, by the scheme itself.
-fn turn(own: &SparseSteps, dt: f64, y: &[f64]) -> Vec<f64> {
-    let pull = |y: &[f64]| own.pull(y);
-    let half = Scheme::new(y.len(), own.levels(), &pull).half_turn(0, dt, y, &vec![0.0; y.len()]);
+fn turn(sparse_steps: &SparseSteps, dt: f64, y: &[f64]) -> Vec<f64> {
+    let pull = |y: &[f64]| sparse_steps.pull(y);
+    let half = Scheme::new(y.len(), sparse_steps.levels(), &pull).half_turn(0, dt, y, &vec![0.0; y.len()]);
     y.iter().zip(half).map(|(y, half)| 2.0 * (y - half)).collect()
 }
 
@@ -135,17 +142,17 @@ fn extremes(n: usize, of: impl Fn(&[f64]) -> Vec<f64>) -> [f64; 2] {
         diagonal.push(dot(&next, &image));
         basis.push(next);
         // Twice is enough (Parlett).
-        for own in basis.iter().chain(&basis) {
-            let along = dot(own, &image);
-            image.iter_mut().zip(own).for_each(|(x, own)| *x -= along * own);
+        for values in basis.iter().chain(&basis) {
+            let along = dot(values, &image);
+            image.iter_mut().zip(values).for_each(|(x, value)| *x -= along * value);
         }
-        let (own, length) = unit(image);
+        let (values, length) = unit(image);
         let size = diagonal.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
         if !length.is_finite() || length <= ROUNDED * size {
             break;
         }
         beside.push(length);
-        next = own;
+        next = values;
     }
     let entry = |i: usize, j: usize| match i.abs_diff(j) {
         0 => diagonal[i],

@@ -57,7 +57,7 @@ impl Recheck for Claim {
 
     fn check(&self, SystemAnswer { scene, found }: SystemAnswer, context: &Context) -> Result<Outcome> {
         match found {
-            Found::Verdict(own) => verdict(&scene, &own.analysis, own.local.as_ref(), context),
+            Found::Verdict(verdict) => verdict(&scene, &verdict.analysis, verdict.local.as_ref(), context),
             Found::Map(map) => self.points(&scene, &map, context),
             Found::Intervals(_) => outcome(context, ALONE, Ok(())),
         }
@@ -70,12 +70,12 @@ fn verdict(
     local: Option<&SchemeSummary>,
     context: &Context,
 ) -> Result<Outcome> {
-    if let Model::Sparse(own) = scene.model() {
-        if let Some((own, outer)) = own.levels() {
-            let (checked, unseen) = levels::run(own, outer, analysis);
+    if let Model::Sparse(sparse_system) = scene.model() {
+        if let Some((sparse_levels, outer)) = sparse_system.levels() {
+            let (checked, unseen) = levels::run(sparse_levels, outer, analysis);
             return Ok(Outcome { not_rechecked: unseen, ..outcome(context, levels::ROUTE, checked)? });
         }
-        let Some(steps) = own.local_steps() else { return outcome(context, ALONE, Ok(())) };
+        let Some(steps) = sparse_system.local_steps() else { return outcome(context, ALONE, Ok(())) };
         let checked = local::sparse(steps, to_f64(&scene.model().steps()[0]), analysis, local);
         return Ok(seen(steps, outcome(context, RUN, checked)?));
     }
@@ -100,7 +100,10 @@ fn verdict(
     let traces = || {
         apart::exactly(scene, analysis)?;
         scene.model().local_steps().map_or(Ok(()), local::steps)?;
-        scene.model().implicit().map_or(Ok(()), |own| implicit::in_doubles(own, analysis))?;
+        scene
+            .model()
+            .implicit()
+            .map_or(Ok(()), |implicit_explicit| implicit::in_doubles(implicit_explicit, analysis))?;
         dense::traces(scene, analysis)
     };
     match exact_kind(scene, analysis.kind, &context.work().products())? {

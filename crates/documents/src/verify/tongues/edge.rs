@@ -123,8 +123,8 @@ impl Zero<'_> {
         let (ratio, rho) = (self.zero.ratio, self.zero.rho);
         let still = *rho == Rational::default();
         let ratio = if on == Resonance::Fast { ratio } else { ratio.inverse() };
-        let (own, other) = ratio.terms();
-        if m >= own || (still && on == Resonance::Slow) {
+        let (count, other) = ratio.terms();
+        if m >= count || (still && on == Resonance::Slow) {
             return Some(false);
         }
         let place = self.place(on, m);
@@ -135,10 +135,10 @@ impl Zero<'_> {
         if still || (odd_start && (other == 1 || (other == 2 && self.zero.entry == Entry::B))) {
             return Some(true);
         }
-        if own > MOST_TERMS {
+        if count > MOST_TERMS {
             return None;
         }
-        let s = Cyclotomic::resonant_s(m as i64, own as u32);
+        let s = Cyclotomic::resonant_s(m as i64, count as u32);
         let rho = if on == Resonance::Fast { rho.clone() } else { rho.recip() };
         let clocks = TwoClocks::with_rho(ratio, s, <Cyclotomic as Ring>::from_rational(&rho));
         Some(Decidable::half_signs(&clocks).all()[self.zero.entry as usize] == Sign::Zero)

@@ -49,8 +49,8 @@ impl Steps<'_> {
                 let stiffness = &self.nested.levels[k].stiffness;
                 for j in 0..n {
                     for i in j..n {
-                        let own = stiffness[(i, j)] + if i == j { shift } else { 0.0 };
-                        matrix.add(row(place, i), row(place, j), factor * own);
+                        let value = stiffness[(i, j)] + if i == j { shift } else { 0.0 };
+                        matrix.add(row(place, i), row(place, j), factor * value);
                     }
                 }
             }
@@ -115,7 +115,7 @@ impl Steps<'_> {
         let one = |of: &(dyn Fn(f64, &Bounds) -> Envelope + Sync)| {
             let least = || self.negatives(&of(lo, &softer), true);
             let (least, most) = both(true, least, || self.negatives(&of(hi, &stiffer), false));
-            least.filter(|own| Some(*own) == most)
+            least.filter(|least| Some(*least) == most)
         };
         let held =
             |held: [bool; 2]| one(&move |step, bounds: &Bounds| self.action(step, bounds, held)).is_some();
@@ -125,7 +125,8 @@ impl Steps<'_> {
         let at = [1.0].into_iter().chain(twists).chain([0.0]);
         let counts: Option<Vec<usize>> =
             at.map(|s| one(&move |step, bounds: &Bounds| self.twisted(step, bounds, s))).collect();
-        let change = |own: Vec<usize>| own.windows(2).map(|pair| pair[0].abs_diff(pair[1])).sum::<usize>();
+        let change =
+            |indexes: Vec<usize>| indexes.windows(2).map(|pair| pair[0].abs_diff(pair[1])).sum::<usize>();
         counts.map(change) == Some(self.nested.size())
     }
 }

@@ -35,7 +35,7 @@ impl Steps<'_> {
     /// The period with friction γ per unit time, v → exp(−γ t) v in the middle of every drift, and a bound on its error.
     fn damped_period(&self, step: f64, friction: f64) -> Option<(Mat<f64>, f64)> {
         let ticks = step / self.outer * to_f64(self.schedule.tick());
-        let decay = from_f64_exact(friction * ticks).filter(|own| *own >= Rational::default())?;
+        let decay = from_f64_exact(friction * ticks).filter(|value| *value >= Rational::default())?;
         let turning = self.turning(step);
         let kicks = self.rounded_kicks(step, &turning);
         let drifts = Drifts { inverse_mass: &turning.drifts, decay: &decay, off: turning.off };
@@ -64,10 +64,11 @@ impl Steps<'_> {
         let modes = self.nested.modes_of_all();
         let tick = to_f64(self.schedule.tick()) * self.square(step).sqrt();
         let slowest = 1.0 / self.schedule.period() as f64;
-        let roots: Vec<f64> = modes.frequencies.iter().map(|own| (own * tick).max(slowest).sqrt()).collect();
-        let squares = || roots.iter().map(|own| own * own);
+        let roots: Vec<f64> =
+            modes.frequencies.iter().map(|frequency| (frequency * tick).max(slowest).sqrt()).collect();
+        let squares = || roots.iter().map(|root| root * root);
         let (least, most) = (squares().fold(f64::INFINITY, f64::min), squares().fold(0.0, f64::max));
-        let drifts = squares().enumerate().map(|own| vec![own]).collect();
+        let drifts = squares().enumerate().map(|pair| vec![pair]).collect();
         // (Vᵀ V)⁻¹ in place of the identity, and a rounding of the square.
         let off = 1.01 * most * (modes.defect / (1.0 - modes.defect) + U);
         Turning { roots, least, drifts, off }
@@ -86,7 +87,7 @@ impl Steps<'_> {
 
     /// The kicks of F, off by their roundings alone.
     fn rounded_kicks(&self, step: f64, turning: &Turning) -> Vec<Stiff> {
-        self.kicks_at(step, turning).into_iter().map(|own| stiff(own, 0.0, 0.0)).collect()
+        self.kicks_at(step, turning).into_iter().map(|matrix| stiff(matrix, 0.0, 0.0)).collect()
     }
 
     /// How far (2-norm) h t² Vᵀ K V of each clock is from that of all stiffnesses within ε; a kick divides its entries by roots.
@@ -114,7 +115,8 @@ impl Steps<'_> {
     pub(super) fn half_period(&self, step: f64, epsilon: f64) -> Option<FloatBlocks> {
         let turning = self.turning(step);
         let kicks = self.kicks_at(step, &turning).into_iter().zip(self.kick_errors(step, epsilon));
-        let kicks: Vec<Stiff> = kicks.map(|(own, error)| stiff(own, error / turning.least, 0.0)).collect();
+        let kicks: Vec<Stiff> =
+            kicks.map(|(matrix, error)| stiff(matrix, error / turning.least, 0.0)).collect();
         Some(self.followed(&kicks, &turning, |_, _| ())?.blocks(vec![1.0; self.nested.size()]))
     }
 
@@ -159,8 +161,8 @@ impl Steps<'_> {
         let second = eta / below * (eta / above) * (norm::frobenius(&bend) / whole + known);
         let change = faer::Scale(1.01 * eta / whole) * (right - left);
         let first = eta / whole * known + (above - below).abs() / eta * second;
-        let own = Spectrum::of(s, Some(1.02 * (rest + first + second)))?;
-        Some((own.with_terms(&terms)?, Some(change)))
+        let spectrum = Spectrum::of(s, Some(1.02 * (rest + first + second)))?;
+        Some((spectrum.with_terms(&terms)?, Some(change)))
     }
 
     /// S at a step, and what is near it: see [`Steps::by_discs_between`]; of η what is of this order and beyond it is in the rest, |η| ≤ `eta`.
@@ -170,7 +172,7 @@ impl Steps<'_> {
         let sizes: Vec<f64> = kicks.iter().map(norm::spectral).collect();
         let error = |k: usize| errors[k] / turning.least;
         let ratio = (0..sizes.len()).map(|k| sizes[k] / error(k)).fold(4e6, f64::min);
-        let stiff = |(own, size): (Mat<f64>, &f64)| stiff(own, 0.0, 1.01 * size);
+        let stiff = |(matrix, size): (Mat<f64>, &f64)| stiff(matrix, 0.0, 1.01 * size);
         let kicks: Vec<Stiff> = kicks.into_iter().zip(&sizes).map(stiff).collect();
         // What meets E at each event, and the positions there.
         let mut nodes: Vec<(f64, [Mat<f64>; 2])> = Vec::new();
@@ -187,7 +189,10 @@ impl Steps<'_> {
             let r = 1.01 * product(&FloatBlocks { error, ..blocks.clone() }).1?;
             let powers = |x: f64, order: i32| if x < 1.0 { x.powi(order) / (1.0 - x) } else { f64::INFINITY };
             let (x, y) = (eta / t, 1.0 / (t * ratio));
-            Some([powers(x, order), powers(y, 2), powers(2.0 * x, 1) * powers(3.0 * y, 1)].map(|own| r * own))
+            Some(
+                [powers(x, order), powers(y, 2), powers(2.0 * x, 1) * powers(3.0 * y, 1)]
+                    .map(|value| r * value),
+            )
         };
         let least = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|k| a[k].min(b[k]));
         let rest = (0..16).filter_map(|k| rests(0.5f64.powi(k))).reduce(least)?;
@@ -248,15 +253,15 @@ impl Steps<'_> {
         let spectrum = Spectrum::of(self.rounded_product(step), None)?;
         let rates = spectrum.mu.iter().map(|&mu| exponent(mu).re / self.period(step)).enumerate();
         let (fastest, rate) = rates.max_by(|a, b| a.1.total_cmp(&b.1))?;
-        let own = spectrum.shape(fastest, &vec![1.0; self.nested.size()]);
+        let values = spectrum.shape(fastest, &vec![1.0; self.nested.size()]);
         let lifted = |part: fn(&Complex64) -> f64| -> Vec<f64> {
-            let own: Vec<f64> = own.iter().map(part).collect();
+            let values: Vec<f64> = values.iter().map(part).collect();
             match &self.nested.basis {
                 Some(basis) => {
-                    let row = |i: usize| own.iter().enumerate().map(|(k, y)| basis[(i, k)] * y).sum();
+                    let row = |i: usize| values.iter().enumerate().map(|(k, y)| basis[(i, k)] * y).sum();
                     (0..basis.nrows()).map(row).collect()
                 }
-                None => own,
+                None => values,
             }
         };
         Some((rate, [lifted(|z| z.re), lifted(|z| z.im)]))
@@ -279,7 +284,7 @@ fn terms(state: &Propagated, nodes: &[(f64, [Mat<f64>; 2])], roots: &[f64]) -> V
     let (a, b, c, d) = (block(0, 0), block(0, 1), block(1, 0), block(1, 1));
     // Of true matrices within e and of norms up to g: those of products, and their roundings.
     let e = state.error_on_the_way();
-    let g = nodes.iter().flat_map(|own| &own.1).map(norm::frobenius).fold(norm::frobenius(&h), f64::max);
+    let g = nodes.iter().flat_map(|node| &node.1).map(norm::frobenius).fold(norm::frobenius(&h), f64::max);
     let (gamma, least) = (gamma(n), roots.iter().fold(f64::INFINITY, |a: f64, x| a.min(*x)));
     let once = 1.01 * (e + U * g) / least;
     let twice = 4.0 * g * e + 2.0 * e * e + 3.0 * gamma * g * g;
@@ -339,10 +344,10 @@ mod tests {
         let steps = [ratio(1, 4), ratio(1, 2), ratio(1, 1)];
         let mut nearest = 0.0_f64;
         for _ in 0..4 {
-            let squares = [1.0, 0.1, 0.04].map(|own| {
+            let squares = [1.0, 0.1, 0.04].map(|value| {
                 let g = symmetric(&mut state, n);
                 let k = &g * &g;
-                &k * (own / size(&k))
+                &k * (value / size(&k))
             });
             let whole = Hessians::new(&squares[0], &(&squares[1] + &squares[2]), epsilon).unwrap();
             let nested = Nested::new(&whole, &squares.each_ref().map(|k| vec![k.clone()])).unwrap();

@@ -62,15 +62,15 @@ impl Nested {
     /// From the mass-weighted stiffness of each potential, those of one clock together, the clocks by increasing step; `whole` is their sum with what
     /// is projected out.
     pub fn new(whole: &Hessians, clocks: &[Vec<DMatrix<f64>>]) -> Result<Nested> {
-        let level = |own: &Vec<DMatrix<f64>>| {
-            let each: Vec<(Mat<f64>, f64)> = own.iter().map(|k| whole.restricted(k)).collect();
+        let level = |matrixes: &Vec<DMatrix<f64>>| {
+            let each: Vec<(Mat<f64>, f64)> = matrixes.iter().map(|k| whole.restricted(k)).collect();
             let n = each[0].0.nrows();
             let stiffness = each.iter().fold(Mat::zeros(n, n), |sum, (k, _)| sum + k);
             let frobenius = norm::frobenius(&stiffness);
             let size = 1.01 * each.iter().map(|(k, error)| spectral_norm(k, *error)).sum::<f64>();
             // A sum of so many has as many roundings.
-            let sums = each.iter().map(|(k, _)| norm::frobenius(k)).sum::<f64>() * own.len() as f64 * U;
-            let error = 1.01 * (each.iter().map(|own| own.1).sum::<f64>() + sums);
+            let sums = each.iter().map(|(k, _)| norm::frobenius(k)).sum::<f64>() * matrixes.len() as f64 * U;
+            let error = 1.01 * (each.iter().map(|pair| pair.1).sum::<f64>() + sums);
             Level { stiffness, error, size, frobenius }
         };
         let levels: Vec<Level> = clocks.iter().map(level).collect();
@@ -104,8 +104,8 @@ impl Nested {
 
     /// The highest frequency of each slower stiffness alone, rounded; 0 where it has no positive eigenvalue.
     pub fn slower_frequencies(&self) -> Vec<f64> {
-        let highest = |own: &Level| {
-            let values = own.stiffness.self_adjoint_eigenvalues(faer::Side::Lower);
+        let highest = |level: &Level| {
+            let values = level.stiffness.self_adjoint_eigenvalues(faer::Side::Lower);
             values.map_or(0.0, |values| values.last().copied().unwrap_or(0.0).max(0.0).sqrt())
         };
         self.levels[1..].iter().map(highest).collect()
@@ -143,29 +143,31 @@ impl Nested {
     }
 
     pub(super) fn total(&self) -> Mat<f64> {
-        self.levels.iter().fold(Mat::zeros(self.size(), self.size()), |sum, own| sum + &own.stiffness)
+        self.levels.iter().fold(Mat::zeros(self.size(), self.size()), |sum, level| sum + &level.stiffness)
     }
 
     pub(super) fn modes_of_all(&self) -> &Modes {
         self.modes_of_all.get_or_init(|| {
             let (n, total) = (self.size(), self.total());
             let eigen = total.self_adjoint_eigen(faer::Side::Lower).ok();
-            let found = eigen.and_then(|own| Some((orthogonality(&own.U().to_owned())?, own)));
+            let found = eigen.and_then(|eigen| Some((orthogonality(&eigen.U().to_owned())?, eigen)));
             let (defect, v, values) = match &found {
-                Some((defect, own)) => {
-                    (*defect, own.U().to_owned(), own.S().column_vector().iter().copied().collect())
-                }
+                Some((defect, self_adjoint_eigen)) => (
+                    *defect,
+                    self_adjoint_eigen.U().to_owned(),
+                    self_adjoint_eigen.S().column_vector().iter().copied().collect(),
+                ),
                 None => (0.0, Mat::identity(n, n), (0..n).map(|i| total[(i, i)]).collect::<Vec<f64>>()),
             };
             let rounding = 2.2 * (n as f64 + 4.0) * U * norm::frobenius(&v) * (1.0 + defect);
             // Symmetric as what they round, so that all between them have a half period that is symplectic.
-            let turned = |own: &Level| {
-                let turned = v.transpose() * &own.stiffness * &v;
+            let turned = |level: &Level| {
+                let turned = v.transpose() * &level.stiffness * &v;
                 let mean = |i: usize, j: usize| (turned[(i, j)] + turned[(j, i)]) / 2.0;
-                (Mat::from_fn(n, n, mean), rounding * own.frobenius)
+                (Mat::from_fn(n, n, mean), rounding * level.frobenius)
             };
             Modes {
-                frequencies: values.iter().map(|own: &f64| own.abs().sqrt()).collect(),
+                frequencies: values.iter().map(|value: &f64| value.abs().sqrt()).collect(),
                 stiffnesses: self.levels.iter().map(turned).collect(),
                 defect,
             }
@@ -175,7 +177,7 @@ impl Nested {
     pub(super) fn is_definite_within(&self, epsilon: f64) -> bool {
         let found = |epsilon: f64| {
             let off: f64 = (0..self.levels.len()).map(|k| self.error_within(k, epsilon)).sum();
-            let sizes: f64 = self.levels.iter().map(|own| own.frobenius).sum();
+            let sizes: f64 = self.levels.iter().map(|level| level.frobenius).sum();
             is_definite(self.total(), 1.01 * (off + self.levels.len() as f64 * U * sizes))
         };
         if epsilon == 0.0 { *self.is_total_definite.get_or_init(|| found(0.0)) } else { found(epsilon) }
@@ -184,7 +186,7 @@ impl Nested {
 
 /// A number that makes a stiffness with these eigenvalues, rounded, definite when it is added to them: about the least.
 fn lack(level: &Level, squares: &[f64]) -> f64 {
-    let least = squares.first().map_or(0.0, |own| own.min(0.0));
+    let least = squares.first().map_or(0.0, |value| value.min(0.0));
     let mut more = 8.0 * (squares.len() as f64 + 8.0) * U * level.frobenius + f64::MIN_POSITIVE;
     let lifted = |by: f64| {
         let mut sum = level.stiffness.clone();

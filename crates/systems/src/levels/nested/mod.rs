@@ -135,8 +135,9 @@ impl Steps<'_> {
         if self.is_in_first_region(step, 0.0) {
             return largest(1.01, |epsilon| self.is_in_first_region(step, epsilon));
         }
-        let own = self.verdict_within(step, 0.0);
-        (own != Holds::NotTold).then(|| largest(1.1, |epsilon| self.verdict_within(step, epsilon) == own))?
+        let holds = self.verdict_within(step, 0.0);
+        (holds != Holds::NotTold)
+            .then(|| largest(1.1, |epsilon| self.verdict_within(step, epsilon) == holds))?
     }
 
     /// \[lo, hi\]: every outer step in (0, lo] is proven stable at these ratios, hi is proven unstable. `None` where Σ K_k is not proven definite.

@@ -40,7 +40,7 @@ impl Graph {
         }
         let mut nodes: HashMap<u64, usize> = HashMap::new();
         let mut members: Vec<Vec<usize>> = Vec::new();
-        let of: Vec<usize> = (sums.iter().enumerate())
+        let indexes: Vec<usize> = (sums.iter().enumerate())
             .map(|(i, sum)| {
                 let node = *nodes.entry(*sum).or_insert(members.len());
                 if node == members.len() {
@@ -51,10 +51,10 @@ impl Graph {
             })
             .collect();
         let mut near = vec![Vec::new(); members.len()];
-        let is_first = |i: usize| members[of[i]][0] == i;
-        for (i, j) in lower().filter(|&(i, j)| of[i] != of[j] && is_first(i) && is_first(j)) {
-            near[of[i]].push(of[j]);
-            near[of[j]].push(of[i]);
+        let is_first = |i: usize| members[indexes[i]][0] == i;
+        for (i, j) in lower().filter(|&(i, j)| indexes[i] != indexes[j] && is_first(i) && is_first(j)) {
+            near[indexes[i]].push(indexes[j]);
+            near[indexes[j]].push(indexes[i]);
         }
         Graph { rows: members, near }
     }
@@ -67,9 +67,9 @@ pub(super) fn dissected(columns: &[usize], rows: &[usize]) -> Vec<usize> {
     // From the end on.
     let mut order = Vec::new();
     let mut left = parts.all();
-    while let Some(own) = left.pop() {
-        parts.begin(&own);
-        let (last, rest) = parts.divided(own);
+    while let Some(indexes) = left.pop() {
+        parts.begin(&indexes);
+        let (last, rest) = parts.divided(indexes);
         order.extend(last);
         left.extend(rest);
     }
@@ -100,9 +100,9 @@ impl Parts {
     }
 
     /// Makes these nodes a part.
-    fn begin(&mut self, own: &[usize]) {
+    fn begin(&mut self, indexes: &[usize]) {
         self.count += 1;
-        own.iter().for_each(|&v| self.part[v] = self.count);
+        indexes.iter().for_each(|&v| self.part[v] = self.count);
     }
 
     fn weight(&self, nodes: &[usize]) -> usize {
@@ -114,13 +114,13 @@ impl Parts {
     }
 
     /// What comes last of a part, and the parts of the rest: its pieces where it has several, both sides of a cut, or nothing where it is small or has no cut.
-    fn divided(&mut self, own: Vec<usize>) -> (Vec<usize>, Vec<Vec<usize>>) {
-        if self.weight(&own) <= SMALL {
-            return (own, Vec::new());
+    fn divided(&mut self, indexes: Vec<usize>) -> (Vec<usize>, Vec<Vec<usize>>) {
+        if self.weight(&indexes) <= SMALL {
+            return (indexes, Vec::new());
         }
-        self.distance_from_none(&own);
+        self.distance_from_none(&indexes);
         let mut pieces = Vec::new();
-        for &v in &own {
+        for &v in &indexes {
             if self.distance[v] == usize::MAX {
                 pieces.push(self.reached(v));
             }
@@ -128,14 +128,14 @@ impl Parts {
         if pieces.len() > 1 {
             return (Vec::new(), pieces);
         }
-        match self.cut(&own) {
+        match self.cut(&indexes) {
             Some([separator, below, above]) => (separator, vec![below, above]),
-            None => (own, Vec::new()),
+            None => (indexes, Vec::new()),
         }
     }
 
-    fn distance_from_none(&mut self, own: &[usize]) {
-        own.iter().for_each(|&v| self.distance[v] = usize::MAX);
+    fn distance_from_none(&mut self, indexes: &[usize]) {
+        indexes.iter().for_each(|&v| self.distance[v] = usize::MAX);
     }
 
     /// The nodes of a part that paths from one reach, the nearest first, each then with its distance.
@@ -157,15 +157,15 @@ impl Parts {
     }
 
     /// The nodes of a part along its longest way; those that no path reaches from the first one are anywhere.
-    fn sorted(&mut self, own: &[usize]) -> Vec<usize> {
+    fn sorted(&mut self, indexes: &[usize]) -> Vec<usize> {
         // An end, the end farthest from it, and that from which this one is farthest.
-        let mut end = own[0];
-        own.iter().for_each(|&v| self.along[v] = 0.0);
+        let mut end = indexes[0];
+        indexes.iter().for_each(|&v| self.along[v] = 0.0);
         for sign in [0.0, 1.0, -1.0] {
-            self.distance_from_none(own);
+            self.distance_from_none(indexes);
             let reached = self.reached(end);
             end = reached[reached.len() - 1];
-            own.iter().for_each(|&v| self.along[v] += sign * self.distance[v] as f64);
+            indexes.iter().for_each(|&v| self.along[v] += sign * self.distance[v] as f64);
         }
         for _ in 0..ROUNDS {
             let mean = |&v: &usize| {
@@ -173,18 +173,18 @@ impl Parts {
                     self.near(v).fold((self.along[v], 1.0), |(s, c), w| (s + self.along[w], c + 1.0));
                 sum / count
             };
-            let means: Vec<f64> = own.iter().map(mean).collect();
+            let means: Vec<f64> = indexes.iter().map(mean).collect();
             let middle = means.iter().sum::<f64>() / means.len() as f64;
-            own.iter().zip(means).for_each(|(&v, mean)| self.along[v] = mean - middle);
+            indexes.iter().zip(means).for_each(|(&v, mean)| self.along[v] = mean - middle);
         }
-        let mut sorted = own.to_vec();
+        let mut sorted = indexes.to_vec();
         sorted.sort_by(|&v, &w| self.along[v].total_cmp(&self.along[w]));
         sorted
     }
 
     /// A separator of a connected part and what is on both sides of it; `None` where nothing is.
-    fn cut(&mut self, own: &[usize]) -> Option<[Vec<usize>; 3]> {
-        let sorted = self.sorted(own);
+    fn cut(&mut self, indexes: &[usize]) -> Option<[Vec<usize>; 3]> {
+        let sorted = self.sorted(indexes);
         let total = sorted.len() as f64;
         let mut best: Option<(f64, [Vec<usize>; 3])> = None;
         for (part, is_above) in CUTS.iter().flat_map(|part| [(part, false), (part, true)]) {

@@ -120,11 +120,11 @@ impl<'a> Fronts<'a> {
         // A path down to where the tree branches or ends, then back up: depth is that of branches, whatever the length of a chain.
         let mut path = vec![root];
         let next = loop {
-            let own = &self.children[path[path.len() - 1]];
-            let mut large = own.iter().filter(|&&k| self.has(HEAVY, k));
+            let indexes = &self.children[path[path.len() - 1]];
+            let mut large = indexes.iter().filter(|&&k| self.has(HEAVY, k));
             match (large.next(), large.next()) {
                 (Some(&only), None) => path.push(only),
-                _ => break own,
+                _ => break indexes,
             }
         };
         let mut left = self.all_of(next)?;
@@ -191,13 +191,13 @@ impl<'a> Fronts<'a> {
             let places: Vec<usize> = supernode(self.own, child).1.iter().map(|&row| place(row)).collect();
             let mut from = &left.update[..];
             for (j, &to) in places.iter().enumerate() {
-                let (own, others) = from.split_at(places.len() - j);
+                let (values, others) = from.split_at(places.len() - j);
                 from = others;
                 let (column, top) = match to.checked_sub(width) {
                     None => (&mut panel[to * height..][..height], 0),
                     Some(to) => (&mut update[to * rest..][..rest], width),
                 };
-                places[j..].iter().zip(own).for_each(|(i, x)| column[i - top] += x);
+                places[j..].iter().zip(values).for_each(|(i, x)| column[i - top] += x);
             }
         }
         let panel = MatMut::from_column_major_slice_mut(&mut panel, height, width);
@@ -255,13 +255,13 @@ impl Pivots {
 }
 
 /// Cholesky's factor in place; `None` where a pivot is not positive, or memory runs out.
-fn cholesky(mut own: MatMut<'_, f64>) -> Option<()> {
-    let (n, threads) = (own.nrows(), faer::get_global_parallelism());
+fn cholesky(mut matrix: MatMut<'_, f64>) -> Option<()> {
+    let (n, threads) = (matrix.nrows(), faer::get_global_parallelism());
     let scratch = llt::factor::cholesky_in_place_scratch::<f64>(n, threads, Default::default());
     let mut room = MemBuffer::try_new(scratch).ok()?;
     let (stack, none) = (MemStack::new(&mut room), Default::default());
-    llt::factor::cholesky_in_place(own.as_mut(), none, threads, stack, Default::default()).ok()?;
-    (0..n).all(|k| own[(k, k)] > 0.0 && own[(k, k)].is_finite()).then_some(())
+    llt::factor::cholesky_in_place(matrix.as_mut(), none, threads, stack, Default::default()).ok()?;
+    (0..n).all(|k| matrix[(k, k)] > 0.0 && matrix[(k, k)].is_finite()).then_some(())
 }
 
 /// The lower triangle of Aᵀ B taken from that of a matrix.
@@ -282,16 +282,22 @@ fn pack(square: &mut Vec<f64>, n: usize) {
 }
 
 /// The columns of a supernode, and the rows below them.
-fn supernode(own: &SymbolicSupernodalCholesky<usize>, k: usize) -> (Range<usize>, &[usize]) {
-    let ends = own.col_ptr_for_row_idx();
-    (own.supernode_begin()[k]..own.supernode_end()[k], &own.row_idx()[ends[k]..ends[k + 1]])
+fn supernode(
+    symbolic_supernodal_cholesky: &SymbolicSupernodalCholesky<usize>,
+    k: usize,
+) -> (Range<usize>, &[usize]) {
+    let ends = symbolic_supernodal_cholesky.col_ptr_for_row_idx();
+    (
+        symbolic_supernodal_cholesky.supernode_begin()[k]..symbolic_supernodal_cholesky.supernode_end()[k],
+        &symbolic_supernodal_cholesky.row_idx()[ends[k]..ends[k + 1]],
+    )
 }
 
 /// All of them, in the order of elimination.
 pub(super) fn supernodes(
-    own: &SymbolicSupernodalCholesky<usize>,
+    symbolic_supernodal_cholesky: &SymbolicSupernodalCholesky<usize>,
 ) -> impl Iterator<Item = (Range<usize>, &[usize])> {
-    (0..own.n_supernodes()).map(|k| supernode(own, k))
+    (0..symbolic_supernodal_cholesky.n_supernodes()).map(|k| supernode(symbolic_supernodal_cholesky, k))
 }
 
 /// The products that the elimination of so many columns takes, so many rows below them: half the squares of the columns' lengths.
@@ -304,13 +310,13 @@ const FRESH: usize = 1 << 26;
 
 /// So many zeros; `None` where memory runs out.
 pub(super) fn zeros<T: Clone>(n: usize, zero: T) -> Option<Vec<T>> {
-    let mut own = Vec::new();
-    own.try_reserve_exact(n).ok()?;
+    let mut numbers = Vec::new();
+    numbers.try_reserve_exact(n).ok()?;
     if n > FRESH {
         // Given back: the system hands out zeros, and pages that nobody writes to, as of upper triangles, take no memory.
-        drop(std::hint::black_box(own));
+        drop(std::hint::black_box(numbers));
         return Some(vec![zero; n]);
     }
-    own.resize(n, zero);
-    Some(own)
+    numbers.resize(n, zero);
+    Some(numbers)
 }

@@ -20,20 +20,20 @@ pub(super) fn top(
     loop {
         for _ in 0..2 {
             x -= rigid * (rigid.transpose() * &x);
-            let own = basis.subcols(0, size);
-            x -= own * (own.transpose() * &x);
+            let matrix = basis.subcols(0, size);
+            x -= matrix * (matrix.transpose() * &x);
         }
         let length = x.norm_l2();
         // The space is used up: what is left of an image is rounding.
         let is_over =
             size == steps || !(length.is_finite() && length > 1e-13 * images.subcols(0, size).norm_max());
         if is_over || size > 0 && size % EVERY == 0 {
-            let (own, images) = (basis.subcols(0, size), images.subcols(0, size));
-            let form = own.transpose() * images;
+            let (matrix, images) = (basis.subcols(0, size), images.subcols(0, size));
+            let form = matrix.transpose() * images;
             let form = Mat::from_fn(size, size, |i, j| (form[(i, j)] + form[(j, i)]) / 2.0);
             let eigen = form.self_adjoint_eigen(Side::Lower).ok()?;
             let part = Mat::from_fn(size, usize::from(size > 0), |i, _| eigen.U()[(i, size - 1)]);
-            let found = own * &part;
+            let found = matrix * &part;
             let value = (size > 0).then(|| eigen.S()[size - 1])?;
             if is_over || (images * part - &found * faer::Scale(value)).norm_l2() < enough * value {
                 return Some(&found / faer::Scale(found.norm_l2()));

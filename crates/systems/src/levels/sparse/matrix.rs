@@ -51,16 +51,17 @@ pub fn symmetric(
         let remedy = format!("give finite numbers, and indices below {n}");
         return Err(Error::input(&format!("{field}[{i}][{j}]"), x, remedy));
     }
-    let largest = given.iter().fold(0.0f64, |most, own| most.max(own.2.abs()));
+    let largest = given.iter().fold(0.0f64, |most, triple| most.max(triple.2.abs()));
     let lower: Vec<_> = given.iter().filter(|(i, j, _)| i >= j).copied().collect();
     let upper: Vec<_> = given.iter().filter(|(i, j, _)| i < j).map(|&(i, j, x)| (j, i, x)).collect();
     let (lower, upper) = (added(lower), added(upper));
     let (mut below, mut above) = (lower.iter().peekable(), upper.iter().peekable());
     let mut all = Vec::with_capacity(lower.len());
-    let place = |own: &&(usize, usize, f64)| (own.0, own.1);
+    let place = |triple: &&(usize, usize, f64)| (triple.0, triple.1);
     while let Some(at) = below.peek().into_iter().chain(above.peek()).map(place).min() {
         let (i, j) = at;
-        let [x, y] = [&mut below, &mut above].map(|own| own.next_if(|own| place(own) == at).map(|own| own.2));
+        let [x, y] = [&mut below, &mut above]
+            .map(|triples| triples.next_if(|triple| place(triple) == at).map(|triple| triple.2));
         let (x, y) = match (x, y) {
             (x, y) if is_whole && i != j => (x.unwrap_or(0.0), y.unwrap_or(0.0)),
             (x, y) => (x.or(y).unwrap_or(0.0), y.or(x).unwrap_or(0.0)),
@@ -78,16 +79,16 @@ pub fn symmetric(
 }
 
 /// In order, the triplets of each entry added up.
-fn added(mut own: Vec<(usize, usize, f64)>) -> Vec<(usize, usize, f64)> {
-    own.sort_by_key(|&(i, j, _)| (i, j));
-    own.dedup_by(|next, kept| {
+fn added(mut triples: Vec<(usize, usize, f64)>) -> Vec<(usize, usize, f64)> {
+    triples.sort_by_key(|&(i, j, _)| (i, j));
+    triples.dedup_by(|next, kept| {
         let is_same = (next.0, next.1) == (kept.0, kept.1);
         if is_same {
             kept.2 += next.2;
         }
         is_same
     });
-    own
+    triples
 }
 
 impl Pattern {
@@ -105,10 +106,10 @@ impl Pattern {
     /// # Errors
     /// As [`Pattern::of`].
     pub fn of_all(n: usize, matrices: &[&Triplets]) -> Result<(Pattern, Vec<Vec<f64>>)> {
-        let place = |(k, own): (usize, &&Triplets)| -> Vec<(usize, usize, usize, f64)> {
-            own.iter().filter(|(i, j, _)| i >= j).map(|&(i, j, x)| (j, i, k, x)).collect()
+        let place = |(k, triples): (usize, &&Triplets)| -> Vec<(usize, usize, usize, f64)> {
+            triples.iter().filter(|(i, j, _)| i >= j).map(|&(i, j, x)| (j, i, k, x)).collect()
         };
-        if n == 0 || matrices.iter().any(|own| own.iter().any(|&(i, j, _)| i.max(j) >= n)) {
+        if n == 0 || matrices.iter().any(|matrix| matrix.iter().any(|&(i, j, _)| i.max(j) >= n)) {
             return Err(Error::input("stiffness", n, "give 1 row or more, and indices below their number"));
         }
         let mut all: Vec<_> = matrices.iter().enumerate().flat_map(place).collect();
@@ -122,7 +123,7 @@ impl Pattern {
                 last = Some((j, i));
                 columns[j + 1] += 1;
                 rows.push(i);
-                values.iter_mut().for_each(|own: &mut Vec<f64>| own.push(0.0));
+                values.iter_mut().for_each(|values: &mut Vec<f64>| values.push(0.0));
             }
             *values[k].last_mut().expect("just pushed") += x;
         }
@@ -231,9 +232,9 @@ impl Pattern {
     pub fn is_definite(&self, c: f64, terms: &[(f64, &[f64])], slack: f64) -> bool {
         match self.symbolic.raw() {
             SymbolicCholeskyRaw::Simplicial(_) => self.factored(c, terms, slack).is_some(),
-            SymbolicCholeskyRaw::Supernodal(own) => self
+            SymbolicCholeskyRaw::Supernodal(symbolic_supernodal_cholesky) => self
                 .lowered(c, terms, slack)
-                .and_then(|values| self.fronts(own, values, Elimination::Cholesky))
+                .and_then(|values| self.fronts(symbolic_supernodal_cholesky, values, Elimination::Cholesky))
                 .is_some(),
         }
     }
@@ -241,13 +242,14 @@ impl Pattern {
     /// The pivots of a matrix of this pattern.
     fn fronts(
         &self,
-        own: &SymbolicSupernodalCholesky<usize>,
+        symbolic_supernodal_cholesky: &SymbolicSupernodalCholesky<usize>,
         values: Vec<f64>,
         kind: Elimination,
     ) -> Option<Pivots> {
         let places = self.symbolic.perm().map(|perm| perm.arrays().1);
         let place = |i: usize| places.map_or(i, |places| places[i]);
-        let fronts = Fronts::new(own, place, [&self.columns, &self.rows], &values, kind)?;
+        let fronts =
+            Fronts::new(symbolic_supernodal_cholesky, place, [&self.columns, &self.rows], &values, kind)?;
         drop(values);
         fronts.pivots()
     }
@@ -299,8 +301,12 @@ impl Pattern {
     pub fn negative(&self, c: f64, terms: &[(f64, &[f64])]) -> Option<(usize, f64)> {
         let (values, trace) = self.sum(-c, terms);
         let Pivots { negative, size } = match self.symbolic.raw() {
-            SymbolicCholeskyRaw::Simplicial(own) => self.simplicial(own, &values)?,
-            SymbolicCholeskyRaw::Supernodal(own) => self.fronts(own, values, Elimination::Signed)?,
+            SymbolicCholeskyRaw::Simplicial(symbolic_simplicial_cholesky) => {
+                self.simplicial(symbolic_simplicial_cholesky, &values)?
+            }
+            SymbolicCholeskyRaw::Supernodal(symbolic_supernodal_cholesky) => {
+                self.fronts(symbolic_supernodal_cholesky, values, Elimination::Signed)?
+            }
         };
         let off = self.off(size + trace, c);
         off.is_finite().then_some((negative, off))
@@ -316,20 +322,24 @@ impl Pattern {
     pub fn at_most_negative(&self, c: f64, terms: &[(f64, &[f64])], slack: f64) -> Option<usize> {
         let mut tau = 1.1 * slack;
         for _ in 0..SHIFTS {
-            let (negative, own) = self.negative(tau - c, terms)?;
-            if tau > 1.01 * (own + slack) {
+            let (negative, value) = self.negative(tau - c, terms)?;
+            if tau > 1.01 * (value + slack) {
                 return Some(negative);
             }
-            tau = 1.1 * (own + slack);
+            tau = 1.1 * (value + slack);
         }
         None
     }
 
     /// The pivots of L D Lᵀ column by column.
-    fn simplicial(&self, own: &SymbolicSimplicialCholesky<usize>, values: &[f64]) -> Option<Pivots> {
+    fn simplicial(
+        &self,
+        symbolic_simplicial_cholesky: &SymbolicSimplicialCholesky<usize>,
+        values: &[f64],
+    ) -> Option<Pivots> {
         let factor = self.factors(values, true)?;
         // Of each column: its pivot, and the square of its length, 1 on the diagonal.
-        Some(own.col_ptr().windows(2).fold(Pivots::default(), |sum, ends| {
+        Some(symbolic_simplicial_cholesky.col_ptr().windows(2).fold(Pivots::default(), |sum, ends| {
             let (pivot, below) = (factor[ends[0]], &factor[ends[0] + 1..ends[1]]);
             let square = 1.0 + below.iter().map(|x| x * x).sum::<f64>();
             sum.and(Pivots { negative: usize::from(pivot < 0.0), size: pivot.abs() * square })
@@ -338,20 +348,28 @@ impl Pattern {
 
     /// The values of the factors L Lᵀ of a matrix of this pattern, or L D Lᵀ; `None` where a pivot is none, memory runs out, or they are too many to keep.
     fn factors(&self, entries: &[f64], is_signed: bool) -> Option<Vec<f64>> {
-        let (own, threads) = (&self.symbolic, faer::get_global_parallelism());
+        let (symbolic_cholesky, threads) = (&self.symbolic, faer::get_global_parallelism());
         let scratch = match is_signed {
-            false => own.factorize_numeric_llt_scratch::<f64>(threads, Default::default()),
-            true => own.factorize_numeric_ldlt_scratch::<f64>(threads, Default::default()),
+            false => symbolic_cholesky.factorize_numeric_llt_scratch::<f64>(threads, Default::default()),
+            true => symbolic_cholesky.factorize_numeric_ldlt_scratch::<f64>(threads, Default::default()),
         };
         let mut room = MemBuffer::try_new(scratch).ok()?;
-        let mut values = if own.len_val() < MOST_KEPT { zeros(own.len_val(), 0.0)? } else { return None };
+        let mut values = if symbolic_cholesky.len_val() < MOST_KEPT {
+            zeros(symbolic_cholesky.len_val(), 0.0)?
+        } else {
+            return None;
+        };
         let (to, matrix, side) = (&mut values[..], self.matrix(entries), Side::Lower);
         let (none, stack) = (Default::default(), MemStack::new(&mut room));
         let is_done = if is_signed {
-            own.factorize_numeric_ldlt(to, matrix, side, none, threads, stack, Default::default()).is_ok()
+            symbolic_cholesky
+                .factorize_numeric_ldlt(to, matrix, side, none, threads, stack, Default::default())
+                .is_ok()
         } else {
             let none = Default::default();
-            own.factorize_numeric_llt(to, matrix, side, none, threads, stack, Default::default()).is_ok()
+            symbolic_cholesky
+                .factorize_numeric_llt(to, matrix, side, none, threads, stack, Default::default())
+                .is_ok()
         };
         is_done.then_some(values)
     }
@@ -383,8 +401,8 @@ impl Factors {
         let scratch = self.symbolic.solve_in_place_scratch::<f64>(x.ncols(), threads);
         let mut room = MemBuffer::try_new(scratch).ok()?;
         let stack = MemStack::new(&mut room);
-        let own = LltRef::<usize, f64>::new(&self.symbolic, &self.values);
-        own.solve_in_place_with_conj(Conj::No, x.as_mut(), threads, stack);
+        let llt_ref = LltRef::<usize, f64>::new(&self.symbolic, &self.values);
+        llt_ref.solve_in_place_with_conj(Conj::No, x.as_mut(), threads, stack);
         Some(x)
     }
 
@@ -414,16 +432,16 @@ fn symbolic(columns: &[usize], rows: &[usize]) -> Option<SymbolicCholesky<usize>
     let n = columns.len() - 1;
     let pattern = SymbolicSparseColMatRef::new_checked(n, n, columns, None, rows);
     let in_order = |order| factorize_symbolic_cholesky(pattern, Side::Lower, order, Default::default()).ok();
-    let own = in_order(SymmetricOrdering::Amd)?;
+    let symbolic_cholesky = in_order(SymmetricOrdering::Amd)?;
     // Where a factorization costs little more than to find an order, any does.
-    if products(&own) < WORTH_AN_ORDER * rows.len() as f64 {
-        return Some(own);
+    if products(&symbolic_cholesky) < WORTH_AN_ORDER * rows.len() as f64 {
+        return Some(symbolic_cholesky);
     }
     let order = dissected(columns, rows);
     let mut places = vec![0; n];
     order.iter().enumerate().for_each(|(place, &i)| places[i] = place);
     let other = in_order(SymmetricOrdering::Custom(PermRef::new_checked(&order, &places, n)));
-    Some(other.filter(|other| products(other) < products(&own)).unwrap_or(own))
+    Some(other.filter(|other| products(other) < products(&symbolic_cholesky)).unwrap_or(symbolic_cholesky))
 }
 
 /// Products an entry of the matrix.
@@ -432,11 +450,15 @@ const WORTH_AN_ORDER: f64 = 1000.0;
 /// Half the squares of the lengths of the factor's columns.
 fn products(symbolic: &SymbolicCholesky<usize>) -> f64 {
     match symbolic.raw() {
-        SymbolicCholeskyRaw::Simplicial(own) => {
-            own.col_ptr().windows(2).map(|ends| products_of(1, ends[1] - ends[0] - 1)).sum()
-        }
-        SymbolicCholeskyRaw::Supernodal(own) => {
-            supernodes(own).map(|(columns, below)| products_of(columns.len(), below.len())).sum()
+        SymbolicCholeskyRaw::Simplicial(symbolic_simplicial_cholesky) => symbolic_simplicial_cholesky
+            .col_ptr()
+            .windows(2)
+            .map(|ends| products_of(1, ends[1] - ends[0] - 1))
+            .sum(),
+        SymbolicCholeskyRaw::Supernodal(symbolic_supernodal_cholesky) => {
+            supernodes(symbolic_supernodal_cholesky)
+                .map(|(columns, below)| products_of(columns.len(), below.len()))
+                .sum()
         }
     }
 }
@@ -445,11 +467,15 @@ fn products(symbolic: &SymbolicCholesky<usize>) -> f64 {
 fn longest_row(symbolic: &SymbolicCholesky<usize>) -> usize {
     let mut counts = vec![0; symbolic.nrows()];
     match symbolic.raw() {
-        SymbolicCholeskyRaw::Simplicial(own) => own.row_idx().iter().for_each(|&i| counts[i] += 1),
-        SymbolicCholeskyRaw::Supernodal(own) => supernodes(own).for_each(|(columns, below)| {
-            let width = columns.len();
-            columns.chain(below.iter().copied()).for_each(|i| counts[i] += width);
-        }),
+        SymbolicCholeskyRaw::Simplicial(symbolic_simplicial_cholesky) => {
+            symbolic_simplicial_cholesky.row_idx().iter().for_each(|&i| counts[i] += 1)
+        }
+        SymbolicCholeskyRaw::Supernodal(symbolic_supernodal_cholesky) => {
+            supernodes(symbolic_supernodal_cholesky).for_each(|(columns, below)| {
+                let width = columns.len();
+                columns.chain(below.iter().copied()).for_each(|i| counts[i] += width);
+            })
+        }
     }
     counts.into_iter().max().unwrap_or(0)
 }
@@ -528,9 +554,9 @@ mod tests {
         let all: Vec<_> = (0..3).flat_map(moved).collect();
         let (pattern, [values]) = Pattern::of(3 * n, [&all]).unwrap();
         assert!(matches!(pattern.symbolic.raw(), SymbolicCholeskyRaw::Supernodal(_)));
-        let mut own = Mat::zeros(n, n);
-        body.iter().for_each(|&(i, j, x)| (own[(i, j)], own[(j, i)]) = (x, x));
-        let eigenvalues = own.self_adjoint_eigenvalues(Side::Lower).unwrap();
+        let mut matrix = Mat::zeros(n, n);
+        body.iter().for_each(|&(i, j, x)| (matrix[(i, j)], matrix[(j, i)]) = (x, x));
+        let eigenvalues = matrix.self_adjoint_eigenvalues(Side::Lower).unwrap();
         for c in [1.4, 1.9, 2.0001, 2.3, 4.1, 5.0] {
             let (negative, off) = pattern.negative(c, &[(1.0, &values)]).expect("no pivot vanishes");
             let below = |c: f64| eigenvalues.iter().filter(|&&x| x < c).count();

@@ -134,9 +134,9 @@ impl SparseLevels {
         if let Some((i, mass)) = masses.iter().enumerate().find(|(_, m)| !(m.is_finite() && **m > 0.0)) {
             return Err(Error::input(&format!("masses[{i}]"), mass, "a mass must be positive"));
         }
-        let weighted = |own: &Triplets| -> Result<Vec<_>> {
+        let weighted = |triples: &Triplets| -> Result<Vec<_>> {
             let weight = |i: usize, j: usize| masses[i].sqrt() * masses[j].sqrt();
-            Ok(symmetric("stiffness", n, own, false)?
+            Ok(symmetric("stiffness", n, triples, false)?
                 .into_iter()
                 .map(|(i, j, x)| (i, j, x / weight(i, j)))
                 .collect())
@@ -144,7 +144,7 @@ impl SparseLevels {
         let (fast_terms, slow_terms) = (weighted(fast)?, weighted(slow)?);
         let (both, [fast, slow]) = Pattern::of(n, [&fast_terms, &slow_terms])?;
         let (alone, [fast_alone]) = Pattern::of(n, [&fast_terms])?;
-        let sizes = [&fast, &slow].map(|own| both.size_of(own));
+        let sizes = [&fast, &slow].map(|values| both.size_of(values));
         // Two roots, their product, the quotient.
         let errors = sizes.map(|(size, _)| 4.1 * U * size);
         let total: Vec<f64> = fast.iter().zip(&slow).map(|(f, s)| f + s).collect();
@@ -183,8 +183,8 @@ impl SparseLevels {
     /// The same for the first ones alone.
     fn removed_along(&self, count: usize) -> [f64; 2] {
         let rigid = self.rigid.subcols(0, count.min(self.rigid.ncols())).to_owned();
-        [(&self.fast, self.sizes[0]), (&self.slow, self.sizes[1])].map(|(own, size)| {
-            let along = norm::frobenius(&self.both.times(own, &rigid));
+        [(&self.fast, self.sizes[0]), (&self.slow, self.sizes[1])].map(|(values, size)| {
+            let along = norm::frobenius(&self.both.times(values, &rigid));
             if along == 0.0 { 0.0 } else { along / size }
         })
     }
@@ -199,7 +199,7 @@ impl SparseLevels {
         let checks = [(3, "translations", accuracy + rounding), (usize::MAX, "rigid motions", TURNED)];
         for (count, name, most) in checks {
             let parts = ["fast", "slow"].into_iter().zip(self.removed_along(count));
-            if let Some((level, part)) = parts.into_iter().find(|own| own.1 > most) {
+            if let Some((level, part)) = parts.into_iter().find(|part| part.1 > most) {
                 let value =
                     format!("the {level} stiffness holds {part:.1e} of its norm along {name} of all atoms");
                 let remedy = if part > TURNED {
@@ -276,11 +276,11 @@ impl SparseLevels {
         // Its least eigenvalue is at most this quotient; what counts eigenvalues proves it by a shift that is larger.
         let room = if self.rigid.ncols() == 0 { 1.0 } else { 1.1 };
         let least = least.map_or(f64::INFINITY, |least| least / room - off(0.0));
-        let own = least.max(0.0) / (self.sizes[0] + self.sizes[1]);
-        if own > most && is_definite(most) {
+        let value = least.max(0.0) / (self.sizes[0] + self.sizes[1]);
+        if value > most && is_definite(most) {
             return most;
         }
-        largest_below(most.min(own), NEAR, is_definite)
+        largest_below(most.min(value), NEAR, is_definite)
     }
 
     /// \[lo, hi\]: every outer step of so many inner ones in (0, lo] is proven stable, hi is proven unstable; `None` where nothing is proven.
@@ -301,7 +301,7 @@ impl SparseLevels {
     pub fn pulls(&self, y: &[f64]) -> [Vec<f64>; 2] {
         let free = |y: Mat<f64>| &y - &self.rigid * (self.rigid.transpose() * &y);
         let y = free(Mat::from_fn(y.len(), 1, |i, _| y[i]));
-        [&self.fast, &self.slow].map(|own| free(self.both.times(own, &y)).col_as_slice(0).to_vec())
+        [&self.fast, &self.slow].map(|values| free(self.both.times(values, &y)).col_as_slice(0).to_vec())
     }
 
     fn first(&self, inner_steps: u64) -> Option<First> {
@@ -336,7 +336,7 @@ impl SparseLevels {
         let mut lo = begin.into_iter().find(|&step| step < hi && is_proven(step))?;
         while hi > lo * (1.0 + WIDTH) {
             let Some(next) =
-                self.above(&at(lo)?).and_then(|own| own.least(along.clone(), &self.rigid, STEPS_BELOW))
+                self.above(&at(lo)?).and_then(|above| above.least(along.clone(), &self.rigid, STEPS_BELOW))
             else {
                 break;
             };
@@ -446,8 +446,8 @@ impl SparseLevels {
             if let Some(held) = self.held_by_as_much() {
                 return held;
             }
-            let (not_proven, own) = self.not_above_zero(self.errors[0] + self.errors[1]);
-            let least = if not_proven == Some(0) { self.least_total(own) } else { None };
+            let (not_proven, factors) = self.not_above_zero(self.errors[0] + self.errors[1]);
+            let least = if not_proven == Some(0) { self.least_total(factors) } else { None };
             Held { not_proven, least, above: 0.0 }
         })
     }
@@ -479,10 +479,10 @@ impl SparseLevels {
     }
 
     /// The least xᵀ(F + S)x by the factors of F + S, or of a sum a little above it.
-    fn least_total(&self, own: Option<Factors>) -> Option<f64> {
+    fn least_total(&self, factors: Option<Factors>) -> Option<f64> {
         let size = self.sizes[0] + self.sizes[1];
         let shifted = || SHIFTED.iter().find_map(|part| self.both.factored(part * size, &self.total(), 0.0));
-        let along = own.or_else(shifted)?.least(self.anywhere(), &self.rigid, STEPS_BELOW)?;
+        let along = factors.or_else(shifted)?.least(self.anywhere(), &self.rigid, STEPS_BELOW)?;
         Some(self.quotients(&along).iter().sum())
     }
 
@@ -507,9 +507,10 @@ impl SparseLevels {
     /// many as rigid motions in any case, along which F + S vanishes. The factors that prove it, where there are any.
     fn not_above_zero(&self, off: f64) -> (Option<usize>, Option<Factors>) {
         let slack = self.total_slack(off);
-        let own = (self.rigid.ncols() == 0).then(|| self.both.factored(0.0, &self.total(), slack)).flatten();
-        if own.is_some() {
-            return (Some(0), own);
+        let factors =
+            (self.rigid.ncols() == 0).then(|| self.both.factored(0.0, &self.total(), slack)).flatten();
+        if factors.is_some() {
+            return (Some(0), factors);
         }
         let negative = self.both.at_most_negative(0.0, &self.total(), slack);
         (negative.map(|count| count.saturating_sub(self.rigid.ncols())), None)
@@ -537,9 +538,9 @@ impl SparseLevels {
         // Sums of n products each, of |x|ᵀ|A||x| ≤ ‖A‖; what is left of the length and along rigid motions.
         let along = norm::frobenius(&(self.rigid.transpose() * x)) + n * U;
         let length = 1.0 - 1.01 * (n + 4.0) * U;
-        let of = |k: usize, own: &[f64]| {
+        let of = |k: usize, values: &[f64]| {
             let off = self.errors[k] + (2.1 * along + 4.04 * (n + 4.0) * U) * self.sizes[k];
-            let form = (x.transpose() * self.both.times(own, x))[(0, 0)] - off;
+            let form = (x.transpose() * self.both.times(values, x))[(0, 0)] - off;
             (form * length).min(form / length)
         };
         [of(0, &self.fast), of(1, &self.slow)]

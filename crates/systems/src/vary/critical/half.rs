@@ -83,7 +83,7 @@ impl Half {
         let mut program = Program::new(&generic).map(|x| [x.clone(), Rational::zero()]);
         let mut ranks = Vec::new();
         for (k, clock) in generic.clocks().iter().enumerate() {
-            let [lo, hi] = line.ends.each_ref().map(|own| sum(own, clock));
+            let [lo, hi] = line.ends.each_ref().map(|ends| sum(ends, clock));
             let ticks = Rational::from_integer(generic.schedule().clocks()[k].step().into());
             let factor = generic.tick() * generic.tick() * ticks;
             let mut gained = hi;
@@ -97,10 +97,12 @@ impl Half {
         let mut gained = hi.clone();
         gained.add_all(&lo.scaled(&ratio(-1, 1)));
         let rank_of_masses = gained.size() - gained.null_space().len();
-        let varying = program.islands.iter().filter(|own| own.iter().any(|&i| !gained.row(i).is_empty()));
-        let masses: Vec<_> =
-            varying.map(|own| Masses::between(own, [lo.restricted(own), gained.restricted(own)])).collect();
-        masses.iter().flat_map(|own| &own.dofs).for_each(|&i| program.inverse_mass[i].clear());
+        let varying =
+            program.islands.iter().filter(|island| island.iter().any(|&i| !gained.row(i).is_empty()));
+        let masses: Vec<_> = varying
+            .map(|varying| Masses::between(varying, [lo.restricted(varying), gained.restricted(varying)]))
+            .collect();
+        masses.iter().flat_map(|mass| &mass.dofs).for_each(|&i| program.inverse_mass[i].clear());
         let is_selfadjoint = line.commutes;
         let [unit, scale] = [BigInt::one(), BigInt::one()];
         let symmetry = line.symmetry.clone().filter(|_| frame.rigid.is_empty());
@@ -126,8 +128,8 @@ impl Half {
     }
 
     fn seems_square(&self) -> bool {
-        let own = prime_fields().find_map(|field| Some((field, self.residues(&field)?)));
-        let (field, program) = own.expect("primes enough");
+        let pair = prime_fields().find_map(|field| Some((field, self.residues(&field)?)));
+        let (field, program) = pair.expect("primes enough");
         let mut places = PLACES.into_iter().filter_map(|s| self.at(&field, &program, field.of(s))).peekable();
         let is_no_end = |at: &At| {
             let f = modular::characteristic(&field, at.blocks[0].clone());
@@ -187,9 +189,9 @@ impl Half {
     /// The operations of one evaluation, roughly.
     pub fn cost(&self) -> f64 {
         let (n, m) = (self.program.size() as f64, self.size() as f64);
-        let varying: f64 = self.masses.iter().map(|own| (own.dofs.len() as f64).powi(2)).sum();
+        let varying: f64 = self.masses.iter().map(|mass| (mass.dofs.len() as f64).powi(2)).sum();
         let entries = self.program.entries().count() as f64 + varying;
-        let eliminations: f64 = self.masses.iter().map(|own| 2.0 * (own.dofs.len() as f64).powi(3)).sum();
+        let eliminations: f64 = self.masses.iter().map(|mass| 2.0 * (mass.dofs.len() as f64).powi(3)).sum();
         (self.kicks() as f64 + 1.0) * 2.0 * m * (entries + n)
             + eliminations
             + 12.0 * m.powi(3)
@@ -219,14 +221,14 @@ impl Half {
             .program
             .kicks
             .iter()
-            .map(|own| largest(&mut own.rows.iter().map(|(_, own)| row(own))))
+            .map(|kick| largest(&mut kick.rows.iter().map(|(_, pairs)| row(pairs))))
             .collect();
         // An entry of the adjugate is at most the product of the sums of the other rows.
         let (mut inverse, mut masses) = (largest(&mut self.program.inverse_mass.iter().map(row)), 0.0);
-        for own in &self.masses {
-            let sums = own.line.row_iter().map(|row| row.iter().flatten().map(size).sum::<f64>());
+        for mass in &self.masses {
+            let sums = mass.line.row_iter().map(|row| row.iter().flatten().map(size).sum::<f64>());
             let sums: Vec<f64> = sums.collect();
-            inverse = inverse.max(sums.iter().map(|x| 1.0 / x).sum::<f64>() / to_f64(&own.c));
+            inverse = inverse.max(sums.iter().map(|x| 1.0 / x).sum::<f64>() / to_f64(&mass.c));
             masses += sums.iter().map(|x| x.log2()).sum::<f64>();
         }
         let events: Vec<(f64, f64)> = self
@@ -236,7 +238,7 @@ impl Half {
             .map(|event| (event.drift as f64 * inverse, event.clocks().map(|clock| kicks[clock]).sum()))
             .collect();
         // Any unit of momentum: that in which drifts and kicks are alike.
-        let (drift, kick) = events.iter().fold((0.0, 0.0), |sum, own| (sum.0 + own.0, sum.1 + own.1));
+        let (drift, kick) = events.iter().fold((0.0, 0.0), |sum, pair| (sum.0 + pair.0, sum.1 + pair.1));
         let unit = if drift > 0.0 && kick > 0.0 { (kick / drift).sqrt() } else { 1.0 };
         let path = events.iter().map(|(x, k)| (1.0 + x * unit).log2() + (1.0 + k / unit).log2()).sum::<f64>();
         let rigid: f64 = self.frame.rigid.iter().flat_map(|(_, n)| n).map(|x| to_f64(&x.abs())).sum();
@@ -253,9 +255,9 @@ impl Half {
     fn common(&self) -> (BigInt, BigInt) {
         let lcm = |lcm: BigInt, x: &Rational| lcm.lcm(x.denom());
         let e = self.program.inverse_mass.iter().flatten().map(|(_, x)| &x[0]).fold(BigInt::one(), lcm);
-        let e = self.masses.iter().map(|own| own.c.recip()).fold(e, |e, x| lcm(e, &x));
+        let e = self.masses.iter().map(|mass| mass.c.recip()).fold(e, |e, x| lcm(e, &x));
         let twice = Rational::from_integer(&e * 2);
-        let entries = self.program.kicks.iter().flat_map(|own| &own.rows).flat_map(|(_, row)| row);
+        let entries = self.program.kicks.iter().flat_map(|kick| &kick.rows).flat_map(|(_, row)| row);
         let f = entries.flat_map(|(_, x)| x).fold(BigInt::one(), |f, x| lcm(f, &(x / &twice)));
         let delta = self.frame.denominator();
         (e, num_traits::pow(f, 2 * self.kicks()) * &delta * &delta)
@@ -264,7 +266,7 @@ impl Half {
     /// The program modulo a prime; `None` where that divides a denominator.
     pub fn residues(&self, field: &PrimeField) -> Option<Program<Linear<u64>>> {
         let constants = self.frame.rigid.iter().flat_map(|(_, n)| n);
-        let masses = self.masses.iter().map(|own| &own.c);
+        let masses = self.masses.iter().map(|mass| &mass.c);
         let all = self.program.entries().flatten().chain(constants);
         let sound = all.into_iter().all(|x| field.of_rational(x).is_some())
             && masses.into_iter().all(|c| field.of_rational(&c.recip()).is_some());
@@ -277,14 +279,14 @@ impl Half {
         let at = |x: &Linear<u64>| field.add(x[0], field.mul(s, x[1]));
         let mut program = program.map(at);
         let mut delta = field.of(1);
-        for own in &self.masses {
-            let line = own.line.map(|x| at(&x.each_ref().map(|x| field.of_big(x))));
+        for mass in &self.masses {
+            let line = mass.line.map(|x| at(&x.each_ref().map(|x| field.of_big(x))));
             let (inverse, determinant) = modular::inverse(field, line)?;
             delta = field.mul(delta, determinant);
-            let c = field.of_rational(&own.c.recip())?;
-            for (a, &i) in own.dofs.iter().enumerate() {
+            let c = field.of_rational(&mass.c.recip())?;
+            for (a, &i) in mass.dofs.iter().enumerate() {
                 let entry = |(b, &j): (usize, &usize)| (j, field.mul(c, inverse[(a, b)]));
-                program.inverse_mass[i] = own.dofs.iter().enumerate().map(entry).collect();
+                program.inverse_mass[i] = mass.dofs.iter().enumerate().map(entry).collect();
             }
         }
         let rows = self.run(field, &program);
@@ -299,7 +301,7 @@ impl Half {
             }),
             false => modular::times(field, &b.transpose(), &c).map(|x| field.mul(scale, x)),
         };
-        let blocks = [a, b, c, d].map(|own| own.map(|x| field.mul(unit, x)));
+        let blocks = [a, b, c, d].map(|matrix| matrix.map(|x| field.mul(unit, x)));
         Some(At { product, blocks, unit, delta: field.power(delta, self.drifts() as u64) })
     }
 
@@ -317,9 +319,9 @@ impl Half {
         program.run(self.generic.schedule().half_period(), &mut rows);
         let kept = |row: &Vec<u64>, i: usize, x: &[Vec<u64>]| {
             let mut row = row.clone();
-            for (own, n) in &self.frame.rigid {
+            for (index, n) in &self.frame.rigid {
                 let factor = field.sub(0, of(&n[i]));
-                add(field, &mut row, factor, &x[*own]);
+                add(field, &mut row, factor, &x[*index]);
             }
             row
         };
@@ -364,12 +366,16 @@ impl Eigenspaces {
 /// A system of the line with all clocks and all entries of M that any of them has.
 fn generic(line: &Line) -> Result<System> {
     let [lo, hi] = &line.ends;
-    let acts = |own: &&Potential| !sum(lo, own).is_zero() || !sum(hi, own).is_zero();
-    let mut clocks: Vec<_> =
-        lo.potentials().iter().filter(acts).map(|own| (own.step.clone(), own.phase.clone())).collect();
+    let acts = |potential: &&Potential| !sum(lo, potential).is_zero() || !sum(hi, potential).is_zero();
+    let mut clocks: Vec<_> = lo
+        .potentials()
+        .iter()
+        .filter(acts)
+        .map(|potential| (potential.step.clone(), potential.phase.clone()))
+        .collect();
     clocks.sort();
     clocks.dedup();
-    let masses: BTreeSet<_> = line.ends.iter().flat_map(|own| own.mass().places()).collect();
+    let masses: BTreeSet<_> = line.ends.iter().flat_map(|end| end.mass().places()).collect();
     // A linear function of s that is not 0 vanishes at one s at most.
     let mut k = 2;
     loop {
@@ -384,8 +390,11 @@ fn generic(line: &Line) -> Result<System> {
 /// The stiffness of all potentials with the clock of one.
 fn sum(system: &System, clock: &Potential) -> Symmetric {
     let mut sum = Symmetric::zero(system.size());
-    let own = system.potentials().iter().filter(|own| (&own.step, &own.phase) == (&clock.step, &clock.phase));
-    own.for_each(|own| sum.add_all(&own.stiffness));
+    let filter = system
+        .potentials()
+        .iter()
+        .filter(|potential| (&potential.step, &potential.phase) == (&clock.step, &clock.phase));
+    filter.for_each(|potential| sum.add_all(&potential.stiffness));
     sum
 }
 
@@ -403,12 +412,14 @@ fn rows(constant: &Symmetric, gained: &Symmetric, factor: &Rational) -> Vec<(usi
 impl Masses {
     /// The masses of these degrees of freedom, from M₀ and its growth along the line.
     fn between(dofs: &[usize], line: [Symmetric; 2]) -> Masses {
-        let entries = || line.iter().flat_map(|own| own.places().map(|(i, j)| own.get(i, j)));
+        let entries =
+            || line.iter().flat_map(|symmetric| symmetric.places().map(|(i, j)| symmetric.get(i, j)));
         let denominator = entries().fold(BigInt::one(), |lcm, x| lcm.lcm(x.denom()));
         let whole = |x: &Rational| (x * Rational::from_integer(denominator.clone())).to_integer();
         let common = entries().fold(BigInt::zero(), |gcd, x| gcd.gcd(&whole(&x)));
         let n = dofs.len();
-        let line = DMatrix::from_fn(n, n, |i, j| line.each_ref().map(|own| whole(&own.get(i, j)) / &common));
+        let line =
+            DMatrix::from_fn(n, n, |i, j| line.each_ref().map(|line| whole(&line.get(i, j)) / &common));
         Masses { dofs: dofs.to_vec(), c: Rational::new(common, denominator), line }
     }
 }

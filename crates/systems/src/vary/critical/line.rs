@@ -66,19 +66,19 @@ impl Line {
     /// the symmetries that all systems have in common.
     pub fn parts(&self) -> Vec<Line> {
         let [lo, hi] = &self.ends;
-        let matrices = |own: &System| {
-            let stiffnesses = own.potentials().iter().map(|own| own.stiffness.clone());
-            stiffnesses.chain([own.mass().clone()]).collect::<Vec<_>>()
+        let matrices = |system: &System| {
+            let stiffnesses = system.potentials().iter().map(|potential| potential.stiffness.clone());
+            stiffnesses.chain([system.mass().clone()]).collect::<Vec<_>>()
         };
         let all = [matrices(lo), matrices(hi)].concat();
         let parts = connected(lo.size(), all.iter().flat_map(Symmetric::places));
-        let acted = parts.into_iter().map(|dofs| Line::new([lo, hi].map(|own| own.part(&dofs))));
+        let acted = parts.into_iter().map(|dofs| Line::new([lo, hi].map(|system| system.part(&dofs))));
         acted.filter(Line::is_acted_on).flat_map(Line::split).collect()
     }
 
     /// Whether any potential acts.
     fn is_acted_on(&self) -> bool {
-        self.ends.iter().any(|own| own.potentials().iter().any(|own| !own.stiffness.is_zero()))
+        self.ends.iter().any(|end| end.potentials().iter().any(|potential| !potential.stiffness.is_zero()))
     }
 
     fn split(self) -> Vec<Line> {
@@ -90,14 +90,17 @@ impl Line {
         }
         let Ok(frame) = self.frame() else { return vec![self] };
         let complement = frame.complement(&self.ends[0]);
-        let vibrating = Line::new(self.ends.each_ref().map(|own| own.restricted(&complement)));
-        let stiffnesses: Vec<_> =
-            vibrating.ends.iter().flat_map(|own| own.potentials().iter().map(|own| &own.stiffness)).collect();
+        let vibrating = Line::new(self.ends.each_ref().map(|ends| ends.restricted(&complement)));
+        let stiffnesses: Vec<_> = vibrating
+            .ends
+            .iter()
+            .flat_map(|end| end.potentials().iter().map(|potential| &potential.stiffness))
+            .collect();
         let Some(spaces) = invariant_subspaces(&vibrating.ends[0], &stiffnesses) else {
             return vibrating.along_symmetries();
         };
         let along = |space: &Subspace| {
-            let ends = vibrating.ends.each_ref().map(|own| own.restricted(space));
+            let ends = vibrating.ends.each_ref().map(|ends| ends.restricted(space));
             Line { ends, commutes: true, symmetry: None }
         };
         spaces.iter().map(along).collect()
@@ -106,7 +109,8 @@ impl Line {
     /// The eigenspaces of a symmetry, each split in turn; where they are not rational, all of it with a symmetry beside it.
     fn along_symmetries(mut self) -> Vec<Line> {
         let [lo, hi] = &self.ends;
-        let stiffnesses = self.ends.iter().flat_map(|own| own.potentials()).map(|own| &own.stiffness);
+        let stiffnesses =
+            self.ends.iter().flat_map(|end| end.potentials()).map(|potential| &potential.stiffness);
         // A subspace that is invariant under M of one end, and under its inverse times M of the other end, splits the masses in between, too.
         let all: Vec<_> = stiffnesses.chain([hi.mass()]).collect();
         let spaces = match symmetry(lo, &all) {
@@ -117,7 +121,7 @@ impl Line {
             }
             None => return vec![self],
         };
-        let along = |space: &Subspace| Line::new(self.ends.each_ref().map(|own| own.restricted(space)));
+        let along = |space: &Subspace| Line::new(self.ends.each_ref().map(|ends| ends.restricted(space)));
         spaces.iter().map(along).filter(Line::is_acted_on).flat_map(Line::split).collect()
     }
 }

@@ -78,7 +78,7 @@ impl Plan {
 
     /// Those that change, with their places among all.
     fn changing(&self) -> impl Iterator<Item = (usize, &(Half, Shape))> {
-        self.0.iter().enumerate().filter_map(|(k, (_, own))| Some((k, own.as_ref()?)))
+        self.0.iter().enumerate().filter_map(|(k, (_, pair))| Some((k, pair.as_ref()?)))
     }
 
     /// Products of machine words, roughly.
@@ -113,8 +113,8 @@ impl Plan {
     /// As [`decide_system`].
     pub fn is_unstable_in(&self, gap: &Gap, sides: [Rational; 2], limits: &Limits) -> Result<bool> {
         for (k, (part, _)) in self.0.iter().enumerate() {
-            let roots = gap.parts.iter().find(|own| own.0 == k);
-            if roots.is_some_and(|own| !own.1) {
+            let roots = gap.parts.iter().find(|part| part.0 == k);
+            if roots.is_some_and(|roots| !roots.1) {
                 continue;
             }
             // Without a root both sides are alike.
@@ -138,6 +138,6 @@ pub(crate) fn gaps_of(
     ends: (f64, f64),
     place: &(impl Fn(&Rational) -> Rational + Sync),
 ) -> Result<Vec<Gap>> {
-    let found: Vec<_> = polynomials.iter().map(|own| Critical::new(own)).collect();
+    let found: Vec<_> = polynomials.iter().map(|polynomial| Critical::new(polynomial)).collect();
     Ok(place::united(place::gaps(0, &found, ends, place)?))
 }

@@ -34,10 +34,10 @@ pub(super) fn gaps(
     ends: (f64, f64),
     place: &(impl Fn(&Rational) -> Rational + Sync),
 ) -> Result<Vec<Gap>> {
-    let found = try_map(polynomials, |own| {
-        let multiple = roots(&own.multiple, ends, place);
+    let found = try_map(polynomials, |critical| {
+        let multiple = roots(&critical.multiple, ends, place);
         let is_simple = |gap: &Gap| multiple.iter().all(|own| own.hi <= gap.lo || gap.hi <= own.lo);
-        let all = roots(&own.simple, ends, place);
+        let all = roots(&critical.simple, ends, place);
         let of_part = |gap: Gap| Gap { parts: vec![(part, is_simple(&gap))], ..gap };
         Ok(all.into_iter().map(of_part).collect::<Vec<_>>())
     })?;
@@ -76,22 +76,22 @@ impl Gap {
 pub(super) fn united(mut gaps: Vec<Gap>) -> Vec<Gap> {
     gaps.sort_by(|a, b| a.lo.total_cmp(&b.lo).then(a.hi.total_cmp(&b.hi)));
     let mut all: Vec<Gap> = Vec::new();
-    for own in gaps {
+    for gap in gaps {
         match all.last_mut() {
-            Some(last) if own.lo < last.hi => {
+            Some(last) if gap.lo < last.hi => {
                 // A double found twice is still alone.
-                let exact = last.exact.take().filter(|x| own.exact.as_ref() == Some(x));
+                let exact = last.exact.take().filter(|x| gap.exact.as_ref() == Some(x));
                 let mut parts = std::mem::take(&mut last.parts);
-                for (part, is_simple) in own.parts {
+                for (part, is_simple) in gap.parts {
                     match parts.iter_mut().find(|known| known.0 == part) {
                         Some(known) => known.1 = false,
                         None => parts.push((part, is_simple)),
                     }
                 }
                 parts.sort_unstable();
-                *last = Gap { lo: last.lo, hi: last.hi.max(own.hi), exact, parts };
+                *last = Gap { lo: last.lo, hi: last.hi.max(gap.hi), exact, parts };
             }
-            _ => all.push(own),
+            _ => all.push(gap),
         }
     }
     all

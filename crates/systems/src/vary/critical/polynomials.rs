@@ -59,7 +59,7 @@ impl Residues {
             .filter_map(|field| {
                 Some(Residues { field, program: half.residues(&field)?, spaces: half.eigenspaces(&field) })
             })
-            .filter(|own| own.spaces.is_some() == half.is_symmetric())
+            .filter(|residues| residues.spaces.is_some() == half.is_symmetric())
     }
 }
 
@@ -69,8 +69,8 @@ pub(super) fn shape(half: &Half, limits: &Limits) -> Option<Shape> {
     // Any three places: one has the most distinct μ and none at an end that is not always there, if not all.
     let at = |k| Some(Own::new(half, &field, &half.at(&field, &program, field.of(k))?));
     let found = PLACES.into_iter().filter_map(at);
-    let own = found.max_by_key(|own| (own.kind.count, Reverse(own.kind.ends)))?;
-    Some(Shape::new(half, &own)).filter(|own| own.cost(half) <= MOST_WORK.min(limits.products as f64))
+    let own = found.max_by_key(|found| (found.kind.count, Reverse(found.kind.ends)))?;
+    Some(Shape::new(half, &own)).filter(|shape| shape.cost(half) <= MOST_WORK.min(limits.products as f64))
 }
 
 /// The polynomials in s, those without a root left out; `None` where the kind turns out to be another.
@@ -80,13 +80,13 @@ pub(super) fn shape(half: &Half, limits: &Limits) -> Option<Shape> {
 pub(super) fn critical(half: &Half, shape: &Shape) -> Result<Option<Vec<Critical>>> {
     let count = (shape.bits / 61.0) as usize + 1;
     let modulo: Vec<Residues> = Residues::of(half).take(count).collect();
-    let residues = try_map(&modulo, |own| Ok(shape.residues(half, own)))?;
+    let residues = try_map(&modulo, |residues| Ok(shape.residues(half, residues)))?;
     let Some(residues) = residues.into_iter().collect::<Option<Vec<_>>>() else { return Ok(None) };
     let mut found = Vec::new();
     for k in 0..shape.degrees.len() {
         let mut lift = Lift::new(shape.degrees[k] + 1);
-        for (Residues { field, .. }, own) in modulo.iter().zip(&residues) {
-            lift.join(field, &own[k]);
+        for (Residues { field, .. }, counts) in modulo.iter().zip(&residues) {
+            lift.join(field, &counts[k]);
         }
         let polynomial = lift.into_values();
         if polynomial.iter().all(Zero::is_zero) {
@@ -100,9 +100,9 @@ pub(super) fn critical(half: &Half, shape: &Shape) -> Result<Option<Vec<Critical
             let simple = squarefree(&common(a, b));
             vec![Critical { multiple: simple.clone(), simple }]
         }
-        all => all.iter().map(|own| Critical::new(own)).collect(),
+        all => all.iter().map(|integers| Critical::new(integers)).collect(),
     };
-    found.retain(|own| own.simple.len() > 1);
+    found.retain(|found| found.simple.len() > 1);
     Ok(Some(found))
 }
 
@@ -207,7 +207,7 @@ impl Shape {
                 own.off.iter().map(|&x| field.mul(power, x)).collect()
             };
             places.push(s);
-            values.iter_mut().zip(found).for_each(|(all, own)| all.push(own));
+            values.iter_mut().zip(found).for_each(|(all, count)| all.push(count));
             if places.len() == self.places {
                 break;
             }
@@ -216,10 +216,10 @@ impl Shape {
             return None;
         }
         let inverses: Vec<u64> = (0..=last).map(|k| field.invert(field.of(k.max(1)))).collect();
-        let own = values.into_iter().zip(&self.degrees).map(|(values, &degree)| {
+        let object = values.into_iter().zip(&self.degrees).map(|(values, &degree)| {
             interpolated(field, &places[..=degree], values[..=degree].to_vec(), &inverses)
         });
-        Some(own.collect())
+        Some(object.collect())
     }
 }
 
@@ -272,16 +272,16 @@ impl Own {
                 [false, false] => vec![value.clone()],
                 _ => [(ends[0], scale, c, b), (ends[1], 0, a, d)]
                     .into_iter()
-                    .filter(|own| own.0)
+                    .filter(|entries| entries.0)
                     .flat_map(|(_, by, left, right)| {
-                        let own = shifted(by);
-                        [times(left, &own), times(right, &own.transpose())]
+                        let matrix = shifted(by);
+                        [times(left, &matrix), times(right, &matrix.transpose())]
                     })
                     .collect(),
             };
             // Weights below 2^16, powers of two numbers modulo a prime: weights that are linear in the place are lost on [[1, -1], [-1, 1]].
             let mut weights = [1; 2];
-            for &x in matrices.iter().flat_map(|own| own.iter()) {
+            for &x in matrices.iter().flat_map(|matrix| matrix.iter()) {
                 is_semisimple &= x == 0;
                 for ((sum, weight), factor) in off.iter_mut().zip(&mut weights).zip([40_503, 30_011]) {
                     *weight = *weight * factor % 65_521;
@@ -297,14 +297,14 @@ impl Own {
     fn meeting(&self, half: &Half, field: &PrimeField, at: &At, spaces: Option<&Eigenspaces>) -> u64 {
         let Some(spaces) = spaces else { return discriminant(field, &self.g) };
         let end = field.sub(0, field.of_big(&half.scale()));
-        let own = spaces.blocks(field, &at.product).into_iter().map(|block| {
+        let object = spaces.blocks(field, &at.product).into_iter().map(|block| {
             let mut g = modular::squarefree(field, modular::characteristic(field, block));
             for root in [0, end] {
                 divide_out(field, &mut g, root);
             }
             if g.len() < 2 { field.of(1) } else { discriminant(field, &g) }
         });
-        own.fold(field.of(1), |product, x| field.mul(product, x))
+        object.fold(field.of(1), |product, x| field.mul(product, x))
     }
 }
 
@@ -378,9 +378,9 @@ mod tests {
         let of = |rows: &[u64]| DMatrix::from_row_slice(3, 3, rows).map(|x| field.of(x));
         let f = [10, field.value(field.sub(0, field.of(7))), 1].map(|c| field.of(c));
         for (rows, is_zero) in [([2, 0, 0, 0, 2, 0, 0, 0, 5], true), ([2, 1, 0, 0, 2, 0, 0, 0, 5], false)] {
-            let own = modular::squarefree(&field, modular::characteristic(&field, of(&rows)));
-            assert_eq!(own, f);
-            assert_eq!(evaluated(&field, &own, &of(&rows)).iter().all(|&x| x == 0), is_zero);
+            let counts = modular::squarefree(&field, modular::characteristic(&field, of(&rows)));
+            assert_eq!(counts, f);
+            assert_eq!(evaluated(&field, &counts, &of(&rows)).iter().all(|&x| x == 0), is_zero);
         }
     }
 }

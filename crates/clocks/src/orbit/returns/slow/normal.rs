@@ -223,8 +223,8 @@ impl Kind {
                 let bits = 256;
                 let whole = angle.div(&Ball::pi(bits).scale2(1), bits)?;
                 let whole = whole.lower().round().to_integer().to_i128()?;
-                let own = Ball::pi(bits).scale2(1).mul(&Ball::from_integer(&whole.into()), bits);
-                let rest = angle.sub(&own, bits).to_f64_enclosure().0;
+                let ball = Ball::pi(bits).scale2(1).mul(&Ball::from_integer(&whole.into()), bits);
+                let rest = angle.sub(&ball, bits).to_f64_enclosure().0;
                 Some(Turn { whole: whole + turns, angle: rest })
             }
             Kind::Hyperbolic => {
@@ -366,8 +366,8 @@ impl<T: Coefficient> Normal<T> {
         product.exponent = product.exponent.checked_add(self.exponent.checked_mul(n.try_into().ok()?)?)?;
         product.turn = self.turns.and_then(|turns| {
             let turns = turns.checked_mul(n.try_into().ok()?)?;
-            let own = self.kind.numbers(&sum.terms()[0])[1].ball().scale2(sum.exponent.try_into().ok()?);
-            self.kind.turn(&own, turns)
+            let ball = self.kind.numbers(&sum.terms()[0])[1].ball().scale2(sum.exponent.try_into().ok()?);
+            self.kind.turn(&ball, turns)
         });
         Some(if self.is_negative && n % 2 == 1 { product.negative() } else { product })
     }
