@@ -274,13 +274,13 @@ impl SparseSteps {
         let factors = |by: f64| self.pattern.factored(c + by, &[(a, values)], off);
         let rooms = std::iter::successors(Some(LEAST * size), |by| Some(16.0 * by))
             .take_while(|&by| by < 32.0 * size);
-        let (mut hi, mut factors) = rooms.into_iter().find_map(|by| Some((by, factors(by)?)))?;
+        let (mut hi, mut factored) = rooms.into_iter().find_map(|by| Some((by, factors(by)?)))?;
         let (begin, mut lo) = (start(self.size()), f64::MIN);
         let mut x = Mat::from_fn(self.size(), 1, |i, _| begin[i]);
         // Sums of n products each, of |x|ᵀ|f||x| ≤ ‖f‖.
         let rounding = 1.02 * (n + 8.0) * U;
         for _ in 0..MOST_ROUNDS {
-            x = factors.iterated(x, &self.rigid, ROUNDS)?;
+            x = factored.iterated(x, &self.rigid, ROUNDS)?;
             let (square, form) =
                 (x.squared_norm_l2(), (x.transpose() * self.pattern.times(values, &x))[(0, 0)]);
             let least = -(c * square + a * form) - 1.01 * square * (off + rounding * (size + c));
@@ -293,7 +293,7 @@ impl SparseSteps {
             let nearer =
                 if lo > 0.0 { [lo * (1.0 + SHARP / 2.0), (lo * hi).sqrt()] } else { [hi / 8.0, hi / 2.0] };
             if let Some((by, next)) = nearer.into_iter().find_map(|by| Some((by, factors(by)?))) {
-                (hi, factors) = (by, next);
+                (hi, factored) = (by, next);
             }
         }
         (lo > 0.0).then_some(Beyond { lo, hi, along: x })

@@ -91,7 +91,7 @@ fn blocks<'a, T>(
 pub(super) fn of_periods(advice: &Advice, title: &str) -> Figure {
     let lines = |answer: &Answer| {
         let modes = answer.rows.iter().map(|row| mode(advice, answer, row));
-        modes.chain(answer.pairs.iter().map(|pair| pair(advice, answer, pair))).collect()
+        modes.chain(answer.pairs.iter().map(|modes| pair(advice, answer, modes))).collect()
     };
     let of = |answer| (lines(answer), answer.status, &answer.safe);
     let ends = advice.schemes.iter().flat_map(|answer| &answer.rows).filter_map(|row| row.first.as_ref());

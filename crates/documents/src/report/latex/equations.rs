@@ -25,7 +25,7 @@ const LINE: f64 = 150.0;
 /// # Errors
 /// A term that no line holds.
 pub fn equations(all: &[Equation], input: &Map<String, Value>) -> Result<String> {
-    let lines: Vec<String> = all.iter().map(|equation| equation(equation, input)).collect::<Result<_>>()?;
+    let lines: Vec<String> = all.iter().map(|line| equation(line, input)).collect::<Result<_>>()?;
     Ok(format!(
         "% needs \\usepackage{{amsmath}}\n\\begingroup\\allowdisplaybreaks\n\\begin{{align}}\n{}\n\\end{{align}}\n\\endgroup\n",
         lines.join(" \\\\\n")

@@ -61,7 +61,7 @@ impl Body {
             Typeset { column: column.clone(), cells, is_cut }
         };
         Body {
-            columns: (0..).zip(table.columns()).map(|(i, column)| column(i, column)).collect(),
+            columns: (0..).zip(table.columns()).map(|(i, heading)| column(i, heading)).collect(),
             rows: table.rows().len(),
         }
     }

@@ -58,7 +58,7 @@ pub(super) fn entries(beside: &Beside, analysis: &Analysis) -> Vec<(&'static str
         ("moving", beside.labels.as_ref().map(moving)),
         ("nearest_unstable", beside.nearest.map(nearest::value)),
         ("local_steps", beside.local.map(local_steps)),
-        ("no_gradient", beside.no_gradient.map(|no_gradient| no_gradient(no_gradient, analysis))),
+        ("no_gradient", beside.no_gradient.map(|forces| no_gradient(forces, analysis))),
     ];
     all.into_iter().filter_map(|(key, value)| Some((key, value?))).collect()
 }

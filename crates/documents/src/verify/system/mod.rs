@@ -57,7 +57,7 @@ impl Recheck for Claim {
 
     fn check(&self, SystemAnswer { scene, found }: SystemAnswer, context: &Context) -> Result<Outcome> {
         match found {
-            Found::Verdict(verdict) => verdict(&scene, &verdict.analysis, verdict.local.as_ref(), context),
+            Found::Verdict(decided) => verdict(&scene, &decided.analysis, decided.local.as_ref(), context),
             Found::Map(map) => self.points(&scene, &map, context),
             Found::Intervals(_) => outcome(context, ALONE, Ok(())),
         }
