@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from kickdrift._document import Answer, answered
+from kickdrift._document import Table, answered
 from kickdrift._numbers import Exact, Range, optional_range, optional_text
 
 
-class Bands(Answer):
+class Bands(Table):
     """Sectors of steps in which every ratio h2/h1, rational or not, is proven unstable.
 
     Examples

@@ -6,14 +6,14 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from kickdrift import _plot
-from kickdrift._document import Answer, answered
+from kickdrift._document import Table, answered
 from kickdrift._numbers import Exact, Range, names_text, optional_range, optional_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-class Comparison(Answer):
+class Comparison(Table):
     """The trace verdict against the tan criterion and against resonance; its rows are the disagreements.
 
     Examples

@@ -34,7 +34,7 @@ ROUNDED = 1e-12
 #: Layers of bonds that a window must have at least to tell anything.
 _THIN = 4
 
-#: A mode in two windows is shown by the one that has so much of it.
+#: A mode in two windows is shown by a window that has so much of it.
 _MOST = 0.5
 
 #: Entries of the dense matrices that stand beside each other: some 100 MB.

@@ -81,7 +81,7 @@ class Asked(Frozen):
     files: Mapping[str, list[str]] = field(default_factory=dict)
 
     @cached_property
-    def _answer(self) -> _native.Answer:
+    def _answer(self) -> _native.Answer | _native.Tongues:
         return _native.ask(self.name, *self._given())
 
     def _given(self) -> tuple[dict[str, str | list[str]], int | None, str | dict[str, npt.NDArray[np.float64]]]:
@@ -169,8 +169,8 @@ class Table(Document, Sequence[Row]):
     (7, 4, True)
     """
 
-    _arguments: tuple[str, ...]
     _rows_are: str
+    _asked: Asked
 
     @cached_property
     def rows(self) -> tuple[Row, ...]:
@@ -227,7 +227,7 @@ class Table(Document, Sequence[Row]):
         >>> kd.half("1/1", s=1, rho=0).to_csv().splitlines()[0].split(",")[:2]
         ['entry', 'sign']
         """
-        return self._again("csv")
+        return self._asked.render("csv")
 
     def to_latex(self) -> str:
         """The rows as a LaTeX table.
@@ -238,10 +238,7 @@ class Table(Document, Sequence[Row]):
         >>> r"\\begin{tabular}" in kd.half("1/1", s=1, rho=0).to_latex()
         True
         """
-        return self._again("latex")
-
-    def _again(self, form: str) -> str:
-        return ask(self._arguments, form)
+        return self._asked.render("latex")
 
     def to_pandas(self) -> pandas.DataFrame:
         """The rows as a data frame; the parts of a field stand beside each other, as ``lower_lo`` and ``lower_hi``.
@@ -278,23 +275,13 @@ class Table(Document, Sequence[Row]):
         return f"<p>{title}</p><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>{more}"
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class Answer(Table):
-    """Rows that answer one question of the library; its other forms are written from the same answer."""
-
-    _asked: Asked
-
-    def _again(self, form: str) -> str:
-        return self._asked.render(form)
-
-
-_Kind = TypeVar("_Kind", bound=Answer)
+_Kind = TypeVar("_Kind", bound=Table)
 
 
 def answered(kind: type[_Kind], name: str, rows: str, budget: int | None = None, **fields: str | int | None) -> _Kind:
     """The answer to a question; fields that are None are not given."""
     asked = question(name, budget, **fields)
-    return kind(asked.render("json"), (), rows, asked)
+    return kind(asked.render("json"), rows, asked)
 
 
 def column(rows: Sequence[Row], name: str) -> npt.NDArray[Any]:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from kickdrift._document import Answer, answered
+from kickdrift._document import Table, answered
 from kickdrift._numbers import Exact, text
 
 
-class Half(Answer):
+class Half(Table):
     """The four entries of a half period.
 
     Examples

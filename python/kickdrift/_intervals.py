@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from kickdrift import _plot
-from kickdrift._document import Answer
+from kickdrift._document import Table
 from kickdrift._numbers import frozen
 
 if TYPE_CHECKING:
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Intervals(Answer):
+class Intervals(Table):
     """Stretches of the outer step, ``lo`` to ``hi``: ``stable``, ``unstable``, or ``the data do not tell``.
 
     Examples

@@ -255,7 +255,7 @@ class Followed(Frozen):
         return f"{begin}, {found.away:.2g} {self.length} away at most; about it {found.words}. Below: the minimum\n"
 
     def unsaid(self, notes: Sequence[str]) -> tuple[str, ...]:
-        """These notes, but for the one that sends to the orbit, where the sentence has it."""
+        """These notes without that which sends to the orbit, if the sentence tells of it."""
         return tuple(note for note in notes if self.found is None or SWINGS not in note)
 
 

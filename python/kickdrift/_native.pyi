@@ -12,6 +12,7 @@ __all__ = [
     "Page",
     "Pair",
     "Stop",
+    "Tongues",
     "answer",
     "ask",
     "decide",
@@ -24,6 +25,7 @@ __all__ = [
     "number",
     "palette",
     "recheck",
+    "tongues",
     "verdicts",
 ]
 
@@ -122,6 +124,11 @@ def answer(arguments: Sequence[str]) -> bytes: ...
 class Answer:
     def render(self, form: str) -> str: ...
 
+@final
+class Tongues:
+    def render(self, form: str) -> str: ...
+
+def tongues(fields: Mapping[str, str], columns: Sequence[str] | None) -> Tongues: ...
 def ask(
     name: str,
     fields: Mapping[str, str | list[str]],

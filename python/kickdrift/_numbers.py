@@ -259,7 +259,7 @@ def _decimal(value: Fraction) -> str:
 
 
 def simplest(value: float, ulps: Fraction | int = Fraction(1, 2)) -> Fraction:
-    """Return the simplest rational beside a positive double: the one that it most likely stands for.
+    """Return the simplest rational beside a positive double, for which it most likely stands.
 
     Parameters
     ----------

@@ -63,8 +63,8 @@ class _Sum:
 
 @dataclass(frozen=True, eq=False)
 class _Family:
-    """Orbits by a share, which at 1 are the one that is sought: the forces and steps at each, and what Newton's method
-    moves along, the columns of ``firm``."""
+    """Orbits by a share, at 1 the orbit that is sought: the forces and steps at each share. Newton's method moves along
+    the columns of ``firm``."""
 
     made: Callable[[float], tuple[Sequence[Force], Sequence[Fraction]]]
     held: Held
@@ -262,7 +262,7 @@ _ENDS = 1 / 4096
 #: So many orbits are looked for along a family at most.
 _MANY = 40
 
-#: Those on the way to the one that is sought are known to this part of the extent, a thousandth of what they move.
+#: Orbits on the way to it are known to this part of the extent, a thousandth of what they move.
 _BESIDE = 1e-6
 
 #: By such a change of the share that of the velocity is measured, to as small a part: Newton's method mends that.

@@ -70,7 +70,7 @@ def recheck(
     budget: int | None = None,
     folder: str | PathLike[str] | None = None,
 ) -> Recheck:
-    """Find every claim of a document again by another route than the one that made it.
+    """Find every claim of a document again by a route that did not make it.
 
     Parameters
     ----------

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from kickdrift import _plot
-from kickdrift._document import Answer, answered, frame
+from kickdrift._document import Table, answered, frame
 from kickdrift._numbers import Exact, Range, frozen, range_text, text
 
 if TYPE_CHECKING:
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-class Curves(Answer):
+class Curves(Table):
     """The resonance curves 1/T½ = a/h1 + b/h2, sampled.
 
     Examples
@@ -113,7 +113,7 @@ def curves(
     )
 
 
-class Proposition(Answer):
+class Proposition(Table):
     """The paper's Proposition checked: a witness (a, b) for each resonant point (p, q, m).
 
     Examples

@@ -242,7 +242,7 @@ class System(HessianSystem):
         over = f"outer={range_text('outer', outer)}"
         asked = question("system", budget, intervals=over, width=resolution, accuracy=accuracy, method=method)
         asked = self._about(asked)
-        return Intervals(asked.render("json"), (), "stretches", asked)
+        return Intervals(asked.render("json"), "stretches", asked)
 
     def advise(
         self,

@@ -74,7 +74,7 @@ class HessianSystem(SystemFile):
         periodic : bool
             The particles are in a periodic box: three translations are rigid, and no rotation.
         keep_rigid : bool
-            Project no rigid motions out: there are none, as of atoms among others that stand still.
+            Project no rigid motions out: there are none, as for atoms among others that stand still.
         symmetric : bool
             False: a force is no gradient, as one that is learned and predicted directly, so that asymmetry is no error.
             Rigid motions are projected out by positions alone then.

@@ -2,18 +2,35 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 import numpy.typing as npt
 
-from kickdrift import _plot
-from kickdrift._document import Answer, Table, answered, ask, given
-from kickdrift._numbers import Exact, Labels, Range, labels_text, names_text, optional_range, optional_text
+from kickdrift import _native, _plot
+from kickdrift._document import Asked, Table, answered, ask, given
+from kickdrift._numbers import Exact, Labels, Range, labels_text, names_text, optional_range, optional_text, written
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class _AskedTongues(Asked):
+    """A question about tongues, which are found once."""
+
+    columns: Sequence[str] | None = None
+
+    @cached_property
+    def _answer(self) -> _native.Tongues:
+        return _native.tongues({name: written(name, text) for name, text in self.fields.items()}, self.columns)
+
+    def svg(self) -> str:
+        fields = {name: str(text) for name, text in self.fields.items() if name != "digits"}
+        return ask(["tongues", *given(**fields)], "svg")
 
 
 class Tongues(Table):
@@ -63,8 +80,7 @@ class Tongues(Table):
         >>> found.to_svg().startswith("<svg")
         True
         """
-        skipped = ("--digits", "--columns")
-        return ask([part for part in self._arguments if not part.startswith(skipped)], "svg")
+        return self._asked.svg()
 
     def _repr_svg_(self) -> str | None:
         asked = self.data["input"]
@@ -121,24 +137,26 @@ def tongues(
     >>> tongue["lower"]["entry"], tongue["closed"]
     ('C', False)
     """
-    arguments = ["tongues"] + given(
-        ratio=optional_text("ratio", ratio),
-        max_sum=max_sum,
-        rho=optional_text("rho", rho),
-        lambda1=optional_text("lambda1", lambda1),
-        lambda2=optional_text("lambda2", lambda2),
-        h1_range=optional_range("h1", h1),
-        h2_range=optional_range("h2", h2),
-        m=None if m is None else labels_text(m),
-        a=a,
-        b=b,
-        digits=digits,
-        columns=None if columns is None else names_text("columns", columns, "name them, as ['edges']"),
-    )
-    return Tongues(ask(arguments), tuple(arguments), "tongues")
+    texts = {
+        "ratio": optional_text("ratio", ratio),
+        "max_sum": None if max_sum is None else written("max_sum", max_sum),
+        "rho": optional_text("rho", rho),
+        "lambda1": optional_text("lambda1", lambda1),
+        "lambda2": optional_text("lambda2", lambda2),
+        "h1_range": optional_range("h1", h1),
+        "h2_range": optional_range("h2", h2),
+        "m": None if m is None else labels_text(m),
+        "a": a,
+        "b": b,
+        "digits": None if digits is None else written("digits", digits),
+    }
+    names = None if columns is None else names_text("columns", columns, "name them, as ['edges']").split(",")
+    fields = {name: text for name, text in texts.items() if text is not None}
+    asked = _AskedTongues("tongues", fields, columns=names and [name.strip() for name in names])
+    return Tongues(asked.render("json"), "tongues", asked)
 
 
-class Closings(Answer):
+class Closings(Table):
     """Where tongues close: pairs (s, rho) at which a resonance does not destabilize.
 
     Examples

@@ -351,8 +351,8 @@ def verdicts(
     threads : int, optional
         One a core unless given.
     progress : bool or callable
-        A bar on standard error, in a log four lines; or what is called ten times a second with the pairs decided and
-        those in all: what it raises ends the work.
+        A bar on standard error, in a log four lines; or a callback with the pairs decided and all pairs, ten times a
+        second. An exception in it stops the work.
 
     Raises
     ------

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from kickdrift._document import Answer, answered
+from kickdrift._document import Table, answered
 from kickdrift._numbers import Exact, Range, optional_range, optional_text
 
 
-class Word(Answer):
+class Word(Table):
     """An integrator as its author writes it: its stable and unstable intervals, and all that is known of it.
 
     Examples
@@ -18,7 +18,7 @@ class Word(Answer):
     """
 
 
-class Methods(Answer):
+class Methods(Table):
     """The catalogue of integrators.
 
     Examples

@@ -89,7 +89,7 @@ def system(
     Returns
     -------
     System
-        In the input's units; ``accuracy`` and ``notes`` as of :func:`kickdrift.ase.system`.
+        In the input's units; ``accuracy`` and ``notes`` as in :func:`kickdrift.ase.system`.
 
     Raises
     ------
@@ -345,7 +345,7 @@ class _Levels:
         """The sum of all levels from this one on: with them in one, the outermost's.
 
         Not a number where LAMMPS has none: outside of fixed walls, where it would lose atoms for good, and where it
-        refuses, as of a bond that is torn.
+        refuses, as for a bond that is torn.
         """
         lo, hi = (np.array(corner) for corner in self.lmp.extract_box()[:2])
         fixed = np.array([[side == "f" for side in sides] for sides in self.sides]).T

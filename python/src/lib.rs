@@ -13,6 +13,7 @@ mod pair;
 mod pairs;
 mod palette;
 mod program;
+mod tongues;
 
 /// The native half of the package `kickdrift`.
 #[pyo3::pymodule]
@@ -33,4 +34,6 @@ mod _native {
     use crate::palette::palette;
     #[pymodule_export]
     use crate::program::{Answer, answer, ask, draw, main, recheck};
+    #[pymodule_export]
+    use crate::tongues::{Tongues, tongues};
 }

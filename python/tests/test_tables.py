@@ -292,6 +292,7 @@ WRITTEN: dict[str, tuple[Callable[[], Any], tuple[str, ...]]] = {
     "intervals": (lambda: chain().intervals(("1/20", "1/10")), ("to_json", "to_csv", "to_latex")),
     "map": (lambda: kd.map(**GRID, label=True, growth=True), ("to_json", "to_csv", "to_svg")),
     "plain map": (lambda: kd.map(**GRID), ("to_json", "to_csv", "to_svg")),
+    "tongues": (lambda: kd.tongues("5/3", rho="1/25"), ("to_json", "to_csv", "to_latex")),
     "run": (lambda: kd.simulate(chain(), periods=3, displace="1/100"), ("to_json",)),
     "verdict": (lambda: kd.decide(lambda1=1, lambda2=0, h1=1, h2=1), ("to_json", "to_csv", "to_latex")),
     "verdict on a system": (lambda: chain().decide(), ("to_json", "__str__")),
@@ -306,6 +307,6 @@ def chain() -> kd.System:
 def test_what_is_written_is_not_computed_again(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     ask, forms = WRITTEN[name]
     result = ask()
-    for function in ("answer", "ask", "decide", "map", "verdicts"):
+    for function in ("answer", "ask", "decide", "map", "tongues", "verdicts"):
         monkeypatch.setattr(_native, function, None)
     assert all(getattr(result, form)() for form in forms)
