@@ -64,16 +64,16 @@ impl Masked {
 /// Frictions from 2^-4 to 2^20 a period are looked at.
 const OCTAVES: std::ops::Range<i32> = -4..20;
 
-/// Ranges that are tried for a proof of one.
-const MOST: usize = 300;
+/// The width of a cell that is not halved, relative to all of them.
+const MIN_CELL: f64 = 1.0 / (1_u64 << 46) as f64;
 
 /// What is known of frictions.
 pub struct Search<'a> {
     pub period: f64,
     /// Where the spectral radius is proven to lie.
     pub side: &'a dyn Fn(f64) -> Option<Damping>,
-    /// Whether all frictions of a range are proven to mask.
-    pub masks: &'a dyn Fn(f64, f64) -> bool,
+    /// Up to where all frictions from one on are proven to mask, where that is asked for.
+    pub up: Option<&'a dyn Fn(f64) -> f64>,
     /// Frictions that are looked at between one and its double.
     pub per_octave: i32,
     /// The relative width to which the least is bisected.
@@ -102,7 +102,10 @@ impl Search<'_> {
                 if ranges.is_empty() {
                     least = below;
                 }
-                ranges.push((first, self.up(first)));
+                ranges.push(from_edge(first, |from| self.up.map_or(from, |up| up(from))));
+                if self.up.is_none() {
+                    break;
+                }
             }
             if side == Some(Damping::Growing) {
                 last = at;
@@ -125,26 +128,36 @@ impl Search<'_> {
         }
         (lo, hi)
     }
+}
 
-    /// Up to where all frictions from this one on are proven to mask.
-    pub fn up(&self, from: f64) -> f64 {
-        let (mut at, mut part) = (from, 1e-3);
-        for _ in 0..MOST {
-            if part > 0.25 && (self.masks)(at, f64::INFINITY) {
-                return f64::INFINITY;
-            }
-            let next = at * (1.0 + part);
-            if next > at && (self.masks)(at, next) {
-                at = next;
-                part = (2.0 * part).min(16.0);
-            } else {
-                part /= 4.0;
-                // Bounds shrink with the distance from the edge: far narrower ranges than what is proven may still be proven.
-                if part < 1e-6 * (at / from - 1.0).max(1e-7) {
-                    break;
-                }
-            }
+/// The range that is proven from a friction that masks, or from just above it: beside an edge bounds may be as
+/// wide as the way to it.
+pub(crate) fn from_edge(first: f64, up: impl Fn(f64) -> f64) -> (f64, f64) {
+    let reach = |part: f64| (part * first, up(part * first));
+    let found = [1.0, 1.001, 1.003, 1.01].into_iter().map(reach).find(|(lo, hi)| lo < hi);
+    found.unwrap_or((first, first))
+}
+
+/// The least share down to which all shares from 1 on are proven, cell by cell: `halve` gives the halves of a
+/// cell that is not, and knows its ends.
+pub(crate) fn proven_down<C>(
+    whole: C,
+    mut halvings: usize,
+    halve: impl Fn(C, f64, f64) -> Option<[C; 2]>,
+) -> f64 {
+    let (mut open, mut least) = (vec![(whole, 0.0, 1.0)], 1.0);
+    while let Some((cell, lo, hi)) = open.pop() {
+        let Some([lower, upper]) = halve(cell, lo, hi) else {
+            least = lo;
+            continue;
+        };
+        if hi - lo <= MIN_CELL || halvings == 0 {
+            break;
         }
-        at
+        halvings -= 1;
+        let middle = lo + (hi - lo) / 2.0;
+        open.push((lower, lo, middle));
+        open.push((upper, middle, hi));
     }
+    least
 }

@@ -1,10 +1,12 @@
 //! Many degrees of freedom with friction: the eigenvalues of the whole period in doubles, within proven discs.
 
+use super::cells::Cells;
 use super::damping::Damping;
+use super::fixed::Fixed;
 use super::masking::{Mask, Search};
 use super::polynomial::Polynomials;
+use super::powers::Powers;
 use super::radius::{Radius, damping};
-use super::range::Ranged;
 use super::tie::is_tie;
 use crate::ManyClocks;
 use crate::half::compose::{Kick, connected_parts};
@@ -150,10 +152,11 @@ pub fn damped_oscillator<S: Real>(
     Ok(Friction { rate: rate.clone(), damping, growth: growth.map(per_time), masking })
 }
 
-/// Within 2^-100 of a number, so that its rounding to a double is all that counts.
+/// Within 2^-200 of a number, relative to it: so that its rounding to a double is all that counts, and bounds
+/// on long periods hold.
 fn near(x: &impl Real) -> Rational {
     let balls = (7..20).map(|log2| x.enclosure(1 << log2));
-    let found = balls.into_iter().find(|ball| ball.relative_accuracy_bits() > 100);
+    let found = balls.into_iter().find(|ball| ball.relative_accuracy_bits() > 200);
     found.map_or_else(Rational::default, |ball| ball.lower())
 }
 
@@ -198,26 +201,22 @@ type At = (Option<Damping>, Option<(f64, f64)>);
 /// A part with friction.
 struct Damped<'a> {
     part: &'a System,
-    /// For ranges of frictions, where these are not too costly.
-    ranged: Option<Ranged>,
     period: f64,
 }
 
 impl<'a> Damped<'a> {
     fn new(part: &'a System) -> Damped<'a> {
-        Damped { part, ranged: Ranged::new(part), period: to_f64(&part.period()) }
+        Damped { part, period: to_f64(&part.period()) }
     }
 
     /// Where ρ lies, and ln ρ/T.
     fn at(&self, rate: &Rational) -> At {
-        let one = self.ranged.as_ref().filter(|_| self.part.size() == 1);
-        if let Some(found @ (Some(_), _)) =
-            one.map(|own| (own.damping(rate, Some(rate)), self.rate_of_one(own, rate)))
-        {
-            return found;
+        let one = (self.part.size() == 1).then(|| Fixed::new(self.part, rate)).flatten();
+        if let Some((damping @ Some(_), own)) = one.map(|own| (own.damping(), own)) {
+            return (damping, self.rate_of_one(&own));
         }
         let frame = Frame::whole(self.part.size());
-        let (program, _) = scaled_program(self.part, &frame);
+        let (program, scales) = scaled_program(self.part, &frame);
         // Entries within one rounding of the true ones are in the bound of [`follow`].
         let stiff =
             |kick: &Kick<f64>| Stiff { stiffness: Stiffness::Rows(kick.rows.clone()), off: 0.0, known: 0.0 };
@@ -228,8 +227,8 @@ impl<'a> Damped<'a> {
         let (q, error) = match q.error {
             Some(error) => (q.matrix(), error),
             // Where velocities have all but stopped.
-            None => match self.ranged.as_ref().and_then(|own| own.around(rate, Some(rate))) {
-                Some(own) => (own.q, own.error),
+            None => match Fixed::new(self.part, rate) {
+                Some(own) => own.rounded(&scales),
                 None => return (None, None),
             },
         };
@@ -237,9 +236,8 @@ impl<'a> Damped<'a> {
         (damping(&q, error, radius), radius.map(|own| own.growth(self.period)))
     }
 
-    fn rate_of_one(&self, own: &Ranged, rate: &Rational) -> Option<(f64, f64)> {
-        let ln = own.around(rate, Some(rate))?.ln_radius()?;
-        Some(ln.div(&Ball::from_rational(&self.part.period(), 64), 64)?.to_f64_enclosure())
+    fn rate_of_one(&self, own: &Fixed) -> Option<(f64, f64)> {
+        Some(own.ln_radius()?.div(&Ball::from_rational(&self.part.period(), 64), 64)?.to_f64_enclosure())
     }
 
     /// The frictions that mask what grows in a part, which ticks with all clocks of the whole.
@@ -258,19 +256,17 @@ impl<'a> Damped<'a> {
             },
             _ => return Ok(Mask::NotNeeded),
         };
-        if let Some(found) = Polynomials::new(self.part).and_then(|own| own.above(grows)) {
+        let powers = Powers::new(self.part);
+        if let Some(found) = powers.as_ref().and_then(Polynomials::new).and_then(|own| own.above(grows)) {
             return Ok(found);
         }
-        let end = |rate: f64| rate.is_finite().then(|| exact(rate));
-        let masks = |lo: f64, hi: f64| {
-            let own = self.ranged.as_ref();
-            own.is_some_and(|own| own.damping(&exact(lo), end(hi).as_ref()) == Some(Damping::Damped))
-        };
+        let cells = powers.map(|own| Cells::new(own, self.part));
+        let up = cells.as_ref().map(|own| |from: f64| own.up(from));
         let search = Search {
             period: self.period,
             side: &side,
-            masks: &masks,
-            per_octave: if self.part.size() <= FEW && self.ranged.is_some() { 4 } else { 1 },
+            up: up.as_ref().map(|up| up as &dyn Fn(f64) -> f64),
+            per_octave: if self.part.size() <= FEW { 4 } else { 1 },
             width: NEAR_EDGE,
         };
         Ok(search.above(grows))

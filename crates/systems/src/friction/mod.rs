@@ -18,9 +18,11 @@
 //! |---|---|
 //! | `matrices` | periods in doubles with a proven bound (two levels of measured stiffnesses: [`Kernel::friction`](crate::levels::Kernel::friction)) |
 //! | `radius` | where the spectral radius of a matrix lies that is known within an error |
-//! | `range` | a period for all frictions of a range at once |
+//! | `fixed` | the period at one friction in balls: one oscillator's, and where velocities all but stop |
 //! | `masking` | the frictions that mask: looked for by values, proven range by range |
-//! | `polynomial` | all of one oscillator's at once: polynomials in c between two signs |
+//! | `powers` | the period as a polynomial in c = exp(−γ t) |
+//! | `polynomial` | all frictions of one oscillator at once: polynomials in c between two signs |
+//! | `cells` | those of more degrees of freedom: forms that all periods of a cell of c shrink |
 //! | `tie` | one oscillator whose spectral radius is 1 at every friction, exactly |
 //!
 //! ```
@@ -39,16 +41,18 @@
 //! assert_eq!(with(2.0 * mask.least()).damping, Some(Damping::Damped));
 //! ```
 
+mod cells;
 mod damping;
+mod fixed;
 mod masking;
 mod matrices;
 mod polynomial;
+mod powers;
 mod radius;
-mod range;
 mod tie;
 
 pub use damping::Damping;
-pub use masking::Search;
 pub use masking::{Mask, Masked};
+pub(crate) use masking::{from_edge, proven_down};
 pub use matrices::{Friction, allow_pair, damped_oscillator, damped_pair, damped_system};
-pub(crate) use radius::{Radius, damping};
+pub(crate) use radius::{Radius, damping, shrink_one_form};

@@ -1,11 +1,12 @@
 //! Spectral radii of matrices that are known within an error.
 
-use faer::Mat;
+use faer::linalg::solvers::DenseSolveCore;
+use faer::{Mat, Scale};
 
 use super::damping::Damping;
 use crate::half::norm;
 use crate::signs::inertia::is_definite;
-use crate::spectrum::discs::{components, residual};
+use crate::spectrum::discs::{components, real_form, residual};
 use number::U;
 
 /// Where the spectral radius of all matrices within `error` (2-norm) of q lies: by its enclosure, or, near double eigenvalues where that is
@@ -15,9 +16,39 @@ pub fn damping(q: &Mat<f64>, error: f64, radius: Option<Radius>) -> Option<Dampi
     by_radius.or_else(|| shrinks_a_form(q, error).then_some(Damping::Damped))
 }
 
-/// Whether P − Qᵀ P Q > 0 for some P > 0 and all Q within `error` (2-norm) of q, so that their spectral radius is below 1 (Stein): tried with
-/// P = Σ (qᵏ)ᵀ qᵏ, in doubles, for which it would be the identity less what the sum leaves out.
+/// Whether P − Qᵀ P Q > 0 for some P > 0 and all Q within `error` (2-norm) of q, so that their spectral
+/// radius is below 1 (Stein).
 fn shrinks_a_form(q: &Mat<f64>, error: f64) -> bool {
+    let form = of_powers(q);
+    is_definite(form.clone(), 0.0) && shrinks(&form, q, error)
+}
+
+/// As for each of many q with one P, so for all of their means, since norms are convex: tried with the
+/// eigenvectors of one in their middle, and with its powers, which do not mind where eigenvalues meet.
+pub(crate) fn shrink_one_form(middle: &Mat<f64>, all: &[Mat<f64>], error: f64) -> bool {
+    let Ok(eigen) = middle.eigen() else { return false };
+    let values: Vec<_> = (0..middle.nrows()).map(|i| eigen.S()[i]).collect();
+    let radius = values.iter().map(|z| z.norm()).fold(0.0, f64::max);
+    if radius.is_nan() || radius >= 1.0 {
+        return false;
+    }
+    let is_shrunk =
+        |form: &Mat<f64>| is_definite(form.clone(), 0.0) && all.iter().all(|q| shrinks(form, q, error));
+    let by_vectors = real_form(&values, &eigen.U().to_owned()).map(|(vectors, _)| {
+        let inverse = vectors.partial_piv_lu().inverse();
+        symmetric(&(inverse.transpose() * &inverse))
+    });
+    // Half way to the circle, so that no power lasts.
+    let nearer = Scale(2.0 / (1.0 + radius)) * middle;
+    by_vectors.is_some_and(|form| is_shrunk(&form)) || is_shrunk(&of_powers(&nearer))
+}
+
+fn symmetric(x: &Mat<f64>) -> Mat<f64> {
+    Mat::from_fn(x.nrows(), x.ncols(), |i, j| (x[(i, j)] + x[(j, i)]) / 2.0)
+}
+
+/// P = Σ (qᵏ)ᵀ qᵏ in doubles, for which P − qᵀ P q would be the identity less what the sum leaves out.
+fn of_powers(q: &Mat<f64>) -> Mat<f64> {
     const DOUBLINGS: usize = 48;
     let n = q.nrows();
     let (mut power, mut p) = (q.clone(), Mat::<f64>::identity(n, n));
@@ -29,13 +60,16 @@ fn shrinks_a_form(q: &Mat<f64>, error: f64) -> bool {
         p = &p + power.transpose() * &p * &power;
         power = &power * &power;
     }
-    let symmetric = |x: &Mat<f64>| Mat::from_fn(n, n, |i, j| (x[(i, j)] + x[(j, i)]) / 2.0);
-    let p = symmetric(&p);
-    let (size_q, size_p) = (norm::frobenius(q), norm::frobenius(&p));
-    let rounding = 1.1 * U * ((2 * n + 8) as f64 * size_q * size_q + 4.0) * size_p;
+    symmetric(&p)
+}
+
+/// Whether P − Qᵀ P Q > 0 for all Q within `error` of q.
+fn shrinks(p: &Mat<f64>, q: &Mat<f64>, error: f64) -> bool {
+    let (size_q, size_p) = (norm::frobenius(q), norm::frobenius(p));
+    let rounding = 1.1 * U * ((2 * q.nrows() + 8) as f64 * size_q * size_q + 4.0) * size_p;
     let slack = 1.01 * (rounding + error * (2.0 * size_q + error) * size_p);
-    let rest = symmetric(&(&p - q.transpose() * &p * q));
-    slack.is_finite() && is_definite(rest, slack) && is_definite(p, 0.0)
+    let rest = symmetric(&(p - q.transpose() * p * q));
+    slack.is_finite() && is_definite(rest, slack)
 }
 
 /// An enclosure of a spectral radius.

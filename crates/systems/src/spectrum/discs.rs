@@ -263,7 +263,7 @@ pub(crate) fn from_segment(z: c64) -> f64 {
 
 /// Eigenvectors as real columns, Re v and Im v for a conjugate pair, and the real normal D with S V ≈ V D: the
 /// numbers themselves and the blocks ((a, b), (−b, a)).
-fn real_form(mu: &[c64], v: &Mat<c64>) -> Option<(Mat<f64>, Mat<f64>)> {
+pub(crate) fn real_form(mu: &[c64], v: &Mat<c64>) -> Option<(Mat<f64>, Mat<f64>)> {
     let m = mu.len();
     let (mut real, mut d) = (Mat::<f64>::zeros(m, m), Mat::<f64>::zeros(m, m));
     let mut k = 0;
