@@ -207,7 +207,7 @@ fn friction_masks_a_resonance_from_where_it_is_told() {
     assert_eq!([at(0.999 * lo), at(1.001 * hi)], [Some(false), Some(true)]);
 }
 
-/// Periods of 1 and 1.0733 ps with steps of 310 and 2,480 fs are damped at 0.0393 to 0.066/ps, and at no larger friction.
+/// Periods of 1 and 1.0733 ps with steps of 310 and 2,480 fs are damped at 1.484 to 1.767/ps, and at no larger friction.
 #[test]
 fn a_friction_beyond_those_that_mask_is_not_said_to() {
     let modes = ["bead=1ps", "slow=1.0733ps"].map(|text| Mode::from_period(text).unwrap()).to_vec();
