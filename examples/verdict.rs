@@ -31,7 +31,8 @@ fn main() -> Result<()> {
         }
     }
 
-    // Numbers of any kind serve as well; what does not fit is refused with the field, the value and the remedy.
+    // Numbers of any kind serve as well; what does not fit is refused with the field, the value and the
+    // remedy.
     let error = Oscillator::builder().lambda1(1).lambda2(2).h1("0").h2(1).build().unwrap_err();
     println!("{error}");
     Ok(())

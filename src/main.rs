@@ -2,8 +2,8 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Whether standard output was closed when the process began. Rust's runtime opens the null device in its place, where what is written is lost
-/// without an error, so this is asked before it.
+/// Whether standard output was closed when the process began. Rust's runtime opens the null device in its
+/// place, where what is written is lost without an error, so this is asked before it.
 static IS_STDOUT_CLOSED: AtomicBool = AtomicBool::new(false);
 
 #[cfg(any(target_os = "linux", target_os = "macos"))]
@@ -12,7 +12,8 @@ extern "C" fn look_at_stdout() {
         fn fcntl(descriptor: i32, command: i32, ...) -> i32;
     }
     const F_GETFD: i32 = 1;
-    // SAFETY: this command reads the flags of a descriptor and takes no argument; of one that is closed it fails.
+    // SAFETY: this command reads the flags of a descriptor and takes no argument; of one that is closed it
+    // fails.
     IS_STDOUT_CLOSED.store(unsafe { fcntl(1, F_GETFD) } == -1, Ordering::Relaxed);
 }
 

@@ -1,4 +1,5 @@
-//! Hessians along an orbit, each known to an accuracy: what is proven of all within it, against exact arithmetic on some of these.
+//! Hessians along an orbit, each known to an accuracy: what is proven of all within it, against exact
+//! arithmetic on some of these.
 
 use std::ops::AddAssign;
 
@@ -44,7 +45,8 @@ fn strikes(steps: &[Rational]) -> Vec<usize> {
     (0..steps.len()).map(of).collect()
 }
 
-/// ln |λ| of the fastest over half a period's kicks and the same backwards, by dense products: no symplectic structure is used.
+/// ln |λ| of the fastest over half a period's kicks and the same backwards, by dense products: no symplectic
+/// structure is used.
 fn growth(masses: &[f64], steps: &[Rational], kicks: &[Vec<DMatrix<f64>>]) -> f64 {
     let n = masses.len();
     let schedule = Schedule::new(steps, &vec![ratio(0, 1); steps.len()]).unwrap();
@@ -262,7 +264,8 @@ fn what_does_not_fit_is_named() {
     assert!(own.free_of(&[columns(2, 1), columns(2, 1)]).is_ok());
 }
 
-/// One triangle of a matrix is no Hessian along an orbit, and neither is what is off by more than the accuracy.
+/// One triangle of a matrix is no Hessian along an orbit, and neither is what is off by more than the
+/// accuracy.
 #[test]
 fn hessians_along_an_orbit_that_are_not_symmetric_are_refused_by_their_entry() {
     use kickdrift::scene::{Array, Arrays, SystemScene};

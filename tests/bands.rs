@@ -50,8 +50,8 @@ fn shares() -> impl FnMut() -> f64 {
     }
 }
 
-/// Thousands of pairs at random places of sectors of all sizes, with periods up to some thousands of kicks: every one is unstable, in the
-/// tongue that the sector names.
+/// Thousands of pairs at random places of sectors of all sizes, with periods up to some thousands of kicks:
+/// every one is unstable, in the tongue that the sector names.
 fn all_pairs_are_unstable(window: &Window, bands: &Bands, pairs: usize) {
     let mut share = shares();
     let count = bands.certified.len();
@@ -93,7 +93,8 @@ fn strong_kicks_and_equal_stiffnesses() {
 
 #[test]
 fn windows_of_any_size_and_unit() {
-    // The same window in seconds, in a unit with more digits than a double holds exactly, and a small one about h1 = 0.249, h2 = 0.94.
+    // The same window in seconds, in a unit with more digits than a double holds exactly, and a small one
+    // about h1 = 0.249, h2 = 0.94.
     let windows = [
         (["10^28*pi^2", "10^28*pi^2/25"], ["1/5*10^-14..1/4*10^-14", "9/10*10^-14..10^-14"]),
         (["10^58*pi^2", "10^58*pi^2/25"], ["1/5*10^-29..1/4*10^-29", "9/10*10^-29..10^-29"]),
@@ -181,7 +182,8 @@ fn sectors_are_proven_lie_in_the_window_and_do_not_overlap() {
             assert!(!window.proves(&wrong), "{sector:?}");
         }
     }
-    // A part of a range may have the steps of Euclid's algorithm for its ends where the whole has none: nearly all are proven again.
+    // A part of a range may have the steps of Euclid's algorithm for its ends where the whole has none:
+    // nearly all are proven again.
     assert!(100 * proven >= 98 * bands.certified.len(), "{proven} of {}", bands.certified.len());
     let (lo, hi) = bands.area();
     assert!(lo <= area * (1.0 + 1e-9) && area <= hi * (1.0 + 1e-9));

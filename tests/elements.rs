@@ -32,8 +32,8 @@ impl Numbers {
     }
 }
 
-/// The largest |λ| of a period that begins and ends between kicks of all: `kicks` has how much of the whole step each force takes a substep, how many
-/// ticks lie between its kicks, and M⁻¹ times it.
+/// The largest |λ| of a period that begins and ends between kicks of all: `kicks` has how much of the whole
+/// step each force takes a substep, how many ticks lie between its kicks, and M⁻¹ times it.
 fn radius(kicks: &[(f64, u32, DMatrix<f64>)], ticks: u32, dt: f64) -> f64 {
     let n = kicks[0].2.nrows();
     let mut q = DMatrix::<f64>::identity(2 * n, 2 * n);
@@ -54,13 +54,14 @@ fn radius(kicks: &[(f64, u32, DMatrix<f64>)], ticks: u32, dt: f64) -> f64 {
 const STILL: f64 = 1e-9;
 const GROWING: f64 = 1e-5;
 
-/// Whether a radius is that of a stable period; `None` where doubles do not tell, as at an edge, where growth is linear.
+/// Whether a radius is that of a stable period; `None` where doubles do not tell, as at an edge, where growth
+/// is linear.
 fn told(radius: f64) -> Option<bool> {
     (!(1.0 + STILL..=1.0 + GROWING).contains(&radius)).then_some(radius < 1.0 + STILL)
 }
 
-/// What a verdict and a run both say of stability; `None` where the run does not tell. Exactly at an edge doubles see a radius of 1, give or take
-/// the root of their rounding.
+/// What a verdict and a run both say of stability; `None` where the run does not tell. Exactly at an edge
+/// doubles see a radius of 1, give or take the root of their rounding.
 fn agreed(found: &Analysis, radius: f64, what: &str) -> Option<bool> {
     if found.kind == Some(Kind::Parabolic) {
         assert!(radius < 1.0 + GROWING, "{radius}");

@@ -1,4 +1,5 @@
-//! What simulation engines write about their steps: read as they read it, rewritten, and read again; damaged texts are refused in one line.
+//! What simulation engines write about their steps: read as they read it, rewritten, and read again; damaged
+//! texts are refused in one line.
 
 use kickdrift::advise::engine::{Engine, Reading, not_nested, read};
 use kickdrift::advise::unit::TimeUnit;
@@ -104,7 +105,8 @@ const MTS: &str = concat!(
     "<Computation computationExpression=\"\" computationType=\"4\" computationVariable=\"\"/></Computations><Functions/></Integrator>",
 );
 
-/// Two steps of a learned potential as LAMMPS with metatomic takes them: direct forces often, what corrects them every eighth time.
+/// Two steps of a learned potential as LAMMPS with metatomic takes them: direct forces often, what corrects
+/// them every eighth time.
 const METATOMIC: &str = "units metal
 pair_style hybrid/overlay &
   metatomic_1 model.pt device cpu non_conservative on scale 1.0 &
@@ -152,7 +154,8 @@ fn forces_that_are_predicted_directly_are_named() {
     assert_eq!(of(text).unwrap().forces, ["inner", "pair 1", "outer, pair 2"]);
 }
 
-/// `MTSLangevinIntegrator(300*kelvin, 1/picosecond, 4*femtoseconds, [(0,1),(1,2)])`; a and b belong to the innermost step.
+/// `MTSLangevinIntegrator(300*kelvin, 1/picosecond, 4*femtoseconds, [(0,1),(1,2)])`; a and b belong to the
+/// innermost step.
 const LANGEVIN: &str = concat!(
     "<Integrator stepSize=\".004\" type=\"CustomIntegrator\" version=\"3\"><GlobalVariables><Variable name=\"a\" value=\".9980019986673331\"/>",
     "</GlobalVariables><Computations>\n<Computation computationExpression=\"v+0.5*(dt/1)*f0/m\" computationVariable=\"v\"/>\n",
@@ -396,7 +399,8 @@ fn what_an_engine_wants_to_be_multiples_of_the_factor_is_rewritten_with_it() {
     let expected =
         text.replace("= 2\n", "= 3\n").replace("= 10 ", "= 12 ").replace("500", "504").replace("35", "36");
     assert_eq!(new, expected);
-    // By default 100, 1000 and 1000: those that are no multiples are added, energies still where they are computed.
+    // By default 100, 1000 and 1000: those that are no multiples are added, energies still where they are
+    // computed.
     let bare = of("dt = 0.001\nmts = yes\nmts-level2-factor = 2").unwrap();
     assert_eq!(bare.rewritten(&ratio(4, 1)).unwrap(), "dt = 0.001\nmts = yes\nmts-level2-factor = 4");
     let mut added = bare.changed_lines(&ratio(3, 1)).unwrap();

@@ -133,7 +133,8 @@ fn patchwork() -> Figure {
     Figure::new(31.0, 29.0).with(Panel::new(axes.0, axes.1).with(Layer::cells(cells)))
 }
 
-/// Where cells meet, what is drawn lies between their colours, at resolutions that cut pixels anywhere: no paper shows.
+/// Where cells meet, what is drawn lies between their colours, at resolutions that cut pixels anywhere: no
+/// paper shows.
 #[test]
 fn cells_have_no_seams() {
     let limit = Gradient::on_white().steps(24)[12..].iter().map(|own| own.1).max().unwrap();
@@ -186,8 +187,8 @@ fn streams(pdf: &[u8]) -> Vec<Vec<u8>> {
     found
 }
 
-/// The words of a PDF as a reader finds them: what the fonts' tables say of the glyphs shown, font by font in the order of
-/// their names, a line for each piece.
+/// The words of a PDF as a reader finds them: what the fonts' tables say of the glyphs shown, font by font in
+/// the order of their names, a line for each piece.
 fn extracted(pdf: &[u8]) -> Vec<String> {
     let text = String::from_utf8_lossy(pdf);
     let named = regex_lite::Regex::new(r"/(f[rist]) (\d+) 0 R").unwrap();
@@ -285,8 +286,8 @@ fn seen_through(matrix: [[f64; 3]; 3], colour: Colour) -> [f64; 3] {
     oklab(matrix.map(|row| row.iter().zip(rgb).map(|(m, c)| m * c).sum::<f64>().clamp(0.0, 1.0)))
 }
 
-/// As eyes without green cones see it, and without red ones: Machado, Oliveira and Fernandes, IEEE Transactions on
-/// Visualization and Computer Graphics 15 (2009) 1291, severity 1.0.
+/// As eyes without green cones see it, and without red ones: Machado, Oliveira and Fernandes, IEEE
+/// Transactions on Visualization and Computer Graphics 15 (2009) 1291, severity 1.0.
 const DEUTERANOPIA: [[f64; 3]; 3] =
     [[0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413], [-0.011820, 0.042940, 0.968881]];
 const PROTANOPIA: [[f64; 3]; 3] =
@@ -303,8 +304,8 @@ fn least_distance(colours: &[Colour], matrix: [[f64; 3]; 3]) -> f64 {
     pairs.map(distance).fold(f64::INFINITY, f64::min)
 }
 
-/// 0.02 in OKLab is just noticeable side by side. Colours that carry a meaning are three times as far apart for the
-/// colour-blind, and twice in grey, where marks and dashes differ besides.
+/// 0.02 in OKLab is just noticeable side by side. Colours that carry a meaning are three times as far apart
+/// for the colour-blind, and twice in grey, where marks and dashes differ besides.
 #[test]
 fn colours_with_a_meaning_stay_apart_for_the_colour_blind_and_in_grey() {
     let families: Vec<Colour> = (0..8).map(family).collect();

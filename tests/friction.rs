@@ -68,7 +68,8 @@ fn one(clocks: &[[(i64, i64); 3]]) -> System {
 fn a_friction_that_masks_is_not_said_to_mask_where_larger_ones_grow() {
     let limits = Limits::default();
     let at = |system: &System, rate: f64| damped_system(system, &exact(rate), &limits).unwrap();
-    // Damped from 0.0393 to 0.066 or so, and at no larger friction: |Tr Q| is 3.5 at 0.1, and 7.8 where velocities stop.
+    // Damped from 0.0393 to 0.066 or so, and at no larger friction: |Tr Q| is 3.5 at 0.1, and 7.8 where
+    // velocities stop.
     let stays = one(&[[(31, 10), (2, 5), (0, 1)], [(124, 5), (1, 3), (0, 1)]]);
     let Mask::At(mask) = at(&stays, 1.0).masking else { panic!("it grows without friction") };
     let [(lo, hi)] = mask.ranges[..] else { panic!("{mask:?}") };
@@ -231,8 +232,8 @@ fn damped_exactly(clocks: &ManyClocks<Rational>, c: &Rational) -> Damping {
 
 #[test]
 fn a_rational_factor_is_decided_exactly_on_either_side_of_the_masking_friction_and_on_it() {
-    // One clock, s = 9/2 > 4: Q = [[1 - k m, m], [-k c, c]], m = (1 + c)/2 a tick of 1, so 1 + c + Tr = 2 + 2 c - k (1 + c)/2.
-    // Above k = 4 no friction masks it.
+    // One clock, s = 9/2 > 4: Q = [[1 - k m, m], [-k c, c]], m = (1 + c)/2 a tick of 1, so 1 + c + Tr = 2 + 2
+    // c - k (1 + c)/2. Above k = 4 no friction masks it.
     let one = |k: Rational| ManyClocks::new(&[ratio(1, 1)], &[ratio(0, 1)], vec![k]).unwrap();
     for c in [ratio(0, 1), ratio(1, 2), ratio(9, 10)] {
         assert_eq!(damped_exactly(&one(ratio(9, 2)), &c), Damping::Growing);
@@ -307,7 +308,8 @@ fn rigid_motions_are_set_apart_under_friction() {
     assert_eq!((found.damping, found.masking), (Some(Damping::Damped), Mask::NotNeeded));
 }
 
-/// Stiffnesses by reference, in an unstable interval of the outer step: by the eigenbasis, rigid motions projected out.
+/// Stiffnesses by reference, in an unstable interval of the outer step: by the eigenbasis, rigid motions
+/// projected out.
 #[test]
 fn measured_stiffnesses_are_masked_from_where_it_is_told() {
     use kickdrift::scene::SystemScene;
@@ -330,7 +332,8 @@ fn measured_stiffnesses_are_masked_from_where_it_is_told() {
     assert_eq!([damping(0.99 * lo), damping(1.01 * hi)], [Some(Damping::Growing), Some(Damping::Damped)]);
 }
 
-/// Of the slow mode doubles do not tell, at next to no friction, whether it grows: the verdict without friction does.
+/// Of the slow mode doubles do not tell, at next to no friction, whether it grows: the verdict without
+/// friction does.
 #[test]
 fn what_grows_too_slowly_to_be_told_is_not_said_not_to_grow() {
     let masking = |spring: Rational| {

@@ -239,7 +239,8 @@ const WORDS: [&str; 24] = [
 proptest! {
     #![proptest_config(ProptestConfig { cases: 400, max_shrink_iters: 20, ..ProptestConfig::default() })]
 
-    /// Some words of a command line left out, doubled or replaced: the program answers, or refuses in one line.
+    /// Some words of a command line left out, doubled or replaced: the program answers, or refuses in one
+    /// line.
     #[test]
     fn any_command_line_is_answered_or_refused_in_one_line(
         command in select(COMMANDS.to_vec()),
@@ -270,7 +271,8 @@ proptest! {
     }
 }
 
-/// The program's exit code and what it wrote on standard error; what takes longer than patience allows is ended and fails.
+/// The program's exit code and what it wrote on standard error; what takes longer than patience allows is
+/// ended and fails.
 fn answered(words: &[&str]) -> Result<(Option<i32>, String), TestCaseError> {
     let mut child = Command::new(env!("CARGO_BIN_EXE_kickdrift"))
         .args(words)

@@ -70,7 +70,8 @@ fn number(value: &Value) -> Rational {
     value.as_str().unwrap().parse().unwrap()
 }
 
-/// Stretches that are closed, in order, from lo to hi, with nothing but neighbouring doubles between them and nothing open.
+/// Stretches that are closed, in order, from lo to hi, with nothing but neighbouring doubles between them and
+/// nothing open.
 fn assert_whole(all: &[Stretch], (lo, hi): (f64, f64), what: &str) {
     assert!(all[0].lo == lo && all[all.len() - 1].hi == hi, "{what}: {all:?}");
     assert!(all.iter().all(|own| own.verdict != Holds::NotTold && own.lo <= own.hi), "{what}: {all:?}");
@@ -197,8 +198,9 @@ fn turned(own: &[&[i64]], rest: [[i64; 2]; 2], denominator: i64) -> Value {
         .collect()
 }
 
-/// Modes that do not change with the number, some of their multipliers at 1 or −1 or twice on the circle, with Jordan blocks or without:
-/// beside two modes that do change and that no rational direction parts from them.
+/// Modes that do not change with the number, some of their multipliers at 1 or −1 or twice on the circle,
+/// with Jordan blocks or without: beside two modes that do change and that no rational direction parts from
+/// them.
 #[test]
 fn what_stays_at_an_edge_for_all_numbers_leaves_nothing_open() {
     let mut numbers = Numbers(17);
@@ -238,8 +240,8 @@ fn what_stays_at_an_edge_for_all_numbers_leaves_nothing_open() {
     }
 }
 
-/// A bond of 6 turns by a third of a half turn in each step of 1/3, and D = Aᵀ under 3:2 whatever the slow force: motions without any symmetry
-/// cross at irrational numbers without growth.
+/// A bond of 6 turns by a third of a half turn in each step of 1/3, and D = Aᵀ under 3:2 whatever the slow
+/// force: motions without any symmetry cross at irrational numbers without growth.
 #[test]
 fn crossings_where_the_half_period_is_the_whole_of_a_shorter_one_leave_nothing_open() {
     let mut numbers = Numbers(31);
@@ -262,10 +264,11 @@ fn crossings_where_the_half_period_is_the_whole_of_a_shorter_one_leave_nothing_o
     }
 }
 
-/// Motions of different symmetry cross at irrational numbers without growth: a mirror's two families in chains, the families of equal arms
-/// about one atom, of which two are alike and leave everything unstable at the same place, and rings of five and eight
-/// molecules of two atoms, whose eigenspaces lie over Q(sqrt 5) and Q(sqrt 2). A bond of 6 turns by a third of a half turn in a step of
-/// 1/3: there motions of one symmetry cross.
+/// Motions of different symmetry cross at irrational numbers without growth: a mirror's two families in
+/// chains, the families of equal arms about one atom, of which two are alike and leave everything unstable at
+/// the same place, and rings of five and eight molecules of two atoms, whose eigenspaces lie over Q(sqrt 5)
+/// and Q(sqrt 2). A bond of 6 turns by a third of a half turn in a step of 1/3: there motions of one symmetry
+/// cross.
 #[test]
 fn crossings_of_different_symmetries_leave_nothing_open() {
     let mut numbers = Numbers(29);
@@ -316,8 +319,8 @@ fn crossings_of_different_symmetries_leave_nothing_open() {
     }
 }
 
-/// Two modes under two clocks, one of them at −1 with a Jordan block for all strengths of the slow force: all entries of the matrices that show the
-/// block stand in pairs of opposite sign.
+/// Two modes under two clocks, one of them at −1 with a Jordan block for all strengths of the slow force: all
+/// entries of the matrices that show the block stand in pairs of opposite sign.
 #[test]
 fn a_block_whose_entries_cancel_leaves_nothing_open() {
     let source = json!({
@@ -361,7 +364,8 @@ fn intervals_of_masses_off_the_diagonal_leave_nothing_open_and_agree_with_exact_
     assert!(changes > 5, "{changes}");
 }
 
-/// Fast frequencies of 1 and of √−0.001, both in the slow field: stable at seven and a half, unstable a little below.
+/// Fast frequencies of 1 and of √−0.001, both in the slow field: stable at seven and a half, unstable a
+/// little below.
 #[test]
 fn the_unstable_intervals_next_to_a_stable_number_do_not_hold_it() {
     let (fast, slow) =
@@ -379,7 +383,8 @@ fn the_unstable_intervals_next_to_a_stable_number_do_not_hold_it() {
     assert!(open < 1e-2, "{found:?}");
 }
 
-/// Where many modes are in one resonance, counts at both ends of a cell decide; the exact polynomials are beyond the budget here.
+/// Where many modes are in one resonance, counts at both ends of a cell decide; the exact polynomials are
+/// beyond the budget here.
 #[test]
 fn chains_beyond_the_exact_budget_are_unstable_where_counts_prove_it_and_every_number_agrees() {
     let steps = ["1/4", "3/10", "7/20"];

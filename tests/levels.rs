@@ -342,8 +342,8 @@ fn within(numbers: &mut Numbers, levels: &[DMatrix<f64>; 2], accuracy: f64) -> V
     all
 }
 
-/// No stiffness within the accuracy has another verdict in a stretch that is told, and near both ends of what is not told next to the first region some
-/// has one and some the other.
+/// No stiffness within the accuracy has another verdict in a stretch that is told, and near both ends of what
+/// is not told next to the first region some has one and some the other.
 #[test]
 fn stretches_hold_for_all_stiffnesses_within_the_accuracy_and_leave_open_what_these_do_not_share() {
     let (mut numbers, mut seen, mut widths) = (Numbers(71), [0; 3], Vec::new());
@@ -382,7 +382,8 @@ fn stretches_hold_for_all_stiffnesses_within_the_accuracy_and_leave_open_what_th
         }
     }
     assert!(seen.iter().all(|&count| count > 20), "{seen:?}");
-    // The first edge is open by about as much as the accuracy, and a thousand times as wide with a thousandth of it.
+    // The first edge is open by about as much as the accuracy, and a thousand times as wide with a thousandth
+    // of it.
     let pairs: Vec<_> = widths.chunks(2).filter_map(|pair| pair[0].zip(pair[1])).collect();
     for (fine, coarse) in &pairs {
         assert!((1e-7..1e-5).contains(fine) && (300.0..3000.0).contains(&(coarse / fine)), "{pairs:?}");
@@ -438,7 +439,8 @@ fn four_waters_are_told_stable_or_not_nearly_all_the_way_through_an_island() {
         let own = stretches.iter().filter(|own| own["verdict"] == verdict);
         own.map(|own| number(&own["hi"]) - number(&own["lo"])).sum::<f64>()
     };
-    // Between 4.73 and 5.46 fs no mode grows; above, pairs that left the circle together ask for narrower cells.
+    // Between 4.73 and 5.46 fs no mode grows; above, pairs that left the circle together ask for narrower
+    // cells.
     assert!(length("the data do not tell") < 0.06 * 0.0009, "{found}");
     let island = |own: &&serde_json::Value| number(&own["lo"]) < 0.00473 && number(&own["hi"]) > 0.00546;
     assert_eq!(stretches.iter().find(island).unwrap()["verdict"], "stable");
@@ -473,7 +475,8 @@ fn what_accuracy_does_not_tell_is_not_told() {
 
 #[test]
 fn an_estimate_names_no_kind() {
-    // Verlet with F + S = 4 at a step of 1 stands exactly on the edge of stability, where no rounded number decides.
+    // Verlet with F + S = 4 at a step of 1 stands exactly on the edge of stability, where no rounded number
+    // decides.
     let diagonal = |x: &[f64]| DMatrix::from_diagonal(&x.to_vec().into());
     for (fast, slow) in [([3.0, 0.5], [1.0, 0.25]), ([3.5, 0.5], [0.5, -0.25])] {
         let analysis = kernel(&diagonal(&fast), &diagonal(&slow)).decide(
@@ -514,7 +517,8 @@ fn an_estimate_names_no_kind() {
     assert!(open > 0);
 }
 
-/// Fast squares of frequency from −1 to 5.5, so that an inner step of 1 is beyond Verlet's limit or a fast mode falls where there are such.
+/// Fast squares of frequency from −1 to 5.5, so that an inner step of 1 is beyond Verlet's limit or a fast
+/// mode falls where there are such.
 fn beyond(numbers: &mut Numbers, n: usize) -> (DMatrix<f64>, DMatrix<f64>) {
     let basis = numbers.symmetric(n).symmetric_eigen().eigenvectors;
     let reach = [(-0.02, 3.0), (-1.0, 1.5), (0.1, 5.5)][(numbers.next().abs() * 3.0) as usize % 3];
@@ -613,7 +617,8 @@ fn npy(diagonal: &[f64]) -> Vec<u8> {
     bytes
 }
 
-/// Two motions that resonate, twice over, as a threefold axis makes them, beside a fifth: two pairs of multipliers leave the circle together.
+/// Two motions that resonate, twice over, as a threefold axis makes them, beside a fifth: two pairs of
+/// multipliers leave the circle together.
 #[test]
 fn what_leaves_the_circle_twice_at_once_is_decided_up_to_the_resolution() {
     let v = DMatrix::from_row_slice(5, 1, &[3.0, 1.0, 2.0, 5.0, 4.0]);
@@ -730,8 +735,9 @@ mod chord {
     }
 }
 
-/// The slow force of four waters on two clocks, half of it twice as often: what is proven of stretches of the outer step holds at each place in
-/// them, and the rates are those of what moves, not of rigid motions that rounding lets drift.
+/// The slow force of four waters on two clocks, half of it twice as often: what is proven of stretches of the
+/// outer step holds at each place in them, and the rates are those of what moves, not of rigid motions that
+/// rounding lets drift.
 #[test]
 fn intervals_on_three_clocks_end_and_agree_with_each_verdict() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/data/scenes");

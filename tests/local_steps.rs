@@ -1,4 +1,5 @@
-//! Leapfrog with local time steps: the stiffness that stands for it, its verdicts, all unstable intervals of dt.
+//! Leapfrog with local time steps: the stiffness that stands for it, its verdicts, all unstable intervals of
+//! dt.
 
 use kickdrift::number::Rational;
 use kickdrift::number::rational::{from_f64_exact, ratio, to_f64};
@@ -37,8 +38,9 @@ impl Numbers {
     }
 }
 
-/// dt² M⁻¹ K' by the matrices of a step, x₊ + x₋ = 2 U x, in doubles: at level l, U y − V w is where it is after a step from y with a force −w from
-/// outside, U_L = 1 − d²/2 M⁻¹K P, V_L = d²/2; of p steps T_p(U) y − W_p(U) V w.
+/// dt² M⁻¹ K' by the matrices of a step, x₊ + x₋ = 2 U x, in doubles: at level l, U y − V w is where it is
+/// after a step from y with a force −w from outside, U_L = 1 − d²/2 M⁻¹K P, V_L = d²/2; of p steps T_p(U) y −
+/// W_p(U) V w.
 fn by_matrices(own: &LocalSteps) -> DMatrix<f64> {
     let (n, mass, stiffness) = (own.plain().size(), own.plain().mass(), &own.plain().clocks()[0].stiffness);
     let a = DMatrix::from_fn(n, n, |i, j| to_f64(&(stiffness.get(i, j) / mass.get(i, i))));
@@ -209,7 +211,8 @@ fn what_is_no_scheme_is_refused_by_the_name_of_its_field() {
     }
 }
 
-/// Of one mass on a spring p substeps of leapfrog are one step with 2 - 2 T_p(1 - s/2), s = dt^2 k/p^2, whatever p: by the recurrence of T.
+/// Of one mass on a spring p substeps of leapfrog are one step with 2 - 2 T_p(1 - s/2), s = dt^2 k/p^2,
+/// whatever p: by the recurrence of T.
 #[test]
 fn substeps_of_one_mass_are_chebyshevs_polynomials() {
     for p in (1..=33).chain([256, 1021]) {

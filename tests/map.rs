@@ -228,7 +228,8 @@ fn labels_and_growth_are_those_of_the_single_pair() {
     assert!(compared_with_single_pairs(&figure_1("1/60")) > 100);
 }
 
-/// Where no clock has Floquet coordinates: one beyond its Verlet limit, the other too, or pulling the wrong way.
+/// Where no clock has Floquet coordinates: one beyond its Verlet limit, the other too, or pulling the wrong
+/// way.
 #[test]
 fn labels_and_growth_without_floquet_coordinates_are_those_of_the_single_pair() {
     let beyond = grid("pi^2", "pi^2/25", "1/40", (("13/20", "1"), ("33/10", "4")));
@@ -264,7 +265,8 @@ fn compared_with_single_pairs(grid: &Grid) -> usize {
     seen
 }
 
-/// Growth next to edges, where BC or AD loses its digits in doubles: the enclosures hold and are narrow all the same.
+/// Growth next to edges, where BC or AD loses its digits in doubles: the enclosures hold and are narrow all
+/// the same.
 #[test]
 fn growth_next_to_an_edge_is_enclosed() {
     // Edges that sit on p th = m pi: s = 1, th = pi/3 for 3/1; s = 3, th = 2 pi/3 for 3/2.
@@ -370,7 +372,8 @@ fn the_cost_is_told_before_the_work_begins() {
         let (told, counters) = (grid.kicks(), Map::of(&grid).for_each_band(|_, _| Ok(())).unwrap());
         assert!((told / counters.kicks as f64 - 1.0).abs() < 0.02, "{told} for {}", counters.kicks);
     }
-    // 2.2 million pairs take 2.45e8 kicks, a million times as many 2.4e17, and 6.2e16 where none counts more than 2^15.
+    // 2.2 million pairs take 2.45e8 kicks, a million times as many 2.4e17, and 6.2e16 where none counts more
+    // than 2^15.
     let fine = figure_1("1/1000000");
     assert!((fine.kicks() / 6.2e16 - 1.0).abs() < 0.02, "{:e}", fine.kicks());
     let refused = Map::of(&fine).for_each_band(|_, _| panic!("no band is computed")).unwrap_err();
@@ -441,7 +444,8 @@ fn scattered_pairs_side_by_side_are_those_of_the_ladder() {
 fn pairs_made_of_few_quantities_are_decided_as_each_alone() {
     let mut numbers = random::Random::new(20_261_123);
     let pi = |k: i32, c| Laurent::monomial(c, k);
-    // Rational ones and powers of pi, a sum of both, none and repelling; steps in units of pi too, one too long for doubles.
+    // Rational ones and powers of pi, a sum of both, none and repelling; steps in units of pi too, one too
+    // long for doubles.
     let sum = &pi(2, ratio(1, 30)) + &pi(0, ratio(1, 7));
     let lambda1 = vec![pi(2, ratio(1, 1)), pi(0, ratio(10, 1)), sum.clone()];
     let lambda2 = vec![pi(2, ratio(1, 25)), pi(0, ratio(0, 1)), pi(0, ratio(-3, 10)), sum];

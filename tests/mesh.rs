@@ -33,8 +33,8 @@ fn two_bars_are_unstable_for_courant_numbers_in_one_interval_below_1_and_nowhere
     assert!((slow_steps - 77.3).abs() < 0.05, "{slow_steps}");
 }
 
-/// A plate held at its left edge, its cells 1, 2, 4 and 8 wide and high in four groups each, two triangles a cell; the step of an
-/// element is h times the smaller side of its cell.
+/// A plate held at its left edge, its cells 1, 2, 4 and 8 wide and high in four groups each, two triangles a
+/// cell; the step of an element is h times the smaller side of its cell.
 fn plate(columns: usize, rows: usize, h: &Rational) -> String {
     let group = |i: usize, n: usize| i * 4 / n;
     let places = |n: usize| {
@@ -103,11 +103,13 @@ fn a_mesh_too_large_for_all_its_eigenvalues_is_proven_either_way_and_its_growth_
     assert!((measured / rate - 1.0).abs() < 1e-6, "{measured} {rate}");
 }
 
-/// Steps between the end of the first stable region and the first unstable one, where every multiplier must be told from its neighbours.
+/// Steps between the end of the first stable region and the first unstable one, where every multiplier must
+/// be told from its neighbours.
 #[test]
 #[ignore = "four minutes"]
 fn a_plate_of_2000_triangles_is_proven_stable_between_its_first_region_and_its_instability() {
-    // At 3/10, 7/20 and 2/5 a multiplier is within 10^-8 of the edge (in μ), at 1/2 six of them lie in close pairs: their own residuals tell.
+    // At 3/10, 7/20 and 2/5 a multiplier is within 10^-8 of the edge (in μ), at 1/2 six of them lie in close
+    // pairs: their own residuals tell.
     for h in [ratio(1, 5), ratio(9, 20), ratio(3, 10), ratio(7, 20), ratio(2, 5), ratio(1, 2)] {
         let plate = decided(&plate(40, 25, &h));
         assert!(plate.size == 2080 && plate.is_stable() && plate.is_proof(), "{h}");
@@ -177,7 +179,8 @@ mod elements {
         x.iter().map(|&x| ratio(x, 1)).collect()
     }
 
-    /// A free mesh of one element has the rigid motions of its space, and as its elastic energy that of a stretch.
+    /// A free mesh of one element has the rigid motions of its space, and as its elastic energy that of a
+    /// stretch.
     #[test]
     fn rigid_motions_cost_no_energy_and_a_uniaxial_stretch_costs_that_of_its_stress() {
         let meshes = [

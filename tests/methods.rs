@@ -1,4 +1,5 @@
-//! Two levels of several modes under every method of proofs/REGION.md, section 8, against dense eigenvalues of the step itself.
+//! Two levels of several modes under every method of proofs/REGION.md, section 8, against dense eigenvalues
+//! of the step itself.
 
 use kickdrift::number::Rational;
 use kickdrift::number::rational::{ratio, to_f64};
@@ -21,7 +22,8 @@ impl Numbers {
     }
 }
 
-/// exp(H [[0, 1], [−F, 0]]) = [[cos, sin/w], [−w sin, cos]] by its series and squarings: no eigenvector of F enters.
+/// exp(H [[0, 1], [−F, 0]]) = [[cos, sin/w], [−w sin, cos]] by its series and squarings: no eigenvector of F
+/// enters.
 fn flow(fast: &DMatrix<f64>, h: f64) -> [DMatrix<f64>; 4] {
     let (n, squarings) = (fast.nrows(), 12);
     let small = h / f64::from(1 << squarings);
@@ -97,7 +99,8 @@ fn radius(m: &DMatrix<f64>) -> f64 {
     all.iter().fold(0.0, |a: f64, z| a.max(z.re.hypot(z.im)))
 }
 
-/// Fast frequencies up to 1; slow stiffness definite or not, some tenths of it; a step of up to some half turns of the fastest mode.
+/// Fast frequencies up to 1; slow stiffness definite or not, some tenths of it; a step of up to some half
+/// turns of the fastest mode.
 fn case(numbers: &mut Numbers, method: Method) -> (DMatrix<f64>, DMatrix<f64>, f64, u64) {
     let n = 1 + (6.0 * numbers.next()) as usize;
     let (a, b) = (numbers.square(n), numbers.square(n));
@@ -145,7 +148,8 @@ fn agree_with_dense_eigenvalues(seed: u64, count: usize) {
                 Holds::NotTold => open += 1,
             }
             decided[usize::from(holds == Holds::Stable)] += 1;
-            // What grows visibly is not stable and is told; what the verdict tells of all near matrices, it tells of these.
+            // What grows visibly is not stable and is told; what the verdict tells of all near matrices, it
+            // tells of these.
             if largest > 1.0 + 1e-5 {
                 assert_ne!(holds, Holds::Stable, "{method} {trial}");
             }
@@ -190,7 +194,8 @@ fn the_first_unstable_step_is_where_the_dense_step_first_grows() {
             assert!(after.iter().any(|own| *own > 1.0 + 1e-6), "{method}: {after:?} above {hi}");
         }
         println!("{method}: {found} of {trial}");
-        // With long averages, and Hairer and Lubich's filter, steps are stable as far as the region is known to reach.
+        // With long averages, and Hairer and Lubich's filter, steps are stable as far as the region is known
+        // to reach.
         assert!(found > 30 || ["molly-long", "hairer-lubich"].contains(&method.name()), "{method}: {found}");
     }
 }
@@ -208,7 +213,8 @@ fn stretches_of_steps_agree_with_dense_eigenvalues_between_their_ends() {
             let all = kernel.stretches(inner, (0.1, reach), 1e-3, 0.0).unwrap();
             assert!(all.first().unwrap().lo == 0.1 && all.last().unwrap().hi == reach);
             assert!(all.windows(2).all(|pair| pair[0].hi == pair[1].lo));
-            // Where the filter of a mode is 0 the mode stands on an edge, and near to it for as long as the filter is flat.
+            // Where the filter of a mode is 0 the mode stands on an edge, and near to it for as long as the
+            // filter is flat.
             let told: f64 =
                 all.iter().filter(|own| own.verdict != Holds::NotTold).map(|own| own.hi - own.lo).sum();
             assert!(told > 0.85 * (reach - 0.1), "{method}: {told} of {reach}");
@@ -336,8 +342,9 @@ fn one_mode_has_the_intervals_of_scalars() {
     assert!((end - 40.0 / std::f64::consts::PI).abs() < 1e-6, "{end}");
 }
 
-/// Periods of all fast modes shorter or longer each for itself, the slow stiffness by one factor, errors of the accuracy on both: nothing grows below the
-/// edge of a band, which is not far below the first unstable step.
+/// Periods of all fast modes shorter or longer each for itself, the slow stiffness by one factor, errors of
+/// the accuracy on both: nothing grows below the edge of a band, which is not far below the first unstable
+/// step.
 #[test]
 fn nothing_in_a_band_grows_below_its_edge() {
     let mut numbers = Numbers(3);
@@ -409,7 +416,8 @@ fn rational(levels: &[DMatrix<f64>; 2], masses: &[f64], h: &Rational) -> Model {
     Model::Rational(System::new(Symmetric::diagonal(&masses), all).unwrap())
 }
 
-/// Verlet's step with masses M + h² F/4, exactly, against dense eigenvalues of the midpoint rule between kicks.
+/// Verlet's step with masses M + h² F/4, exactly, against dense eigenvalues of the midpoint rule between
+/// kicks.
 #[test]
 fn rational_levels_that_are_solved_for_are_decided_exactly() {
     let mut numbers = Numbers(21);
@@ -460,7 +468,8 @@ fn the_steps_of_rational_levels_that_are_solved_for_end_where_the_theorem_says()
     );
 }
 
-/// What has no exact step is decided in doubles: w = 1 and S = 1/16, the impulse's tongue from pi - 2 atan(h/32) to pi.
+/// What has no exact step is decided in doubles: w = 1 and S = 1/16, the impulse's tongue from pi - 2
+/// atan(h/32) to pi.
 #[test]
 fn rational_levels_take_trigonometric_methods_in_doubles() {
     let levels = [1.0, 0.0625].map(|x| DMatrix::from_element(1, 1, x));

@@ -1,4 +1,5 @@
-//! Any number of levels of measured stiffnesses, by the action: against the eigenbasis of two levels, one mass, and rational systems.
+//! Any number of levels of measured stiffnesses, by the action: against the eigenbasis of two levels, one
+//! mass, and rational systems.
 
 use kickdrift::number::Rational;
 use kickdrift::number::rational::{from_f64_exact, ratio};
@@ -92,7 +93,8 @@ fn one_level_is_verlet() {
     assert!(0.949_99 < edge && edge < 0.95, "{edge}");
 }
 
-/// At random steps, nested or not, whatever is proven is what rational arithmetic or discs of the rational system say.
+/// At random steps, nested or not, whatever is proven is what rational arithmetic or discs of the rational
+/// system say.
 #[test]
 fn three_levels_have_the_verdicts_of_the_rational_system() {
     let mut numbers = Numbers(11);
@@ -177,7 +179,8 @@ fn growth_and_friction_are_those_of_the_rational_system() {
     assert!(still.is_in_first_region && still.rate == Some(0.0) && still.growing.is_none());
 }
 
-/// Stretches hold at every step in them and for all stiffnesses within the accuracy, far beyond the first unstable step, too; and little is left open.
+/// Stretches hold at every step in them and for all stiffnesses within the accuracy, far beyond the first
+/// unstable step, too; and little is left open.
 #[test]
 fn stretches_hold_for_all_stiffnesses_within_the_accuracy() {
     let (mut numbers, accuracy) = (Numbers(31), 1e-5);

@@ -34,7 +34,8 @@ fn decided((masses, given): &Given, route: Route) -> Analysis {
     Jacobians::rational(masses, &given).unwrap().decide(route, &Limits::default()).unwrap()
 }
 
-/// The outer step of two clocks, the second of which kicks in every k-th step of the first, half before and half after: in doubles.
+/// The outer step of two clocks, the second of which kicks in every k-th step of the first, half before and
+/// half after: in doubles.
 fn period((masses, given): &Given) -> DMatrix<f64> {
     let n = masses.len();
     let [(fast, inner), (slow, outer)] = &given[..] else { panic!("two") };
@@ -102,7 +103,8 @@ fn symmetric_matrices_are_decided_as_gradients_are() {
     }
 }
 
-/// Three molecules alike that hardly see each other, a stiff bond in each, and a slow force whose Jacobian is not symmetric by this part of its norm, as a file.
+/// Three molecules alike that hardly see each other, a stiff bond in each, and a slow force whose Jacobian is
+/// not symmetric by this part of its norm, as a file.
 fn learned(asymmetry: f64, outer: i64) -> (SystemScene, Given) {
     let (n, mut numbers) = (6, Numbers(11));
     let fast = DMatrix::from_fn(n, n, |i, j| match (i / 2 == j / 2, i == j) {
@@ -237,7 +239,8 @@ fn what_needs_gradients_is_refused() {
     assert!(outer.iter().all(decides));
 }
 
-/// Two oscillators alike of 10 fs and one of 13 fs, cheap forces every 1/2 fs; a correction whose Jacobian is not symmetric every `outer` fs.
+/// Two oscillators alike of 10 fs and one of 13 fs, cheap forces every 1/2 fs; a correction whose Jacobian is
+/// not symmetric every `outer` fs.
 fn alike(outer: &Rational) -> (String, Given) {
     let diagonal =
         |own: [i64; 3]| DMatrix::from_fn(3, 3, |i, j| if i == j { ratio(own[i], 1000) } else { ratio(0, 1) });

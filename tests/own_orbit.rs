@@ -22,8 +22,8 @@ fn fastest(own: &OwnOrbit) -> &Instability {
     all.max_by(|a, b| a.multiplier.size().total_cmp(&b.multiplier.size())).expect("something grows")
 }
 
-/// The growth rate of a small deviation from the orbit along its unstable mode, over four decades from 10^-8 on, where the mode that
-/// decays has left it.
+/// The growth rate of a small deviation from the orbit along its unstable mode, over four decades from 10^-8
+/// on, where the mode that decays has left it.
 fn measured(scene: &SystemScene, own: &OwnOrbit) -> f64 {
     let shape = &fastest(own).shape;
     let start: Vec<f64> = own.start.iter().zip(shape).map(|(y, v)| y + 1e-11 * v).collect();

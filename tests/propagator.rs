@@ -22,7 +22,8 @@ fn determinant(m: &Matrix2<Rational>) -> Rational {
     &m[(0, 0)] * &m[(1, 1)] - &m[(0, 1)] * &m[(1, 0)]
 }
 
-/// (Q_fast)^m = G R(m th) G⁻¹, with G = diag(1, sin(th)/h1) and R(m th) = [[cos, sin], [−sin, cos]], in doubles; 0 < h1² L1 < 4.
+/// (Q_fast)^m = G R(m th) G⁻¹, with G = diag(1, sin(th)/h1) and R(m th) = [[cos, sin], [−sin, cos]], in
+/// doubles; 0 < h1² L1 < 4.
 fn rotated(h1: f64, m: u64, lambda1: f64) -> Matrix2<f64> {
     let s = h1 * h1 * lambda1;
     let (sin, cos) = ((s * (1.0 - s / 4.0)).sqrt(), 1.0 - s / 2.0);

@@ -1,5 +1,6 @@
-//! Growth rates of systems against Gelfand's formula: ln ρ(Q) = lim ln ‖Q^m‖/m over powers of the exact full period, squared a hundred times
-//! in integers of many bits. No eigenvalue, no half period, no polynomial is asked.
+//! Growth rates of systems against Gelfand's formula: ln ρ(Q) = lim ln ‖Q^m‖/m over powers of the exact full
+//! period, squared a hundred times in integers of many bits. No eigenvalue, no half period, no polynomial is
+//! asked.
 
 use kickdrift::number::Rational;
 use kickdrift::number::rational::{ratio, to_f64};
@@ -18,7 +19,8 @@ impl Numbers {
         ((self.0 >> 33) % n) as i64
     }
 
-    /// Stiffnesses on two or three clocks, each a multiple of Z Zᵀ, in a quarter of the systems not quite definite.
+    /// Stiffnesses on two or three clocks, each a multiple of Z Zᵀ, in a quarter of the systems not quite
+    /// definite.
     fn system(&mut self, n: usize) -> System {
         let steps: &[(i64, i64)] = match self.below(4) {
             0 => &[(1, 1), (2, 1)],
@@ -53,8 +55,9 @@ fn scaled(system: &System, factor: &Rational) -> System {
 const BITS: i64 = 640;
 const SQUARINGS: u32 = 100;
 
-/// ln ρ(Q) of one period. ‖Q^m‖ is ρ^m but for a factor that is polynomial in m at most: at m = 2^100 its logarithm moves ln ρ by some 10^-28;
-/// each squaring doubles the relative error, so that of 640 bits 500 are left.
+/// ln ρ(Q) of one period. ‖Q^m‖ is ρ^m but for a factor that is polynomial in m at most: at m = 2^100 its
+/// logarithm moves ln ρ by some 10^-28; each squaring doubles the relative error, so that of 640 bits 500 are
+/// left.
 fn ln_radius(system: &System) -> f64 {
     let exact: DMatrix<Rational> = full_period(system);
     let fixed = |x: &Rational| ((x.numer() << BITS) / x.denom(), BITS);
@@ -97,7 +100,8 @@ fn check(system: &System) -> Option<f64> {
     Some(found)
 }
 
-/// The unstable neighbour of an edge between two factors of all stiffnesses, so many halvings near; `None` where both are of one kind.
+/// The unstable neighbour of an edge between two factors of all stiffnesses, so many halvings near; `None`
+/// where both are of one kind.
 fn beside_an_edge(system: &System, halvings: u32) -> Option<System> {
     let grows = |factor: &Rational| {
         let analysis = decide_system(&scaled(system, factor), &Limits::default()).unwrap();

@@ -1,4 +1,5 @@
-//! What may be set apart: motions that no stiffness holds. Right values by arithmetic of its own, over the rationals.
+//! What may be set apart: motions that no stiffness holds. Right values by arithmetic of its own, over the
+//! rationals.
 
 #[path = "rigid/reference.rs"]
 mod reference;
@@ -155,7 +156,8 @@ fn what_is_soft_beside_the_roundings_of_doubles_is_no_rigid_motion_of_rational_s
     assert_eq!((removed.count, removed.found_by), (1, "common null space"));
 }
 
-/// A bond along x of two atoms, a third beside it, so that rotations are three; transverse forces ±f a potential, which balance.
+/// A bond along x of two atoms, a third beside it, so that rotations are three; transverse forces ±f a
+/// potential, which balance.
 fn molecule(bond: f64, turned: f64, tether: f64) -> DMatrix<f64> {
     let places = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.3, 1.1, 0.2]];
     let mut k = DMatrix::zeros(9, 9);
@@ -322,8 +324,8 @@ fn size(analysis: &Analysis) -> usize {
     analysis.parts.iter().map(|part| part.size).sum()
 }
 
-/// That the verdict is the same of two systems within the margin: stiffer or softer by it; and with a spring more where no motion is set
-/// apart, which that would hold.
+/// That the verdict is the same of two systems within the margin: stiffer or softer by it; and with a spring
+/// more where no motion is set apart, which that would hold.
 fn within_margin(seed: u64, measured: &Measured, given: &Given, (truth, is_apart): (bool, bool)) -> bool {
     let Some(margin) = measured.margin.filter(|own| *own > 0.0) else { return false };
     // A power of two below it, so that numbers stay short.
@@ -337,8 +339,8 @@ fn within_margin(seed: u64, measured: &Measured, given: &Given, (truth, is_apart
     true
 }
 
-/// That outer steps up to the first end are stable, as far as two of them say, and the second end is not, where matrices are small: it has
-/// all digits of a double.
+/// That outer steps up to the first end are stable, as far as two of them say, and the second end is not,
+/// where matrices are small: it has all digits of a double.
 fn first_step(name: &str, (lo, hi): (f64, f64), given: &Given, is_apart: bool) {
     let stable = |outer: &Rational| given.slowed(&(outer / given.outer())).is_stable(is_apart);
     let below = ratio((256.0 * lo).floor() as i64, 256);
@@ -421,7 +423,8 @@ fn all(seeds: std::ops::Range<u64>) -> Tally {
     tally
 }
 
-/// Half of those that are asked about are decided at least, of both kinds, and rigid motions are among them: else the comparison says little.
+/// Half of those that are asked about are decided at least, of both kinds, and rigid motions are among them:
+/// else the comparison says little.
 fn is_telling(tally: &Tally, count: usize) -> bool {
     2 * (tally.stable + tally.unstable) > count
         && 10 * tally.stable > count

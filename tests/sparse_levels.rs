@@ -17,7 +17,8 @@ impl Numbers {
     }
 }
 
-/// Three-atom molecules on a lattice: stiff springs within each, softer ones to atoms of others that are near.
+/// Three-atom molecules on a lattice: stiff springs within each, softer ones to atoms of others that are
+/// near.
 struct Droplet {
     masses: Vec<f64>,
     positions: Vec<[f64; 3]>,
@@ -174,7 +175,8 @@ fn compressed_rows_are_read_and_refused_by_name() {
         let error = with(key, value).unwrap_err();
         assert_eq!(error.field(), key, "{error}");
     }
-    // A scan over steps keeps the stiffnesses, whichever is the fast one, and the accuracy: each point is what its own file has.
+    // A scan over steps keeps the stiffnesses, whichever is the fast one, and the accuracy: each point is
+    // what its own file has.
     let asked = scene.clone().asked(Some(1e-7), false, None, None).unwrap();
     for path in ["potentials.1.step", "potentials.0.step"] {
         let range = format!("{path}=1/2000..3/1000:1/2000");
@@ -250,7 +252,8 @@ fn small(matrices: [&DMatrix<f64>; 2], steps: [&str; 2]) -> kickdrift::error::Re
     SystemScene::from_json_in(held, file)
 }
 
-/// 1 and 0.01 on the fast clock, 0.1 and -0.02 on the slow one: the first mode resonates, the second falls, and faster.
+/// 1 and 0.01 on the fast clock, 0.1 and -0.02 on the slow one: the first mode resonates, the second falls,
+/// and faster.
 #[test]
 fn where_the_total_falls_nothing_is_counted_and_no_smaller_step_is_called_stable() {
     use kickdrift::question::{Question, System, Work};
@@ -305,7 +308,8 @@ fn npz_of(path: &std::path::Path, own: &DMatrix<f64>) {
     npz::write(path, arrays.into()).unwrap();
 }
 
-/// Small systems whose stiffnesses are singular, indefinite, or cancel: whatever is proven is what a dense period does.
+/// Small systems whose stiffnesses are singular, indefinite, or cancel: whatever is proven is what a dense
+/// period does.
 #[test]
 fn what_is_proven_of_small_systems_is_what_their_dense_period_does() {
     let (mut numbers, mut seen, mut first) = (Numbers(21), [0; 3], 0);
@@ -363,7 +367,8 @@ fn what_is_proven_of_small_systems_is_what_their_dense_period_does() {
     assert!(seen.iter().all(|&count| count > 50) && first > 100, "{seen:?} {first}");
 }
 
-/// Two atoms on a bond: with tethers, or where both stiffnesses hold a translation and their sum does not, nothing is set apart.
+/// Two atoms on a bond: with tethers, or where both stiffnesses hold a translation and their sum does not,
+/// nothing is set apart.
 #[test]
 fn motions_that_a_sparse_stiffness_holds_are_not_set_apart() {
     let folder = tempfile::tempdir().unwrap();
@@ -467,7 +472,8 @@ fn what_is_not_symmetric_is_refused_with_the_entry_and_the_difference() {
     assert_eq!(error.field(), "stiffness[1][0]", "{error}");
 }
 
-/// What falls by itself falls at any step; the resonances of the steps are those of the same system without it.
+/// What falls by itself falls at any step; the resonances of the steps are those of the same system without
+/// it.
 #[test]
 fn resonances_are_proven_where_the_forces_hold_no_minimum() {
     let n = 40;
@@ -513,7 +519,8 @@ fn resonances_are_proven_where_the_forces_hold_no_minimum() {
     assert!(grown(1.01 * end).iter().any(|own| own.re < -1.0));
 }
 
-/// What is said of all stiffnesses within an accuracy is true of those at its ends, and is never the opposite of what the dense kernel says of all.
+/// What is said of all stiffnesses within an accuracy is true of those at its ends, and is never the opposite
+/// of what the dense kernel says of all.
 #[test]
 fn verdicts_for_all_stiffnesses_within_an_accuracy_are_those_at_its_ends() {
     let (mut numbers, mut seen) = (Numbers(11), [[0; 3]; 2]);

@@ -129,7 +129,8 @@ fn the_first_unstable_step_of_one_level_is_that_of_exact_determinants() {
 
 #[test]
 fn the_first_unstable_step_is_as_sharp_where_a_resonance_is_hardly_coupled() {
-    // The fastest fine motion is at the far wall, three hundred springs away from what is coarse: the interval is thinner than doubles are.
+    // The fastest fine motion is at the far wall, three hundred springs away from what is coarse: the
+    // interval is thinner than doubles are.
     let springs: Vec<_> = (0..=400)
         .map(|i| {
             if i < 4 {
@@ -144,7 +145,8 @@ fn the_first_unstable_step_is_as_sharp_where_a_resonance_is_hardly_coupled() {
     let levels = vec![Level { fine: (0..320).collect(), substeps: 4 }];
     let sparse = SparseSteps::new(&[1.0; 400], &chain(&springs, false), levels).unwrap();
     let (lo, hi) = sparse.first_unstable().expect("proven");
-    // 4 − f falls as the square of the distance from there: within some 10^-6 factorizations do not tell, and a bisection ends at 10^-5.
+    // 4 − f falls as the square of the distance from there: within some 10^-6 factorizations do not tell, and
+    // a bisection ends at 10^-5.
     assert!(lo < hi && hi < lo * (1.0 + 2e-5), "{lo} {hi}");
     assert_eq!((sparse.verdict(lo), sparse.verdict(hi * (1.0 + 1e-3))), (Holds::Stable, Holds::Stable));
     // (dt/4)² y = 4 sin²(π/8) of the largest y, a little below 160.
@@ -206,7 +208,8 @@ fn a_full_turn_of_a_fine_motion_is_no_rigid_motion() {
     assert_eq!(found.kind, Some(Kind::Parabolic), "{found:?}");
 }
 
-/// Walls, none, and none but for a last digit; steps at which fine motions make whole and half turns: what is proven is so in exact arithmetic.
+/// Walls, none, and none but for a last digit; steps at which fine motions make whole and half turns: what is
+/// proven is so in exact arithmetic.
 #[test]
 fn what_is_proven_of_small_schemes_is_so_in_exact_arithmetic() {
     let (mut numbers, mut seen) = (Numbers(17), [0; 3]);

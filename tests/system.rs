@@ -44,8 +44,8 @@ fn block(m: &DMatrix<Rational>, row: usize, column: usize) -> DMatrix<Rational> 
     m.view((row * n, column * n), (n, n)).into_owned()
 }
 
-/// The kind over the system's period of what was decided part by part, each over its own: an elliptic part is coexistence where a
-/// multiplier is a root of 1 that becomes ±1 (which doubles tell of small systems).
+/// The kind over the system's period of what was decided part by part, each over its own: an elliptic part is
+/// coexistence where a multiplier is a root of 1 that becomes ±1 (which doubles tell of small systems).
 fn over_the_whole_period(analysis: &Analysis) -> Kind {
     let whole = analysis.period.as_rational().unwrap();
     let is_back = |part: &Part| {
@@ -353,8 +353,8 @@ fn an_indefinite_stiffness_is_computed_with_a_warning() {
 
 #[test]
 fn double_modes_on_and_off_the_edge_are_decided_exactly() {
-    // Two equal oscillators, coupled to nothing but written in rotated coordinates with a third, and a Verlet step
-    // on the limit h² L = 4 for both: a double Jordan block.
+    // Two equal oscillators, coupled to nothing but written in rotated coordinates with a third, and a Verlet
+    // step on the limit h² L = 4 for both: a double Jordan block.
     let at = |l: i64| {
         let mass = Symmetric::diagonal(&[ratio(1, 1), ratio(1, 1)]);
         System::new(
@@ -418,7 +418,8 @@ fn large_chains_and_bars_are_proven_in_doubles() {
 /// From here on the bound through the projection past a rigid mode is too wide for double eigenvalues.
 const LARGE: usize = 60;
 
-/// A ring of n unit masses, springs stiff and soft in turn, the first mass heavier by `extra`; large ones are tied to walls.
+/// A ring of n unit masses, springs stiff and soft in turn, the first mass heavier by `extra`; large ones are
+/// tied to walls.
 fn ring(n: usize, [stiff, soft]: [&Rational; 2], steps: [Rational; 2], extra: Rational) -> System {
     let (mut fast, mut slow) = (Symmetric::zero(n), Symmetric::zero(n));
     for i in 0..n {
@@ -555,7 +556,8 @@ fn bad_systems_are_refused_by_name() {
     assert!(short.unwrap_err().to_string().starts_with("K[1] = 1 entries"));
 }
 
-/// Two elements of a bar, lengths 3 and 2, its ends fixed: one mass of half of each, with C l/c for the step of each.
+/// Two elements of a bar, lengths 3 and 2, its ends fixed: one mass of half of each, with C l/c for the step
+/// of each.
 fn two_elements(courant: &Rational) -> System {
     let spring = |length: i64| {
         let stiffness = Symmetric::diagonal(&[ratio(1, length)]);

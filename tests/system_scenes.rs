@@ -51,7 +51,8 @@ fn growth_of_small_deviations_is_that_of_the_hessians() {
             let mut run = scene.nonlinear_simulation(start.clone(), vec![0.0; start.len()]).unwrap().unwrap();
             let time = 2000.0 * to_f64(run.clocks().tick()) * run.clocks().period() as f64;
             let measured = avi::growth_rate(&mut run, centre, 1e-6, (4000, ends));
-            // The shape turns with a collision's beat: its length changes by a factor of some units over the time.
+            // The shape turns with a collision's beat: its length changes by a factor of some units over the
+            // time.
             let off = (measured - predicted).abs();
             assert!(off < 2e-5 * predicted + 4.0 / time, "{name} {ends:?}: {measured} {predicted}");
             assert!(predicted > 40.0 / time);
@@ -165,7 +166,8 @@ fn stiffnesses_of_several_masses_may_hold_pi() {
     assert!(falls.is_unstable() && falls.warnings.iter().any(|own| own.contains("indefinite")));
     let rational = chain.replace("pi^2", "9.8696044").replace("1/pi", "0.31830989");
     let near = decide(3, &rational);
-    // Stiffnesses with pi are not split into parts, which have shorter periods: all are compared over the longest.
+    // Stiffnesses with pi are not split into parts, which have shorter periods: all are compared over the
+    // longest.
     let all = |of: &Analysis| {
         let longest = of.parts.iter().map(|part| part.period.to_f64()).fold(0.0, f64::max);
         let over_longest = |part: &Part, mu: f64| {
@@ -526,7 +528,8 @@ fn long_periods_are_refused_with_their_cost_and_allowed_by_a_budget() {
     assert!(code == Some(2) && text.contains("1000000 periods of"), "{text}");
 }
 
-/// Bonds, angles and the rest on a clock each, at steps where four pairs and more of multipliers are off the circle and none of them is real.
+/// Bonds, angles and the rest on a clock each, at steps where four pairs and more of multipliers are off the
+/// circle and none of them is real.
 #[test]
 fn where_pairs_leave_the_circle_together_stretches_are_proven_for_measured_levels() {
     let name = "data/scenes/water4-levels.json";
@@ -699,7 +702,8 @@ fn three_clocks_have_their_rigid_motions_projected_out_as_two_have() {
     assert_eq!(two.measured.unwrap().removed.unwrap().count, 6);
 }
 
-/// A fast frequency is beyond the inner step's own limit, where discs reach as far as the polynomials grow there.
+/// A fast frequency is beyond the inner step's own limit, where discs reach as far as the polynomials grow
+/// there.
 #[test]
 fn the_neighbours_of_a_stable_step_do_not_hold_it_and_end_where_a_mode_is_at_rest_at_kicks() {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/input");
@@ -708,12 +712,14 @@ fn the_neighbours_of_a_stable_step_do_not_hold_it_and_end_where_a_mode_is_at_res
     let found = scene.nearest_unstable(1e-4, &Limits::default()).unwrap();
     assert!(found.number == 7.5 && found.own.is_none(), "{found:?}");
     let (below, above) = (found.below.unwrap().proven, found.above.unwrap().proven);
-    // The dense period grows at both, and is still at 7.5, between 6.0 and 8.09, and above 6 √2, where six inner steps turn the fast mode by 3 π.
+    // The dense period grows at both, and is still at 7.5, between 6.0 and 8.09, and above 6 √2, where six
+    // inner steps turn the fast mode by 3 π.
     assert!((5.71..5.72).contains(&below.0) && (5.99..6.0001).contains(&below.1), "{below:?}");
     assert!((8.09..8.10).contains(&above.0) && (above.1 - 72f64.sqrt()).abs() < 1e-6, "{above:?}");
 }
 
-/// ln ρ/T of whole kicks and drifts with v → exp(−γ t) v in their middle, steps 1/2, 1 and 2, rigid motions apart.
+/// ln ρ/T of whole kicks and drifts with v → exp(−γ t) v in their middle, steps 1/2, 1 and 2, rigid motions
+/// apart.
 fn damped_growth_of_the_tetrahedron(rate: f64) -> f64 {
     let pairs: [&[(usize, usize)]; 3] = [&[(0, 1), (1, 2)], &[(0, 2), (2, 3)], &[(0, 3), (1, 3)]];
     let masses = [1.0_f64, 2.0, 3.0, 1.5];

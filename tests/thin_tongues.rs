@@ -15,8 +15,8 @@ fn power_of_ten(n: i32) -> Rational {
     Rational::from_integer(BigInt::from(10)).pow(n)
 }
 
-/// The width from so many digits of both edges that twenty of its own are right: they must be in order, the enclosure
-/// must hold it, and be narrow.
+/// The width from so many digits of both edges that twenty of its own are right: they must be in order, the
+/// enclosure must hold it, and be narrow.
 fn agrees_with_digits(tongues: &Tongues, gap: &Gap) {
     let upper = gap.upper.unwrap();
     let digits = (gap.lower.lo / gap.width.0).log10().ceil().max(0.0) as u32 + 20;
@@ -97,8 +97,9 @@ fn next_to_a_closing_the_order_is_right_on_both_sides() {
 
 #[test]
 fn no_more_digits_of_an_edge_are_asked_for_a_width() {
-    // A bound on how often the way in doubles gives up: never, at this and greater rho. At small rho tongues below
-    // the Verlet limit are thin because the slow kicks are weak, not because their modes live far from the ends.
+    // A bound on how often the way in doubles gives up: never, at this and greater rho. At small rho tongues
+    // below the Verlet limit are thin because the slow kicks are weak, not because their modes live far from
+    // the ends.
     for rho in [ratio(1, 25), ratio(1, 1), ratio(25, 1)] {
         for (p, q) in Ratio::up_to(40).map(Ratio::terms) {
             let tongues = tongues(p, q, &rho);
@@ -159,7 +160,8 @@ fn twenty_five_digits_by_counts_hold_sixty_by_signs() {
 
 #[test]
 fn weak_coupling_and_dense_clusters_are_as_quick_as_any() {
-    // A second in all, tests running side by side; by long digits of both edges each took the better part of a minute.
+    // A second in all, tests running side by side; by long digits of both edges each took the better part of
+    // a minute.
     let at = std::time::Instant::now();
     for (p, q, rho) in
         [(40, 39, power_of_ten(12)), (43, 55, ratio(13, 10) * power_of_ten(-12)), (1389, 1450, ratio(7, 1))]

@@ -64,8 +64,8 @@ fn there_are_p_plus_q_minus_2_finite_tongues_and_an_infinite_one_none_overlappin
             let (last, finite) = gaps.split_last().unwrap();
             assert!(last.upper.is_none() && finite.iter().all(|gap| gap.upper.is_some()));
             for pair in gaps.windows(2) {
-                // Tr is 2 and -2 in turn, so neighbouring tongues cannot touch; their enclosures can, where the
-                // stable band between them is thinner than a double shows.
+                // Tr is 2 and -2 in turn, so neighbouring tongues cannot touch; their enclosures can, where
+                // the stable band between them is thinner than a double shows.
                 let (upper, next) = (pair[0].upper.unwrap(), pair[1].lower);
                 assert!(upper.lo <= next.lo && upper.hi <= next.hi, "{p}/{q}, {rho}: {pair:?}");
                 if upper.hi > next.lo {
@@ -105,7 +105,8 @@ fn edges_are_as_narrow_as_doubles_get() {
     }
 }
 
-/// Each edge's enclosure holds exactly one root of the entry's polynomial, and they are all its positive roots.
+/// Each edge's enclosure holds exactly one root of the entry's polynomial, and they are all its positive
+/// roots.
 fn roots_are_edges(p: u64, q: u64, rho: &Rational) {
     let tongues = tongues(p, q, rho);
     let polynomials = entries(Ratio::new(p, q).unwrap(), rho);
@@ -331,7 +332,8 @@ fn the_peak_is_a_peak() {
     }
 }
 
-/// Over all zeros s_k of the tongue's two entries: d ln E/d ln s = Σ s/(s − s_k), and 1 for the factor s of C.
+/// Over all zeros s_k of the tongue's two entries: d ln E/d ln s = Σ s/(s − s_k), and 1 for the factor s of
+/// C.
 fn rise(tongues: &Tongues, m: u64, s: f64) -> f64 {
     let [a, b, c, d] = tongues.all_edges().unwrap();
     let (zeros, factor) = if m % 2 == 1 { ([a, d].concat(), 0.0) } else { ([b, c].concat(), 1.0) };
@@ -447,7 +449,8 @@ fn closings_of_high_tongues_end() {
     assert!(high.complete && high.closings.len() == 1 && !high.closings[0].below_verlet);
 }
 
-/// Their half periods have so many kicks that balls in 512 bits lose all digits over a box, and edges so close that doubles do not tell them.
+/// Their half periods have so many kicks that balls in 512 bits lose all digits over a box, and edges so
+/// close that doubles do not tell them.
 #[test]
 fn closings_of_longer_periods_end() {
     for (p, q) in [(29, 21), (31, 29)] {

@@ -60,7 +60,8 @@ fn first_edges_are_those_known() {
     assert_eq!(chin.first_edge().unwrap().rational(), Some(ratio(12, 1)));
 }
 
-/// 6 a b - 2 a - b + 1/2 = 0 makes a zero of A and one of D coincide; b rounded to 14 digits opens an unstable interval there.
+/// 6 a b - 2 a - b + 1/2 = 0 makes a zero of A and one of D coincide; b rounded to 14 digits opens an
+/// unstable interval there.
 #[test]
 fn rounding_opens_an_unstable_interval_of_bcss_3() {
     let (exact, rounded) = (stability(&of("bcss-3")), stability(&of("bcss-3-decimals")));
@@ -226,7 +227,8 @@ fn verdict_of([a, b, c, d]: &[Rational; 4]) -> bool {
     size < ratio(2, 1) || size == ratio(2, 1) && b.is_zero() && c.is_zero()
 }
 
-/// Letters with rational coefficients of a word, or balls' midpoints of irrational ones, which is enough 1e-12 away from an edge.
+/// Letters with rational coefficients of a word, or balls' midpoints of irrational ones, which is enough
+/// 1e-12 away from an edge.
 fn own_verdict(word: &Word, s: &Rational, rho: &Rational) -> Option<bool> {
     use kickdrift::number::Real;
     use kickdrift::word::{Force, Letter};
@@ -497,8 +499,8 @@ fn implicit_explicit_is_stable_up_to_40_over_pi() {
     assert!(stability.intervals.len() == 2 && !stability.intervals[1].stable);
 }
 
-/// The stiffness of a ring polymer's fastest mode of so many beads at 300 K, in 1/fs²: w = 2 n k T/ħ = 4 π n k T/(2 π ħ), with Boltzmann's and
-/// Planck's constants exactly as the SI defines them.
+/// The stiffness of a ring polymer's fastest mode of so many beads at 300 K, in 1/fs²: w = 2 n k T/ħ = 4 π n
+/// k T/(2 π ħ), with Boltzmann's and Planck's constants exactly as the SI defines them.
 fn top_ring_mode(beads: i64) -> Laurent {
     let exact = |text: &str| parse_rational("x", text).unwrap();
     let (boltzmann, planck) = (exact("1.380649"), exact("6.62607015"));
@@ -534,7 +536,8 @@ fn ring_polymers_are_unstable_where_they_are_known_to_be() {
     }
 }
 
-/// n modes, 0 ≤ F ≤ Λ1, 0 ≤ S ≤ Λ2: no two coupled modes are unstable below the edge of all, many just above it.
+/// n modes, 0 ≤ F ≤ Λ1, 0 ≤ S ≤ Λ2: no two coupled modes are unstable below the edge of all, many just above
+/// it.
 #[test]
 fn coupled_modes_are_stable_below_the_edge_of_all() {
     let mut state = 7u64;
@@ -634,7 +637,8 @@ fn orders_of_words_with_flows() {
     }
 }
 
-/// What every name of the catalogue answers at periods 10 and 40, from the word itself in balls, and by its factors.
+/// What every name of the catalogue answers at periods 10 and 40, from the word itself in balls, and by its
+/// factors.
 #[test]
 fn words_with_flows_are_unstable_where_they_are_known_to_be() {
     use kickdrift::word::{Enclosed, Piece, Shape};
@@ -727,7 +731,8 @@ fn words_in_balls_are_what_their_letters_do() {
     assert!(told > 100 && stable > 20 && told - stable > 20, "{stable} of {told}");
 }
 
-/// The Langevin orders of one splitting have one trace: where O stands does not move the edge of one force, and friction shifts it little.
+/// The Langevin orders of one splitting have one trace: where O stands does not move the edge of one force,
+/// and friction shifts it little.
 #[test]
 fn langevin_orders_damp_what_the_word_without_friction_leaves_bounded() {
     use kickdrift::word::Enclosed;
@@ -749,7 +754,8 @@ fn langevin_orders_damp_what_the_word_without_friction_leaves_bounded() {
     }
 }
 
-/// On the edges themselves: h w = n π, c² = ρ s² and ρ s² = 1 at angles whose cosines are rational; rational h² Λ1 is never one.
+/// On the edges themselves: h w = n π, c² = ρ s² and ρ s² = 1 at angles whose cosines are rational; rational
+/// h² Λ1 is never one.
 #[test]
 fn edges_of_trigonometric_integrators_are_decided() {
     use Trigonometric::{Gautschi, HairerLubich, Impulse, Linear, Long, Short};
@@ -757,7 +763,8 @@ fn edges_of_trigonometric_integrators_are_decided() {
         let r = ratio(r.0, r.1);
         method.at(&Laurent::monomial(&r * &r, 2), &ratio(rho.0, rho.1))
     };
-    // The filter is 0 at odd n of the long average and of Hairer and Lubich, at even n > 0 of all but the impulse: the step is 1 or -1 there.
+    // The filter is 0 at odd n of the long average and of Hairer and Lubich, at even n > 0 of all but the
+    // impulse: the step is 1 or -1 there.
     for n in 1..=6 {
         for (method, stable) in [
             (Impulse, [false, false]),
@@ -790,7 +797,8 @@ fn edges_of_trigonometric_integrators_are_decided() {
     assert_eq!(Impulse.at(&s, &ratio(1, 16)), Some(false));
 }
 
-/// A slow force far stiffer than the fast one: edges where h w/2 is small. They end, and lie where doubles find them.
+/// A slow force far stiffer than the fast one: edges where h w/2 is small. They end, and lie where doubles
+/// find them.
 #[test]
 fn edges_beside_a_stiff_slow_force_are_found() {
     use Trigonometric::{Linear, Long, Short};

@@ -49,7 +49,8 @@ fn whole(field: &str, value: &Bound<'_, PyAny>, remedy: &str) -> PyResult<Option
     }
 }
 
-/// Whether an exception says that a value is not what it should be; any other one is not ours, as Ctrl-C and a lack of memory are not.
+/// Whether an exception says that a value is not what it should be; any other one is not ours, as Ctrl-C and
+/// a lack of memory are not.
 pub fn is_no_value(py: Python<'_>, error: &PyErr) -> bool {
     error.is_instance_of::<PyTypeError>(py)
         || error.is_instance_of::<PyValueError>(py)

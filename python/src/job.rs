@@ -31,8 +31,9 @@ impl Listener {
     }
 }
 
-/// Runs `work` on a thread of its own without the interpreter. Where a signal raises an exception meanwhile, the exception
-/// is returned at once, and the flag is set that the library looks at piece by piece: the work ends soon after, unseen.
+/// Runs `work` on a thread of its own without the interpreter. Where a signal raises an exception meanwhile,
+/// the exception is returned at once, and the flag is set that the library looks at piece by piece: the work
+/// ends soon after, unseen.
 pub fn run<T: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce(&AtomicBool) -> Result<T> + Send + 'static,
@@ -40,8 +41,8 @@ pub fn run<T: Send + 'static>(
     run_heard(py, Listener::NOBODY, |stopped, _| work(stopped))
 }
 
-/// As [`run`], of work that counts what is done: the listener hears it ten times a second, and all of it at the end. What the listener
-/// raises ends the work as a signal does.
+/// As [`run`], of work that counts what is done: the listener hears it ten times a second, and all of it at
+/// the end. What the listener raises ends the work as a signal does.
 pub fn run_heard<T: Send + 'static>(
     py: Python<'_>,
     listener: Listener,

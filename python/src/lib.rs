@@ -1,4 +1,5 @@
-//! What Python calls: exact numbers in and out, verdicts of one pair and of many, maps as arrays, and the program.
+//! What Python calls: exact numbers in and out, verdicts of one pair and of many, maps as arrays, and the
+//! program.
 //!
 //! The typed package `kickdrift` is the interface; this module, `kickdrift._native`, is its thin native half.
 

@@ -4,7 +4,8 @@ use kickdrift::advise::{Names, Told};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
-/// The name of each group of modes, mass-weighted and normalized, a row each, of atoms at these positions; `None` where none of a group has one.
+/// The name of each group of modes, mass-weighted and normalized, a row each, of atoms at these positions;
+/// `None` where none of a group has one.
 #[pyfunction]
 pub fn motions(
     labels: Vec<String>,

@@ -103,7 +103,8 @@ pub fn quantity(field: &str, value: &Bound<'_, PyAny>) -> PyResult<Laurent> {
         return Err(unknown(field, value));
     }
     if let Ok(double) = value.cast::<PyFloat>() {
-        // Of a double of Python's own: those of NumPy's print their type too. (Rust breaks ties the other way.)
+        // Of a double of Python's own: those of NumPy's print their type too. (Rust breaks ties the other
+        // way.)
         return printed(field, value, &PyFloat::new(py, double.value()).str()?.to_string_lossy());
     }
     if is_rounded(value)? {
@@ -157,7 +158,8 @@ fn is_rounded(value: &Bound<'_, PyAny>) -> PyResult<bool> {
     Ok(is(kind, &float)? && is(axes, &scalar)?)
 }
 
-/// Whether a Decimal has more digits than a number may have, before or behind its point: `as_integer_ratio` would write all of them.
+/// Whether a Decimal has more digits than a number may have, before or behind its point: `as_integer_ratio`
+/// would write all of them.
 fn is_long_decimal(value: &Bound<'_, PyAny>) -> PyResult<bool> {
     let py = value.py();
     if !value.is_instance(&py.import("decimal")?.getattr("Decimal")?)?

@@ -79,7 +79,8 @@ impl Page {
         Ok(Page(Session::of_system(system)))
     }
 
-    /// The status, the type and the bytes of the answer to a question, or of a file of the page; other threads of Python run meanwhile.
+    /// The status, the type and the bytes of the answer to a question, or of a file of the page; other
+    /// threads of Python run meanwhile.
     fn ask<'py>(&self, py: Python<'py>, path: &str, query: &str, stop: &Stop) -> Answer<'py> {
         let answer = || explore::ask(&self.0, path, query, &stop.0).or_else(|| explore::asset(path));
         match py.detach(answer) {

@@ -26,8 +26,8 @@ pub fn names() -> (Vec<String>, Vec<&'static str>) {
 /// Values that are read between two looks at signals, some milliseconds.
 const BETWEEN_SIGNALS: usize = 4096;
 
-/// The verdicts of pairs whose quantities are picked from four lists by four arrays of positions: positions in
-/// `Verdict::ALL` and in `Tier::ALL`.
+/// The verdicts of pairs whose quantities are picked from four lists by four arrays of positions: positions
+/// in `Verdict::ALL` and in `Tier::ALL`.
 #[pyfunction]
 #[allow(clippy::type_complexity)]
 pub fn verdicts<'py>(

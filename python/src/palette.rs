@@ -7,8 +7,8 @@ use kickdrift::plot::palette::{
 };
 use pyo3::prelude::*;
 
-/// Colours as `#rrggbb` by what they stand for, those of families in their order, and the 256 of growth on white, weak to
-/// strong.
+/// Colours as `#rrggbb` by what they stand for, those of families in their order, and the 256 of growth on
+/// white, weak to strong.
 #[pyfunction]
 pub fn palette() -> (BTreeMap<&'static str, String>, Vec<String>, Vec<String>) {
     let single = [

@@ -125,8 +125,8 @@ pub fn held(arrays: BTreeMap<String, PyReadonlyArrayDyn<'_, f64>>) -> PyResult<A
     Ok(Arrays::Held(Arc::new(arrays.into_iter().map(array).collect::<PyResult<_>>()?)))
 }
 
-/// How many rows hold, by which route, the sample drawn, what is not rechecked, and the rows that fail with what they
-/// say and why that is wrong.
+/// How many rows hold, by which route, the sample drawn, what is not rechecked, and the rows that fail with
+/// what they say and why that is wrong.
 type Outcome = (u64, String, Option<(u64, u64)>, Vec<String>, Vec<(u64, String, String)>);
 
 /// Finds the claims of a document again by another route.

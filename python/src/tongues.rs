@@ -87,7 +87,8 @@ fn wanted(asked: &question::Tongues, columns: Option<Vec<String>>) -> Result<(Co
     Ok((Columns::Named(names), wanted))
 }
 
-/// That so many rows may be computed, where no window and no label says that they are fewer: p + q - 1 of p/q.
+/// That so many rows may be computed, where no window and no label says that they are fewer: p + q - 1 of
+/// p/q.
 fn allow(asked: &question::Tongues, listing: &Listing) -> Result<()> {
     let rows = listing.ratios.iter().map(|ratio| ratio.kicks() - 1).sum::<u64>();
     let is_whole = listing.window == StepWindow::default() && listing.selection == Selection::default();

@@ -17,12 +17,14 @@ use number::file;
 pub struct Args {
     /// Hessians in place of periods: a system file of any number of steps, or FILE.npz.
     ///
-    /// The file's steps are the first scheme; an archive holds fast, slow (mass-weighted, 1/ps^2), masses and positions.
+    /// The file's steps are the first scheme; an archive holds fast, slow (mass-weighted, 1/ps^2), masses and
+    /// positions.
     #[arg(id = "file", value_name = "FILE", conflicts_with_all = ["period", "bond", "on"])]
     path: Option<PathBuf>,
     #[command(flatten)]
     asked: Advise,
-    /// An input of OpenMM, LAMMPS, GROMACS, NAMD, Tinker or i-PI, or a log, for its steps; twice with an OpenMM system
+    /// An input of OpenMM, LAMMPS, GROMACS, NAMD, Tinker or i-PI, or a log, for its steps; twice with an
+    /// OpenMM system
     #[arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath)]
     engine: Vec<PathBuf>,
     /// Draws what would let the step grow, a bar a row: FILE.svg, .pdf or .png.

@@ -29,13 +29,15 @@ pub struct Common {
     /// Threads to use [default: one a core]. The result is the same, byte for byte.
     #[arg(long, global = true, value_name = "N", value_parser = flag::<usize>)]
     pub threads: Option<usize>,
-    /// The environment of LaTeX tables [default: table where it fits a column, else table*; longtable beyond a page].
+    /// The environment of LaTeX tables [default: table where it fits a column, else table*; longtable beyond
+    /// a page].
     #[arg(long, global = true, value_name = "ENV", value_enum)]
     pub float: Option<Float>,
     /// Nothing on standard error but errors: neither progress nor the names of written files.
     #[arg(long, global = true)]
     pub quiet: bool,
-    /// The most work that an answer may cost, in the unit that a refusal names: as a rule kicks of one pair of steps [default: 100000000].
+    /// The most work that an answer may cost, in the unit that a refusal names: as a rule kicks of one pair
+    /// of steps [default: 100000000].
     #[arg(long, global = true, value_name = "KICKS", value_parser = flag::<u64>)]
     pub budget: Option<u64>,
     /// The command as figures carry it.
@@ -165,7 +167,8 @@ impl Common {
 /// How tables are laid out for people and papers.
 #[derive(Clone, Debug, clap::Args)]
 pub struct Columns {
-    /// Only these columns of csv, text and latex, by the names that csv has [default: all; in latex those that fit].
+    /// Only these columns of csv, text and latex, by the names that csv has [default: all; in latex those
+    /// that fit].
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     columns: Option<Vec<String>>,
     /// Significant digits of text and latex [default: all; in latex 10, or as many as fit].

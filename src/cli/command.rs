@@ -1,4 +1,5 @@
-//! The command that made a figure, as the figure carries it: the same text wherever and however often it is given.
+//! The command that made a figure, as the figure carries it: the same text wherever and however often it is
+//! given.
 
 use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, Command, ValueHint};
@@ -14,7 +15,8 @@ const OF_MAPS: [&str; 11] = [
     "parts",
 ];
 
-/// `kickdrift NAME` with the flags that were given, in the order of the help; paths by the name of their file alone.
+/// `kickdrift NAME` with the flags that were given, in the order of the help; paths by the name of their file
+/// alone.
 ///
 /// For a map only the flags of its drawing, whether it is computed or joined: its document holds the rest.
 pub fn text(program: &Command, matches: &ArgMatches) -> String {

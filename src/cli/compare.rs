@@ -28,14 +28,18 @@ pub struct Args {
     /// With --max-sum: the values of s = h1^2 lambda1, evenly spaced inside 0 < s < 4.
     #[arg(long, value_name = "K", default_value_t = 99, value_parser = flag::<u64>)]
     samples: u64,
-    /// How near q h2 must be to a multiple of T1/2, half the vibration's period, to count as resonant; in units of T1/2.
+    /// How near q h2 must be to a multiple of T1/2, half the vibration's period, to count as resonant; in
+    /// units of T1/2.
     #[arg(long, value_name = "T", default_value = "1/20", allow_hyphen_values = true, value_parser = flag::<Rational>)]
     tolerance: Rational,
-    /// Integrators side by side instead: names of the catalogue (word --list), or words, with commas between them.
+    /// Integrators side by side instead: names of the catalogue (word --list), or words, with commas between
+    /// them.
     ///
-    /// Over (h, lambda2/lambda1), or over (h1, h2) with a grid: each force in units of its own step, so that a step h of the word has
+    /// Over (h, lambda2/lambda1), or over (h1, h2) with a grid: each force in units of its own step, so that
+    /// a step h of the word has
     ///
-    /// h^2 times the stiffnesses h1^2 lambda1 and h2^2 lambda2. lambda1 is 1 unless given, lambda2 as lambda1.
+    /// h^2 times the stiffnesses h1^2 lambda1 and h2^2 lambda2. lambda1 is 1 unless given, lambda2 as
+    /// lambda1.
     #[arg(long, value_name = "A,B,...", conflicts_with_all = ["max_sum", "rho"])]
     methods: Option<String>,
     /// The closed range of steps, with --methods.

@@ -94,7 +94,8 @@ fn of_file(path: &Path) -> Result<Session> {
     Session::of_scene(&Scene::from_json(&text)?)
 }
 
-/// Starts a browser on a file that leads to the address: every user sees the arguments of all processes, and the address is the key to the page.
+/// Starts a browser on a file that leads to the address: every user sees the arguments of all processes, and
+/// the address is the key to the page.
 fn open(address: &str) -> std::io::Result<()> {
     let page = format!(
         "<!doctype html><meta http-equiv=\"refresh\" content=\"0; url={address}\"><title>kickdrift explore</title>\n"

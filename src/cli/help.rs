@@ -88,7 +88,8 @@ const EXAMPLES: [(&str, &[&str]); 16] = [
     ("generate", &["generate man --output man", "generate completions --output completions"]),
 ];
 
-/// The program with all of this, its commands in their order. A negative number is a value, for the flag before it to refuse.
+/// The program with all of this, its commands in their order. A negative number is a value, for the flag
+/// before it to refuse.
 pub fn explained(program: Command) -> Command {
     let program = negative_numbers(program);
     let names: Vec<String> =

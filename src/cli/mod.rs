@@ -64,7 +64,8 @@ enum Command {
     Compare(Box<compare::Args>),
     /// Checks the Proposition of Fong, Darve and Lew for all p and q up to a number, exactly, with witnesses.
     Proposition(Asked<Proposition>),
-    /// The half period's entries A, B, C, D and the trace as polynomials in s = h1^2 lambda1, rho = lambda2/lambda1.
+    /// The half period's entries A, B, C, D and the trace as polynomials in s = h1^2 lambda1, rho =
+    /// lambda2/lambda1.
     Polynomial(Asked<Polynomial>),
     /// The half period of one ratio in numbers: its four entries, exact and enclosed.
     Half(Asked<Half>),
@@ -72,13 +73,15 @@ enum Command {
     Map(map::Args),
     /// Joins the parts of a map that map --shard K/N --resume DIR has computed.
     Merge(merge::Args),
-    /// Every unstable interval (tongue) of one ratio of steps, or of all ratios p + q <= N, with certified edges.
+    /// Every unstable interval (tongue) of one ratio of steps, or of all ratios p + q <= N, with certified
+    /// edges.
     Tongues(tongues::Args),
     /// Boxes of steps in which every ratio, rational or not, is proven unstable.
     Bands(bands::Args),
     /// Where tongues close: the pairs (s, rho) at which a resonance does not destabilize.
     Closings(Closings),
-    /// An integrator as its author writes it: consistency, order, stable steps, cost; its verdict at one step.
+    /// An integrator as its author writes it: consistency, order, stable steps, cost; its verdict at one
+    /// step.
     Word(word::Args),
     /// Many clocks, many degrees of freedom: is the system stable, and what grows?
     System(system::Args),
@@ -136,8 +139,8 @@ fn parsed(arguments: impl IntoIterator<Item = OsString>) -> clap::error::Result<
     Ok(cli)
 }
 
-/// Runs the program with the process's arguments. Whether standard output was closed is told by who could see it before the runtime opened
-/// another file in its place.
+/// Runs the program with the process's arguments. Whether standard output was closed is told by who could see
+/// it before the runtime opened another file in its place.
 pub fn main(is_stdout_closed: bool) -> ExitCode {
     if is_stdout_closed {
         stdout_is_closed();
@@ -145,7 +148,8 @@ pub fn main(is_stdout_closed: bool) -> ExitCode {
     ExitCode::from(program(std::env::args_os()))
 }
 
-/// Runs the program with these arguments, its own name first, for hosts that bring their own process; its exit code.
+/// Runs the program with these arguments, its own name first, for hosts that bring their own process; its
+/// exit code.
 pub fn program(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     // Without it the next run in the same folder tidies up.
     let _ = tidy_up_when_stopped();
@@ -164,8 +168,9 @@ pub fn program(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     }
 }
 
-/// The bytes that the program would write for these arguments, its own name first: those of standard output, or of the
-/// file that `--output` names, which is not touched. Nothing is printed where `--quiet` is among them.
+/// The bytes that the program would write for these arguments, its own name first: those of standard output,
+/// or of the file that `--output` names, which is not touched. Nothing is printed where `--quiet` is among
+/// them.
 ///
 /// ```
 /// let arguments = ["kickdrift", "verdict", "--lambda1", "1", "--lambda2", "1/4", "--h1", "1", "--h2", "2", "--format", "json"];
@@ -180,8 +185,8 @@ pub fn answer(arguments: impl IntoIterator<Item = OsString>) -> Result<Vec<u8>> 
     captured(|| run(&cli).map(drop))
 }
 
-/// A process that a signal ends leaves no unfinished file behind, and ends as one without this would; a file that grows too large is an
-/// error of the stream.
+/// A process that a signal ends leaves no unfinished file behind, and ends as one without this would; a file
+/// that grows too large is an error of the stream.
 #[cfg(unix)]
 fn tidy_up_when_stopped() -> std::io::Result<()> {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGXCPU, SIGXFSZ};
@@ -198,7 +203,8 @@ fn tidy_up_when_stopped() -> std::io::Result<()> {
     Ok(())
 }
 
-/// Whether this process was started with the signal ignored; where the system does not say (there is no /proc), only that a hangup may be.
+/// Whether this process was started with the signal ignored; where the system does not say (there is no
+/// /proc), only that a hangup may be.
 #[cfg(unix)]
 fn is_ignored(signal: i32) -> bool {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();

@@ -20,7 +20,8 @@ pub struct Paper {
     /// A heading, as "Run 7 of *h*_1 = 2 fs": italics between stars, an index after _, a power after ^.
     #[arg(long, value_name = "TEXT")]
     title: Option<String>,
-    /// No heading and nothing below the axes, for papers whose caption says it; several panels keep their titles.
+    /// No heading and nothing below the axes, for papers whose caption says it; several panels keep their
+    /// titles.
     #[arg(long, conflicts_with = "title")]
     bare: bool,
     /// The unit of times and rates at the axes, as fs [default: the system's, else the word time].
@@ -29,7 +30,8 @@ pub struct Paper {
     /// Letters of PDF as shapes, as those of SVG are [default: text, searchable]
     #[arg(long)]
     outlines: bool,
-    /// Letters of SVG as text, searchable; programs that ignore fonts in a document, as Inkscape, misplace them [default: shapes]
+    /// Letters of SVG as text, searchable; programs that ignore fonts in a document, as Inkscape, misplace
+    /// them [default: shapes]
     #[arg(long, conflicts_with = "outlines")]
     text: bool,
 }

@@ -23,7 +23,8 @@ pub fn progress(quiet: bool, length: u64, things: &str) -> ProgressBar {
     bar.with_style(style.with_key("rate", rate))
 }
 
-/// Says on a terminal what is about to take more than a second, and about how long: for work that no bar counts.
+/// Says on a terminal what is about to take more than a second, and about how long: for work that no bar
+/// counts.
 pub fn announce(quiet: bool, work: &str, seconds: f64) {
     if seconds > 1.0 && !quiet && stderr().is_terminal() {
         let work = visible(work).replace('\n', " ");
@@ -34,7 +35,8 @@ pub fn announce(quiet: bool, work: &str, seconds: f64) {
 /// Whether a bar has counted something.
 static COUNTED: AtomicBool = AtomicBool::new(false);
 
-/// Says on a terminal that work which no bar counts goes on: after two seconds, and after twice as long each time. Until it is dropped.
+/// Says on a terminal that work which no bar counts goes on: after two seconds, and after twice as long each
+/// time. Until it is dropped.
 pub struct Patience(#[expect(dead_code, reason = "dropping it ends the thread")] Option<Sender<()>>);
 
 impl Patience {

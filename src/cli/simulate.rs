@@ -22,7 +22,8 @@ pub struct Args {
     /// The starting displacement of each degree of freedom, as 1/10,0,0; one number moves the first alone.
     #[arg(long, value_name = "X", default_value = "1/10", allow_hyphen_values = true, value_parser = flag::<Displacement>)]
     displace: Displacement,
-    /// Algorithm 1 as printed: whole kicks at the start of a period, none at its end [default: half a kick at both]
+    /// Algorithm 1 as printed: whole kicks at the start of a period, none at its end [default: half a kick at
+    /// both]
     #[arg(long)]
     staggered: bool,
     /// Also draw energy, momentum and amplitude: FILE.svg, FILE.pdf or FILE.png.

@@ -16,8 +16,9 @@ use systems::levels::Method;
 
 /// Flags of `system`.
 ///
-/// --output FILE.svg, FILE.pdf or FILE.png draws: the multipliers and the shapes of the growing modes, the map of --scan, or the
-/// growth over the intervals of --intervals. FILE.xyz and FILE.vtu hold the growing modes in space, for viewers of molecules and meshes.
+/// --output FILE.svg, FILE.pdf or FILE.png draws: the multipliers and the shapes of the growing modes, the
+/// map of --scan, or the growth over the intervals of --intervals. FILE.xyz and FILE.vtu hold the growing
+/// modes in space, for viewers of molecules and meshes.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// The system, a JSON file as data/scenes/diatomic-tether.json.
@@ -29,28 +30,35 @@ pub struct Args {
     /// What the colours of a map stand for [default: growth].
     #[arg(long, value_name = "WHAT")]
     colour: Option<Colouring>,
-    /// Decide in exact arithmetic; where it exceeds --budget (products of machine words) the error states its cost.
+    /// Decide in exact arithmetic; where it exceeds --budget (products of machine words) the error states its
+    /// cost.
     #[arg(long)]
     exact: bool,
-    /// How well measured stiffnesses (by reference to NumPy's files) are known, relative to their norms [default: 1e-6].
+    /// How well measured stiffnesses (by reference to NumPy's files) are known, relative to their norms
+    /// [default: 1e-6].
     #[arg(long, value_name = "X", value_parser = flag::<f64>)]
     accuracy: Option<f64>,
-    /// The integrator of two measured levels: respa, implicit-explicit, impulse, molly-short, ... [default: the file's].
+    /// The integrator of two measured levels: respa, implicit-explicit, impulse, molly-short, ... [default:
+    /// the file's].
     #[arg(long, value_name = "NAME", value_parser = from_str::<Method>)]
     method: Option<Method>,
-    /// Unstable intervals of a number of the file: outer (all steps, or one of them), a scale, a stiffness, a spring, a mass
+    /// Unstable intervals of a number of the file: outer (all steps, or one of them), a scale, a stiffness, a
+    /// spring, a mass
     #[arg(long, value_name = "PATH=LO..HI", conflicts_with_all = ["scan", "exact"], value_parser = from_str::<Span>)]
     intervals: Option<Span>,
-    /// With the verdict: the unstable intervals of the outer step next to this one, from half of it to twice it
+    /// With the verdict: the unstable intervals of the outer step next to this one, from half of it to twice
+    /// it
     #[arg(long, conflicts_with_all = ["scan", "intervals", "friction"])]
     nearest: bool,
     /// The relative width above which no interval is missed, of --intervals and --nearest [default: 1e-4].
     #[arg(long, value_name = "W", value_parser = flag::<f64>)]
     resolution: Option<f64>,
-    /// Friction per unit time, as BAOAB has it: halfway through a drift over t, v becomes v exp(-G t). Does it stop the growth?
+    /// Friction per unit time, as BAOAB has it: halfway through a drift over t, v becomes v exp(-G t). Does
+    /// it stop the growth?
     #[arg(long, value_name = "G", value_parser = flag::<Rational>, conflicts_with_all = ["scan", "intervals"])]
     friction: Option<Rational>,
-    /// Exit with 0 if stable, 1 if unstable, both proven; with --quiet and without --output that is all the answer.
+    /// Exit with 0 if stable, 1 if unstable, both proven; with --quiet and without --output that is all the
+    /// answer.
     #[arg(long, conflicts_with_all = ["scan", "intervals", "friction"])]
     exit_code: bool,
     /// Leave the rigid motions of measured stiffnesses in.

@@ -30,10 +30,12 @@ pub struct Args {
     /// Decide in exact arithmetic alone, and show the exact trace where it is rational.
     #[arg(long)]
     exact: bool,
-    /// Also write a Coq proof of the verdict (fractions times powers of pi); proofs/tools/certificate.sh checks it.
+    /// Also write a Coq proof of the verdict (fractions times powers of pi); proofs/tools/certificate.sh
+    /// checks it.
     #[arg(long, value_name = "FILE.v")]
     certificate: Option<PathBuf>,
-    /// Friction per unit time, as BAOAB has it: halfway through a drift over t, v becomes v exp(-G t). Does it stop the growth?
+    /// Friction per unit time, as BAOAB has it: halfway through a drift over t, v becomes v exp(-G t). Does
+    /// it stop the growth?
     #[arg(long, value_name = "G", value_parser = flag::<Rational>)]
     friction: Option<Rational>,
     /// Exit with 0 if stable, 1 if unstable; with --quiet and without --output that is all the answer.
@@ -83,9 +85,11 @@ impl Args {
     }
 }
 
-/// Checking a certificate costs Coq some 2 s at 400 kicks, in exact numbers; by intervals, where 128 bits do, 20 s at 5,000.
+/// Checking a certificate costs Coq some 2 s at 400 kicks, in exact numbers; by intervals, where 128 bits do,
+/// 20 s at 5,000.
 const WORTH_CERTIFYING: u64 = 5000;
-/// A tongue's edges are doubles, so exact numbers gain 53 bits at every kick: Coq takes some 20 s at 300 kicks, and the square of that.
+/// A tongue's edges are doubles, so exact numbers gain 53 bits at every kick: Coq takes some 20 s at 300
+/// kicks, and the square of that.
 pub const EDGES_WORTH_CERTIFYING: u64 = 1000;
 
 /// That a certificate of so many kicks, `most` if no budget is given, is worth its while.

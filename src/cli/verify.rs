@@ -19,10 +19,12 @@ pub struct Args {
     /// A JSON document that kickdrift wrote.
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// Take the slower route for every pair or ratio of a map or a survey, and not for a random sample of them.
+    /// Take the slower route for every pair or ratio of a map or a survey, and not for a random sample of
+    /// them.
     #[arg(long)]
     all: bool,
-    /// The folder of the scene, where files are that a system refers to (Hessians) [default: the folder of FILE].
+    /// The folder of the scene, where files are that a system refers to (Hessians) [default: the folder of
+    /// FILE].
     #[arg(long, value_name = "FOLDER")]
     data: Option<PathBuf>,
 }

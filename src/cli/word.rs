@@ -18,7 +18,8 @@ use number::error::{Error, Result};
 pub struct Args {
     #[command(flatten)]
     question: Word,
-    /// Also write a Coq proof of the verdict at --h, where all numbers are fractions; proofs/tools/certificate.sh checks it.
+    /// Also write a Coq proof of the verdict at --h, where all numbers are fractions;
+    /// proofs/tools/certificate.sh checks it.
     #[arg(long, value_name = "FILE.v")]
     certificate: Option<PathBuf>,
     /// Shows the catalogue.

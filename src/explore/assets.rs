@@ -27,8 +27,8 @@ const SCRIPTS: &[(&str, &str)] = scripts!(
 /// Scripts of one host alone.
 const HOSTS: [&str; 2] = ["boot.js", "widget.js"];
 
-/// The file at `path` below the page's address; the page itself at the empty path. All scripts are one module: `page.js` mounts the page
-/// that was served, `explore.js` exports what another host mounts.
+/// The file at `path` below the page's address; the page itself at the empty path. All scripts are one
+/// module: `page.js` mounts the page that was served, `explore.js` exports what another host mounts.
 pub fn asset(path: &str) -> Option<Reply> {
     let path = if path.is_empty() { "index.html" } else { path };
     let media = match path.rsplit_once('.')?.1 {
@@ -67,8 +67,8 @@ static MODULE: LazyLock<String> = LazyLock::new(|| {
 
 static PAGE: LazyLock<String> = LazyLock::new(|| module("boot.js", ""));
 
-/// All scripts as one module, which takes a browser a single request: each becomes a function that returns what it exported, imports take
-/// that apart.
+/// All scripts as one module, which takes a browser a single request: each becomes a function that returns
+/// what it exported, imports take that apart.
 fn module(host: &str, end: &str) -> String {
     let filter = SCRIPTS.iter().filter(|(name, _)| *name == host || !HOSTS.contains(name));
     filter.map(|(name, text)| enclosed(name, text)).chain([end.into()]).collect()

@@ -45,7 +45,8 @@ impl Line {
     }
 }
 
-/// `x`, `kind`, `rate` at the middles of equal parts of lo..hi; for a fixed ratio `intervals`, all of its tongues there.
+/// `x`, `kind`, `rate` at the middles of equal parts of lo..hi; for a fixed ratio `intervals`, all of its
+/// tongues there.
 pub(super) fn answer(session: &Session, query: &Query) -> Result<Reply> {
     let ((lambda1, lambda2), line) = (query.stiffnesses(session)?, Line::read(query)?);
     let (lo, hi) = (query.need("lo", parse_rational)?, query.need("hi", parse_rational)?);

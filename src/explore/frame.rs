@@ -56,7 +56,8 @@ impl Frame {
         digits.max().unwrap_or(0)
     }
 
-    /// The least and the largest h2/h1 in the window, its halves beside it left out; `None` for the largest where h1 reaches 0.
+    /// The least and the largest h2/h1 in the window, its halves beside it left out; `None` for the largest
+    /// where h1 reaches 0.
     pub fn ratios(&self) -> (Rational, Option<Rational>) {
         let [(a, b), (c, d)] = [0, 1].map(|side| {
             let end = |n: i64| self.at(side, &Rational::from_integer(n.into())).max(Rational::default());

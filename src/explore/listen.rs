@@ -1,7 +1,8 @@
-//! Connections: not too many at once, none that is silent for long, and none that keeps its place without the token.
+//! Connections: not too many at once, none that is silent for long, and none that keeps its place without the
+//! token.
 //!
-//! Who has not yet asked with the token is a *stranger*: has a short time to do so, however the bytes drip, and leaves for those who come
-//! later. Who has asked with it takes a place.
+//! Who has not yet asked with the token is a *stranger*: has a short time to do so, however the bytes drip,
+//! and leaves for those who come later. Who has asked with it takes a place.
 
 use std::collections::VecDeque;
 use std::io;
@@ -18,8 +19,8 @@ use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::{OwnedSemaphorePermit, Semaphore, oneshot};
 use tokio::time::{Instant, Sleep, sleep, timeout_at};
 
-/// Connections with a place, and as many strangers, that are open at once; hyper buffers some 400 kB of a request's head at worst. Further
-/// ones wait in the system's queue.
+/// Connections with a place, and as many strangers, that are open at once; hyper buffers some 400 kB of a
+/// request's head at worst. Further ones wait in the system's queue.
 pub(super) const OPEN: usize = 256;
 
 /// A connection on which nothing moves for so long is closed: no question takes as long.

@@ -1,8 +1,8 @@
 //! The page that explores resonances: what it asks, and the answers.
 //!
 //! A person moves in the (h1, h2) plane and points at it; the page asks by an address below its own, such as
-//! `point?lambda1=pi^2&lambda2=pi^2/25&h1=1/100&h2=49/50`, and [`ask`] answers. All quantities in addresses are exact texts; nothing is
-//! remembered between two questions, so the same question has the same answer.
+//! `point?lambda1=pi^2&lambda2=pi^2/25&h1=1/100&h2=49/50`, and [`ask`] answers. All quantities in addresses
+//! are exact texts; nothing is remembered between two questions, so the same question has the same answer.
 //!
 //! | file | what is there |
 //! |---|---|
@@ -55,8 +55,8 @@ use query::Query;
 pub use reply::Reply;
 pub use session::Session;
 
-/// A question: its name, which is its address below the page's, whether it is answered at once (and so does not queue behind those
-/// that take long), the kicks that it may cost, and who answers.
+/// A question: its name, which is its address below the page's, whether it is answered at once (and so does
+/// not queue behind those that take long), the kicks that it may cost, and who answers.
 struct Question {
     name: &'static str,
     at_once: bool,
@@ -92,8 +92,9 @@ fn named(name: &str) -> Option<&'static Question> {
     QUESTIONS.iter().find(|question| question.name == name)
 }
 
-/// No question is to be worked on for longer: what it costs is bounded before, but far beyond the Verlet limit, where doubles overflow,
-/// pairs take the slower tiers. Who asks sets the flag then, and has [`overdue`] for an answer.
+/// No question is to be worked on for longer: what it costs is bounded before, but far beyond the Verlet
+/// limit, where doubles overflow, pairs take the slower tiers. Who asks sets the flag then, and has
+/// [`overdue`] for an answer.
 pub const LONGEST: Duration = Duration::from_secs(30);
 
 /// The answer to a question at `path` that took longer than [`LONGEST`].
@@ -102,8 +103,8 @@ pub fn overdue(path: &str) -> Reply {
     Reply::too_costly(None, limit, "this takes longer than half a minute")
 }
 
-/// The answer to the question at `path` with the parameters of `query` (`key=value&...`, percent-encoded), an error's too; `None`
-/// where there is no such question. Work ends soon after `stop` is set.
+/// The answer to the question at `path` with the parameters of `query` (`key=value&...`, percent-encoded), an
+/// error's too; `None` where there is no such question. Work ends soon after `stop` is set.
 pub fn ask(session: &Session, path: &str, query: &str, stop: &Arc<AtomicBool>) -> Option<Reply> {
     let question = named(path)?;
     let answer = || (question.answer)(session, &Query::parse(query)?);

@@ -1,4 +1,5 @@
-//! A system of many clocks: growth against the outer step, all steps in the proportions of the file, and the modes that grow.
+//! A system of many clocks: growth against the outer step, all steps in the proportions of the file, and the
+//! modes that grow.
 
 use serde_json::{Value, json};
 
@@ -19,7 +20,8 @@ pub(super) const MOST_PRODUCTS: u64 = 20_000_000_000;
 /// The relative width of intervals that none is missed of.
 const WIDTH: f64 = 1e-3;
 
-/// The verdict's document at the outer step `at`, all steps in the proportions of the file: the modes that grow there.
+/// The verdict's document at the outer step `at`, all steps in the proportions of the file: the modes that
+/// grow there.
 pub(super) fn modes(session: &Session, query: &Query) -> Result<Reply> {
     let scene = system(session)?;
     let at = query.need("at", positive)?;
@@ -60,8 +62,8 @@ fn range(scene: &SystemScene, query: &Query) -> Result<(Rational, (Rational, Rat
     Ok((value, (lo, hi)))
 }
 
-/// `stretches` {`lo`, `hi`, `verdict`} that cover the range; null of systems that have none proven. They may cost far more than
-/// growth does.
+/// `stretches` {`lo`, `hi`, `verdict`} that cover the range; null of systems that have none proven. They may
+/// cost far more than growth does.
 pub(super) fn stretches(session: &Session, query: &Query) -> Result<Reply> {
     let scene = system(session)?;
     let (_, (lo, hi)) = range(scene, query)?;
@@ -78,8 +80,9 @@ pub(super) fn stretches(session: &Session, query: &Query) -> Result<Reply> {
     Ok(Reply::json(&json!({ "stretches": stretches })))
 }
 
-/// `outer` and `rate` (null where it is not known) at evenly spaced outer steps, as many as asked for or fewer where these would cost
-/// too much; `own` the file's outer step, `verdict` the document of the file's own steps, `unit` of time, `title`.
+/// `outer` and `rate` (null where it is not known) at evenly spaced outer steps, as many as asked for or
+/// fewer where these would cost too much; `own` the file's outer step, `verdict` the document of the file's
+/// own steps, `unit` of time, `title`.
 pub(super) fn answer(session: &Session, query: &Query) -> Result<Reply> {
     let scene = system(session)?;
     let (value, (lo, hi)) = range(scene, query)?;

@@ -24,7 +24,8 @@ pub(super) const LIMITS: Limits = Limits { kicks: MOST_KICKS };
 /// Kicks of a certificate: checking it takes Coq a minute.
 pub(super) const MOST_CERTIFIED: u64 = 5000;
 
-/// The verdict's document and, beside it, `tenfold`, `tongue`, `nearest` and the `command` that gives the same verdict.
+/// The verdict's document and, beside it, `tenfold`, `tongue`, `nearest` and the `command` that gives the
+/// same verdict.
 pub(super) fn answer(session: &Session, query: &Query) -> Result<Reply> {
     let oscillator = oscillator(session, query)?;
     let answer = decided(&oscillator)?;
@@ -56,8 +57,8 @@ pub(super) fn certificate(session: &Session, query: &Query) -> Result<Reply> {
     Ok(Reply::file("verdict.v", "text/plain; charset=utf-8", text.into_bytes()))
 }
 
-/// The pair that is asked about; with `within`, the one with the simplest ratio whose h2 is off by no more than that: deep in the plane
-/// no other has a period that can be composed.
+/// The pair that is asked about; with `within`, the one with the simplest ratio whose h2 is off by no more
+/// than that: deep in the plane no other has a period that can be composed.
 fn oscillator(session: &Session, query: &Query) -> Result<Oscillator> {
     let (lambda1, lambda2) = query.stiffnesses(session)?;
     let (h1, h2) = (query.need("h1", parse)?, query.need("h2", parse)?);
@@ -91,7 +92,8 @@ fn tenfold(answer: &Decided) -> Value {
     if steps.is_finite() { json!({"steps": steps, "time": time}) } else { Value::Null }
 }
 
-/// The tongue that the pair is in or on the edge of, and the nearest others on its ray; null where there are none or they are not known.
+/// The tongue that the pair is in or on the edge of, and the nearest others on its ray; null where there are
+/// none or they are not known.
 fn about(answer: &Decided) -> Result<(Value, Value, Value)> {
     let (oscillator, verdict) = (&answer.oscillator, answer.decision.verdict);
     let rho = Laurent::ratio(oscillator.lambda2(), oscillator.lambda1());

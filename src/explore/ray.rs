@@ -96,7 +96,8 @@ impl Ray {
     }
 }
 
-/// `p, q, m, a, b, closed`, `lower` and `upper` {`s`, `h1`, `h2`}, `width` in s; all enclosed. What has no upper edge has null there.
+/// `p, q, m, a, b, closed`, `lower` and `upper` {`s`, `h1`, `h2`}, `width` in s; all enclosed. What has no
+/// upper edge has null there.
 pub(super) fn value(tongue: &Tongue) -> Value {
     let pair = |quantity: &Bounds| enclosure((quantity.lo, quantity.hi));
     let edge = |edge: &TongueEdge| {

@@ -4,11 +4,11 @@ use num_bigint::BigInt;
 
 use number::{Ratio, Rational};
 
-/// All p/q in lowest terms with p + q ≤ `most` in a closed range of ratios (no upper end: `None`), by p + q, then p; `None` where
-/// there are more than `count`.
+/// All p/q in lowest terms with p + q ≤ `most` in a closed range of ratios (no upper end: `None`), by p + q,
+/// then p; `None` where there are more than `count`.
 ///
-/// Down the tree of Stern and Brocot, whose every node's p + q exceeds its parent's: what lies outside or is too long is left out with
-/// all that is below it.
+/// Down the tree of Stern and Brocot, whose every node's p + q exceeds its parent's: what lies outside or is
+/// too long is left out with all that is below it.
 pub(super) fn ratios(range: &(Rational, Option<Rational>), most: u64, count: usize) -> Option<Vec<Ratio>> {
     let (lo, hi) = range;
     let below = |p: u64, q: u64| BigInt::from(p) * lo.denom() < lo.numer() * BigInt::from(q);

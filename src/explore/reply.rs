@@ -33,15 +33,15 @@ impl Reply {
         Reply { file: Some(name), ..Reply::new(media, bytes) }
     }
 
-    /// Work that costs more than is allowed: 422 with `{"too_costly": {"cost", "limit", "unit", "message"}}`; what is allowed is said
-    /// in kicks, about a nanosecond each.
+    /// Work that costs more than is allowed: 422 with `{"too_costly": {"cost", "limit", "unit", "message"}}`;
+    /// what is allowed is said in kicks, about a nanosecond each.
     pub(super) fn too_costly(cost: Option<f64>, limit: u64, message: &str) -> Reply {
         let body = json!({"cost": cost, "limit": limit, "unit": "kicks", "message": message});
         Reply { status: 422, ..Reply::json(&json!({ "too_costly": body })) }
     }
 
-    /// An error: 400 with `{"error": {"field", "value", "remedy", "message"}}`, 422 where it is one of cost, 500 where the machine
-    /// refused.
+    /// An error: 400 with `{"error": {"field", "value", "remedy", "message"}}`, 422 where it is one of cost,
+    /// 500 where the machine refused.
     pub(super) fn refusal(error: &Error, limit: u64) -> Reply {
         let status = match error.kind() {
             Kind::Budget => {

@@ -1,11 +1,12 @@
 //! The page over HTTP, for this machine alone.
 //!
-//! The server binds 127.0.0.1 and answers addresses that begin with a token, 128 random bits made at each start, so that no other page
-//! and no other user of the machine can ask; it answers requests whose `Host` is its own alone, so that no name that an attacker's DNS
-//! points here reaches it. What the page may load is what the server sends: a content security policy keeps everything else out.
+//! The server binds 127.0.0.1 and answers addresses that begin with a token, 128 random bits made at each
+//! start, so that no other page and no other user of the machine can ask; it answers requests whose `Host` is
+//! its own alone, so that no name that an attacker's DNS points here reaches it. What the page may load is
+//! what the server sends: a content security policy keeps everything else out.
 //!
-//! Work is bounded: connections, questions that wait, questions at work. A client that goes away drops its question, which sets the flag
-//! that the kernels look at.
+//! Work is bounded: connections, questions that wait, questions at work. A client that goes away drops its
+//! question, which sets the flag that the kernels look at.
 
 use std::convert::Infallible;
 use std::net::Ipv4Addr;
@@ -96,7 +97,8 @@ impl Server {
         let listener = {
             let _entered = runtime.enter();
             let socket = TcpSocket::new_v4().map_err(failed)?;
-            // A port whose last connections linger may be used again; elsewhere the option means something else.
+            // A port whose last connections linger may be used again; elsewhere the option means something
+            // else.
             #[cfg(unix)]
             socket.set_reuseaddr(true).map_err(failed)?;
             socket.bind((Ipv4Addr::LOCALHOST, port).into()).map_err(failed)?;
@@ -205,7 +207,8 @@ impl Shared {
         token.len() == self.token.len() && differ == 0
     }
 
-    /// Waits for a place and answers on a thread of its own; dropped with the client, it leaves the queue, or stops the work.
+    /// Waits for a place and answers on a thread of its own; dropped with the client, it leaves the queue, or
+    /// stops the work.
     async fn work(&self, question: &'static Question, query: &str) -> std::result::Result<Reply, Refused> {
         let busy = (StatusCode::SERVICE_UNAVAILABLE, "too many questions wait: ask again");
         let waiting = self.queue.try_acquire().map_err(|_| busy)?;

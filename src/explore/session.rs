@@ -90,7 +90,8 @@ impl Session {
         session
     }
 
-    /// Takes another window. One without width, or beyond doubles, cannot be shown: the session keeps its own.
+    /// Takes another window. One without width, or beyond doubles, cannot be shown: the session keeps its
+    /// own.
     #[must_use]
     pub fn within(self, window: [StepRange; 2]) -> Session {
         match spacing(&window) {
@@ -138,7 +139,8 @@ impl Session {
     }
 }
 
-/// 0 to the Verlet limit 2/√λ of either clock; where the slow one has none, as far as Figure 1 goes: to 3.5 half periods of the fast one.
+/// 0 to the Verlet limit 2/√λ of either clock; where the slow one has none, as far as Figure 1 goes: to 3.5
+/// half periods of the fast one.
 ///
 /// # Errors
 /// Stiffnesses beyond doubles.
@@ -156,7 +158,8 @@ fn beyond(field: &str, lambda: &Laurent) -> Error {
     Error::input(field, lambda, "is too large or too small to be drawn: choose another unit of time")
 }
 
-/// A thousandth of the window's smaller side, to one digit; `None` for windows without width, and beyond doubles.
+/// A thousandth of the window's smaller side, to one digit; `None` for windows without width, and beyond
+/// doubles.
 fn spacing([h1, h2]: &[StepRange; 2]) -> Option<Rational> {
     let width = |(lo, hi): &StepRange| hi.to_f64() - lo.to_f64();
     // The larger one as it is: NaN and infinity are no widths.

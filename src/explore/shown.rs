@@ -46,7 +46,8 @@ pub(super) fn scene(session: &Session, query: &Query) -> Result<Reply> {
     Ok(Reply::file("scene.json", "application/json", text.into_bytes()))
 }
 
-/// The picture that `kickdrift map` draws of the same pairs: `format` svg, png or pdf, `what` as for tiles, `curves` 1 to draw them.
+/// The picture that `kickdrift map` draws of the same pairs: `format` svg, png or pdf, `what` as for tiles,
+/// `curves` 1 to draw them.
 pub(super) fn picture(session: &Session, query: &Query) -> Result<Reply> {
     let format = query.read("format", figure)?.unwrap_or(Format::Svg);
     let colouring = query.read("what", colouring)?.unwrap_or_default();

@@ -16,8 +16,8 @@ use number::{Ratio, Rational, rational};
 pub(super) const MOST_KICKS: u64 = 200;
 const SEARCHED: u64 = 40;
 
-/// `rho`; `tongues` {`m`, `a`, `b`, `lower`, `upper`} with edges in s = h1² L1 at each rho; `closings` {`m`, `s`, `rho`, `exact`}, null beyond
-/// p + q = 40. All edges are certified to the doubles shown.
+/// `rho`; `tongues` {`m`, `a`, `b`, `lower`, `upper`} with edges in s = h1² L1 at each rho; `closings` {`m`,
+/// `s`, `rho`, `exact`}, null beyond p + q = 40. All edges are certified to the doubles shown.
 pub(super) fn answer(_session: &Session, query: &Query) -> Result<Reply> {
     let ratio = query.need("ratio", parse_ratio)?;
     let (lo, hi) = query.need("rho", parse_rational_range)?;

@@ -1,8 +1,9 @@
 //! Tiles: the certified verdicts of a map, by the kernel that makes maps.
 //!
-//! Level l and place (x, y) mean the `size`² pairs h1 = (x size + i + 1) d1, h2 = (y size + j + 1) d2 with d1 = unit/(size 2^l): some of the
-//! pairs that a map of the whole plane with these spacings has. p and q double with each level; from 2^15 kicks on a verdict's cost grows
-//! with their logarithm alone, and no tile is refused before they have 84 binary digits.
+//! Level l and place (x, y) mean the `size`² pairs h1 = (x size + i + 1) d1, h2 = (y size + j + 1) d2 with
+//! d1 = unit/(size 2^l): some of the pairs that a map of the whole plane with these spacings has. p and q
+//! double with each level; from 2^15 kicks on a verdict's cost grows with their logarithm alone, and no tile
+//! is refused before they have 84 binary digits.
 
 use num_bigint::{BigInt, BigUint};
 use num_traits::ToPrimitive;
@@ -31,8 +32,8 @@ pub(super) const SIZES: (u64, u64) = (16, 512);
 /// The deepest level.
 const DEEPEST: u64 = 4096;
 
-/// Binary digits of the multiples up to which pairs are decided: return maps begin in two doubles there, and in numbers that are twenty
-/// times as slow beyond.
+/// Binary digits of the multiples up to which pairs are decided: return maps begin in two doubles there, and
+/// in numbers that are twenty times as slow beyond.
 const DEEPEST_DECIDED: u64 = 84;
 
 /// Binary digits of the multiples up to which a pair's return maps are in doubles.
@@ -69,9 +70,11 @@ impl What {
     }
 }
 
-/// 16 bytes, `KDT1`, the size and what as u32, the largest growth as f32; then the values, row by row from the lowest h2. All little endian.
+/// 16 bytes, `KDT1`, the size and what as u32, the largest growth as f32; then the values, row by row from
+/// the lowest h2. All little endian.
 ///
-/// Where multiples are beyond a grid's, pairs are decided one by one, and a tile has fewer of them on the same piece of the plane.
+/// Where multiples are beyond a grid's, pairs are decided one by one, and a tile has fewer of them on the
+/// same piece of the plane.
 pub(super) fn answer(session: &Session, query: &Query) -> Result<Reply> {
     let place = Place::read(query)?;
     let what = query.read("what", What::read)?.unwrap_or(What::Verdict);
@@ -192,8 +195,8 @@ impl Place {
         })
     }
 
-    /// Σ (min(p, q)/2 + 1) where the multiples i, j are so large that they have a common factor as numbers drawn at random have:
-    /// the mean of 1/gcd is ζ(3)/ζ(2) = 0.7308.
+    /// Σ (min(p, q)/2 + 1) where the multiples i, j are so large that they have a common factor as numbers
+    /// drawn at random have: the mean of 1/gcd is ζ(3)/ζ(2) = 0.7308.
     fn cost(&self) -> f64 {
         let [d1, d2] = self.units.each_ref().map(|unit| unit.to_f64().unwrap_or(f64::INFINITY));
         let [x, y] =

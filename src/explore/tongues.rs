@@ -28,8 +28,8 @@ const DIGITS: u32 = 8;
 /// Depth from which doubles do not place edges in the window.
 const DEEP: u32 = 9;
 
-/// Every tongue of every ratio up to `max_sum`, or as far as the limit allows, that lies in the window, narrower ones than `min_width`
-/// (in h1) left out; the rest of the story is in `segment`.
+/// Every tongue of every ratio up to `max_sum`, or as far as the limit allows, that lies in the window,
+/// narrower ones than `min_width` (in h1) left out; the rest of the story is in `segment`.
 pub(super) fn answer(session: &Session, query: &Query) -> Result<Reply> {
     let (stiffness, window) = (query.stiffness(session)?, query.window(session)?);
     let asked = query.read("max_sum", count(2, 100_000))?;
@@ -79,7 +79,8 @@ fn affordable(
     (best, largest)
 }
 
-/// About how many tongues a ratio has in the window: one a half turn pθ/π up to the fast clock's limit, the q − 1 others beyond it.
+/// About how many tongues a ratio has in the window: one a half turn pθ/π up to the fast clock's limit, the q
+/// − 1 others beyond it.
 fn expected(ratio: Ratio, [(a, b), (c, d)]: [(f64, f64); 2], root: f64) -> f64 {
     let (p, q) = (ratio.p() as f64, ratio.q() as f64);
     let turns = |h1: f64| p * (h1 * root / 2.0).clamp(0.0, 1.0).asin() / std::f64::consts::FRAC_PI_2;
@@ -113,8 +114,9 @@ fn width(tongue: &Tongue) -> f64 {
     tongue.row.gap.width.1 * h1 / (2.0 * tongue.lower.s.lo)
 }
 
-/// `p, q, ratio, m, a, b, closed`; `from`, `to`: (h1, h2) of its edges, to null of the last tongue; `line`: what of it lies in the window
-/// and half a window around it, as fractions (u, v, u, v) of the window; `ends`: whether those are its edges.
+/// `p, q, ratio, m, a, b, closed`; `from`, `to`: (h1, h2) of its edges, to null of the last tongue; `line`:
+/// what of it lies in the window and half a window around it, as fractions (u, v, u, v) of the window;
+/// `ends`: whether those are its edges.
 fn segment(tongue: &Tongue, frame: &Frame) -> Option<Value> {
     let (ratio, gap) = (tongue.row.ratio, &tongue.row.gap);
     let slope = Rational::from(ratio);

@@ -52,7 +52,8 @@ fn what_lets_the_step_grow_of_periods_of_10_and_40_fs() {
     assert!(all.rows.iter().all(|own| own.gain.as_ref().is_some_and(|gain| *gain > ratio(1, 2))));
 }
 
-/// The edges of the band, decided by the ladder at a thousandth to either side, at the corner of the band; all steps taken are stable.
+/// The edges of the band, decided by the ladder at a thousandth to either side, at the corner of the band;
+/// all steps taken are stable.
 #[test]
 fn the_rows_of_kicks_and_drifts_hold_at_the_corner_of_the_band() {
     let bond = "OH:K=450kcal/mol/A^2,15.999,1.008";

@@ -67,7 +67,8 @@ fn a_step_above_the_first_tongue_is_not_recommended_though_stable() {
     assert_eq!((&answer.largest, &answer.safe), (&Some(ratio(4, 1)), &Some(ratio(3, 1))));
 }
 
-/// Of every ratio between the ends that are told, tried by trace, none is stable; a hundredth beyond them one is.
+/// Of every ratio between the ends that are told, tried by trace, none is stable; a hundredth beyond them one
+/// is.
 #[test]
 fn no_other_ratio_helps_where_all_between_two_ends_are_unstable() {
     for text in ["1/2,9/2", "1/2,24/5", "1/2,19/2", "1,14"] {
@@ -129,7 +130,8 @@ fn constrained_hydrogens_leave_room_for_an_outer_step_of_4_fs() {
     let answer = &advice.schemes[0];
     assert!(advice.silent && answer.status == Status::Safe);
     assert_eq!(format!("{:.2}", advice.modes[0].part(4).0), "4.86");
-    // Stable for every slow force whose period is above this, proven: a slow force just below it takes it out of the region.
+    // Stable for every slow force whose period is above this, proven: a slow force just below it takes it out
+    // of the region.
     let needs = answer.needs.unwrap();
     let with = |slow: f64| {
         let modes = ["19.45fs".to_string(), format!("slow={slow:.6}fs")];
@@ -143,7 +145,8 @@ fn constrained_hydrogens_leave_room_for_an_outer_step_of_4_fs() {
 
 #[test]
 fn a_period_alone_is_limited_by_half_of_it_less_the_coarseness_of_the_inner_step() {
-    // T = 19.45 fs: T/2 = 9.725 fs for ever finer inner steps; p inner steps of T/pi sin(pi/2p) at the ratio p.
+    // T = 19.45 fs: T/2 = 9.725 fs for ever finer inner steps; p inner steps of T/pi sin(pi/2p) at the ratio
+    // p.
     let edge = |steps: &str| {
         let advice = ask(&["19.45fs"], &[steps]);
         let lower = advice.schemes[0].rows[0].first.as_ref().unwrap().lower;
@@ -207,7 +210,8 @@ fn friction_masks_a_resonance_from_where_it_is_told() {
     assert_eq!([at(0.999 * lo), at(1.001 * hi)], [Some(false), Some(true)]);
 }
 
-/// Periods of 1 and 1.0733 ps with steps of 310 and 2,480 fs are damped at 1.484 to 1.767/ps, and at no larger friction.
+/// Periods of 1 and 1.0733 ps with steps of 310 and 2,480 fs are damped at 1.484 to 1.767/ps, and at no
+/// larger friction.
 #[test]
 fn a_friction_beyond_those_that_mask_is_not_said_to() {
     let modes = ["bead=1ps", "slow=1.0733ps"].map(|text| Mode::from_period(text).unwrap()).to_vec();
@@ -231,7 +235,8 @@ fn three_clocks_that_are_no_multiples_are_still_decided() {
     assert_eq!(advice.schemes[0].rows.len(), 2);
 }
 
-/// 30,001 fast steps in a period: a silent slow clock has closed tongues only, which are not looked for one by one.
+/// 30,001 fast steps in a period: a silent slow clock has closed tongues only, which are not looked for one
+/// by one.
 #[test]
 fn steps_that_all_but_agree_are_answered_by_what_is_shown_of_them() {
     let advice = ask(&["11fs"], &["3,3.0001"]);
@@ -245,7 +250,8 @@ fn steps_that_all_but_agree_are_answered_by_what_is_shown_of_them() {
 
 #[test]
 fn both_routes_find_the_same_first_edge() {
-    // Two clocks by the vibrating string; the same as three, the middle one all but silent, by positive orbits.
+    // Two clocks by the vibrating string; the same as three, the middle one all but silent, by positive
+    // orbits.
     let two = ask(&TWO, &["1/2,4"]);
     let three = ask(&["10fs", "1000000000fs", "40fs"], &["1/2,1,4"]);
     let edge = |advice: &Advice| advice.schemes[0].rows[0].first.as_ref().unwrap().lower;

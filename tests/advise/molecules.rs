@@ -19,10 +19,11 @@ fn findings(name: &str, schemes: &[&str]) -> Findings {
     findings_with(name, schemes, &[])
 }
 
-/// The published case reads "first window 5.023 to 5.030 fs, tenfold in 814 steps = 4.1 ps", found by a scan. Its growth is that at
-/// 5.028 fs, of the points of a grid of 0.002 fs the one that grows fastest: 4 + 0.002 k meets the window at 5.024, 5.026, 5.028 and
-/// 5.030 fs, not at 5.022 and 5.032. The window itself is 5.0229 to 5.0319 fs, at worst tenfold in 807.5 steps at 5.0274 fs; before it lies
-/// another one of 0.0003 fs, 5.0226 to 5.0229 fs, that no such grid meets.
+/// The published case reads "first window 5.023 to 5.030 fs, tenfold in 814 steps = 4.1 ps", found by a scan.
+/// Its growth is that at 5.028 fs, of the points of a grid of 0.002 fs the one that grows fastest: 4 + 0.002
+/// k meets the window at 5.024, 5.026, 5.028 and 5.030 fs, not at 5.022 and 5.032. The window itself
+/// is 5.0229 to 5.0319 fs, at worst tenfold in 807.5 steps at 5.0274 fs; before it lies another one of 0.0003
+/// fs, 5.0226 to 5.0229 fs, that no such grid meets.
 #[test]
 fn alanine_dipeptide_has_the_published_window_and_a_grid_of_half_a_femtosecond_misses_it() {
     let findings = findings("alanine-dipeptide.json", &["0.5028,5.028", "0.503,5.03", "0.5032,5.032"]);
@@ -47,9 +48,9 @@ fn alanine_dipeptide_has_the_published_window_and_a_grid_of_half_a_femtosecond_m
     assert!(findings.groups[0].atoms.starts_with("H "), "{:?}", findings.groups[0]);
 }
 
-/// The published case names a linear limit of 9.63 fs for GROMACS's factor 2. T = 19.45 fs is the shortest period of the same molecule with its
-/// bonds to hydrogens held; 9.63 fs is the first unstable outer step at 10 inner steps in each, 8.71 fs that at 2, bonds, angles and torsions inside. 4 fs
-/// is below both.
+/// The published case names a linear limit of 9.63 fs for GROMACS's factor 2. T = 19.45 fs is the shortest
+/// period of the same molecule with its bonds to hydrogens held; 9.63 fs is the first unstable outer step at
+/// 10 inner steps in each, 8.71 fs that at 2, bonds, angles and torsions inside. 4 fs is below both.
 #[test]
 fn alanine_dipeptide_with_its_hydrogens_held_has_the_published_limit_at_ten_inner_steps() {
     let findings = findings_with("alanine-dipeptide.json", &["0.4,4", "2,4"], &[("constraints", "h-bonds")]);
@@ -96,7 +97,8 @@ fn heavy_hydrogens_and_friction_are_answered_for_hessians() {
     assert_eq!([damped(0.99 * mask), damped(1.01 * mask)], [Some(false), Some(true)]);
 }
 
-/// Every method of the table, with the proof of its own kernel: half the fastest period bounds MOLLY, h² S < 4 the midpoint rule.
+/// Every method of the table, with the proof of its own kernel: half the fastest period bounds MOLLY, h² S <
+/// 4 the midpoint rule.
 #[test]
 fn other_methods_let_the_step_of_a_molecule_grow() {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("data/scenes");

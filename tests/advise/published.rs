@@ -42,7 +42,8 @@ fn a_mode_that_is_called_fast_or_slow_is_on_that_clock_wherever_it_stands() {
     }
 }
 
-/// Every name is one of a mode, on the fast clock; held bonds are slower than free ones, and hydrogens that are heavy too.
+/// Every name is one of a mode, on the fast clock; held bonds are slower than free ones, and hydrogens that
+/// are heavy too.
 #[test]
 fn typical_fast_periods_are_asked_for_by_name() {
     for own in &FAST {
@@ -81,8 +82,8 @@ fn the_resonances_of_one_clock_stand_at_the_turns_of_the_method() {
     }
 }
 
-/// O-H of q-TIP4P/F: the quartic bond, from 48 phases of an energy in kT at 298 K, under velocity Verlet. Whether one leaves in 20,000
-/// steps.
+/// O-H of q-TIP4P/F: the quartic bond, from 48 phases of an energy in kT at 298 K, under velocity Verlet.
+/// Whether one leaves in 20,000 steps.
 fn loses(step: f64, energy: f64) -> bool {
     // kJ/mol, 1/nm, amu, ps.
     let (d, a, mu, kt): (f64, f64, f64, f64) = (485.72, 22.87, 0.94825, 2.4777);

@@ -7,7 +7,8 @@ use kickdrift::map::Grid;
 use kickdrift::number::parse::parse;
 use nalgebra::DMatrix;
 
-/// The least time in seconds of at least `runs` runs, and as many more as `seconds` hold; with the last result.
+/// The least time in seconds of at least `runs` runs, and as many more as `seconds` hold; with the last
+/// result.
 pub fn least<T>(runs: u32, seconds: f64, mut work: impl FnMut() -> T) -> (f64, T) {
     let (begin, mut least, mut done) = (Instant::now(), f64::INFINITY, 0);
     loop {
@@ -55,8 +56,8 @@ pub fn figure_1(n: u64) -> Grid {
     Grid::new(x("pi^2"), x("pi^2/25"), [x(&d), x(&d)], (x(&d), x("2/pi")), (x(&d), x("7/2"))).expect("a grid")
 }
 
-/// The processor time in seconds that the work takes on this thread and those it starts and ends; elsewhere than on Linux
-/// the time that passes.
+/// The processor time in seconds that the work takes on this thread and those it starts and ends; elsewhere
+/// than on Linux the time that passes.
 pub fn processor_time<T>(work: impl FnOnce() -> T) -> f64 {
     let start = now();
     std::hint::black_box(work());

@@ -2,7 +2,8 @@
 //!
 //!     tests/bench/instructions.sh
 //!
-//! `cargo bench --bench kernels` lists the names; a second argument (`portable`, `avx2`, `avx512`) forces that form.
+//! `cargo bench --bench kernels` lists the names; a second argument (`portable`, `avx2`, `avx512`) forces
+//! that form.
 
 use kickdrift::map::{Map, Pairs, Products, Resources};
 use kickdrift::number::rational::ratio;

@@ -1,9 +1,10 @@
-//! Figure 1 side by side: certified, by the same kernel without certificates, and by the loop in C that anyone would
-//! write (tests/bench/peers/full_period.c, built here if gcc is there), with each instruction set that the processor has
-//! and beside the time of its fused operations alone. Minima over repetitions; ratios count.
+//! Figure 1 side by side: certified, by the same kernel without certificates, and by the loop in C that
+//! anyone would write (tests/bench/peers/full_period.c, built here if gcc is there), with each instruction
+//! set that the processor has and beside the time of its fused operations alone. Minima over repetitions;
+//! ratios count.
 //!
-//! `cargo bench --bench map [-- N]`: steps of 1/N, 1000 unless given; with `curve`, the cost for N up to 4000; with
-//! `scattered`, pairs on no grid beside the grid.
+//! `cargo bench --bench map [-- N]`: steps of 1/N, 1000 unless given; with `curve`, the cost for N up to
+//! 4000; with `scattered`, pairs on no grid beside the grid.
 
 use std::path::PathBuf;
 use std::process::Command;
@@ -40,7 +41,8 @@ fn certified(grid: &Grid, resources: Resources) -> (u64, Counters) {
 
 fn side_by_side(n: u64) {
     let (grid, peer) = (figure_1(n), build_peer());
-    // Processor time of one thread each, so that a busy machine tells the same: minima over rounds that alternate.
+    // Processor time of one thread each, so that a busy machine tells the same: minima over rounds that
+    // alternate.
     let one = Resources { threads: 1, ..Resources::default() };
     let sets = instruction_sets();
     let (mut ours, mut bare, mut loops) =
@@ -92,7 +94,8 @@ fn curve() {
     }
 }
 
-/// A million pairs of the window of Figure 1, each on a grid of its own: steps of 1/d with d between 500 and 2000.
+/// A million pairs of the window of Figure 1, each on a grid of its own: steps of 1/d with d between 500
+/// and 2000.
 fn scattered() {
     const COUNT: u64 = 1_000_000;
     let (grid, one) = (figure_1(1000), Resources { threads: 1, ..Resources::default() });
@@ -185,8 +188,8 @@ macro_rules! fused_operations {
 fused_operations!(avx512, "avx512f,fma", 96);
 fused_operations!(avx2, "avx2,fma", 48);
 
-/// Seconds for each fused operation on a double that stays in a register, on one core with these instructions: the
-/// limit that no kernel passes. NaN where it is not measured.
+/// Seconds for each fused operation on a double that stays in a register, on one core with these
+/// instructions: the limit that no kernel passes. NaN where it is not measured.
 fn seconds_a_fused_operation(set: &str) -> f64 {
     const N: u64 = 1_000_000;
     let once = || match set {

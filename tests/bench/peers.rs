@@ -1,4 +1,5 @@
-//! Our side of tests/bench/peers/peers.py: the same work, timed inside the process, answers written to a folder.
+//! Our side of tests/bench/peers/peers.py: the same work, timed inside the process, answers written to a
+//! folder.
 //!
 //! `cargo bench --bench peers -- FOLDER` prints `name seconds` line by line, minima over repetitions.
 
@@ -39,7 +40,8 @@ fn main() {
     levels(folder);
 }
 
-/// Two dense levels of 288 degrees of freedom, four inner steps: a verdict from the matrices on, and ten outer steps in one eigenbasis.
+/// Two dense levels of 288 degrees of freedom, four inner steps: a verdict from the matrices on, and ten
+/// outer steps in one eigenbasis.
 fn levels(folder: &Path) {
     let n = 288;
     let mut numbers = Numbers(5);

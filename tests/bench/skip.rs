@@ -1,4 +1,5 @@
-//! What a scene does not ask for is not done: counts of work and times, product by product, as a Markdown table.
+//! What a scene does not ask for is not done: counts of work and times, product by product, as a Markdown
+//! table.
 //!
 //!     cargo bench --bench skip
 

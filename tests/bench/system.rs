@@ -1,11 +1,12 @@
-//! Systems: the verdict on the half period with sparse kicks against the obvious way, the dense 2n x 2n propagator of
-//! the full period and a general eigenvalue routine; and the rate of kicks of the simulation.
+//! Systems: the verdict on the half period with sparse kicks against the obvious way, the dense 2n x 2n
+//! propagator of the full period and a general eigenvalue routine; and the rate of kicks of the simulation.
 //!
-//! Run with `cargo bench --bench system`. Dense random systems come first: n = 66 within 50 ms, a map of 182 points of n = 12
-//! within a second, n = 1,000 in two levels within 5 s and 50 outer steps of it within 60 s; others within a second, a factor of 8 (where kicks are
-//! many), 10^7 kicks/s. What a run does not keep it says beside the figure, for on a busy machine that may be the machine's fault: it ends with an
-//! error for wrong answers alone. With few kicks a period there is little to compose, and the eigenvalues remain: those of the
-//! 2n x 2n matrix alone cost some five times those of the n x n one with the vectors that prove them.
+//! Run with `cargo bench --bench system`. Dense random systems come first: n = 66 within 50 ms, a map of 182
+//! points of n = 12 within a second, n = 1,000 in two levels within 5 s and 50 outer steps of it within 60 s;
+//! others within a second, a factor of 8 (where kicks are many), 10^7 kicks/s. What a run does not keep it
+//! says beside the figure, for on a busy machine that may be the machine's fault: it ends with an error for
+//! wrong answers alone. With few kicks a period there is little to compose, and the eigenvalues remain: those
+//! of the 2n x 2n matrix alone cost some five times those of the n x n one with the vectors that prove them.
 
 use kickdrift::avi::{Clocks, Ends, Linear, Simulation, State};
 use kickdrift::number::Rational;
@@ -76,7 +77,8 @@ fn dense_file(n: usize, seed: u64, inner: u64, outer: &str) -> String {
     )
 }
 
-/// Dense files as people have them: a whole verdict, from the text on; the verdict alone beside the dense way; a map.
+/// Dense files as people have them: a whole verdict, from the text on; the verdict alone beside the dense
+/// way; a map.
 fn dense() {
     for (n, promised) in [(10, 0.01), (12, 0.01), (66, 0.05)] {
         for outer in ["1", "14/5"] {

@@ -1,5 +1,5 @@
-//! All edges of all coprime p + q <= N at rho = 1/25, certified, one thread and all threads; all tongues, proven open
-//! and their widths known; one edge of a long period; closings; the survey.
+//! All edges of all coprime p + q <= N at rho = 1/25, certified, one thread and all threads; all tongues,
+//! proven open and their widths known; one edge of a long period; closings; the survey.
 //!
 //!     cargo bench --bench tongue -- 100        beside it: tests/bench/peers/tongue.py 100
 //!

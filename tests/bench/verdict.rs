@@ -1,6 +1,6 @@
-//! One verdict: `cargo bench --bench verdict [-- DIRECTORY]`. First tier against tier, minima over repetitions; then the verdicts of
-//! random pairs as their periods grow from 10^2 to 10^17 kicks, drawn as verdict.svg in DIRECTORY, target unless given.
-//! Only ratios count.
+//! One verdict: `cargo bench --bench verdict [-- DIRECTORY]`. First tier against tier, minima over
+//! repetitions; then the verdicts of random pairs as their periods grow from 10^2 to 10^17 kicks, drawn as
+//! verdict.svg in DIRECTORY, target unless given. Only ratios count.
 
 use std::path::PathBuf;
 use std::process::Command;

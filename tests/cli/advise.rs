@@ -483,7 +483,8 @@ fn ring_modes_are_named_and_nothing_is_called_safe_of_ring_polymers() {
     }
 }
 
-/// A friction of 0.05/ps masks it, one of 3/ps does not: "above" is said only where all larger ones are proven.
+/// A friction of 0.05/ps masks it, one of 3/ps does not: "above" is said only where all larger ones are
+/// proven.
 #[test]
 fn a_friction_that_masks_is_no_bound_unless_all_larger_ones_do() {
     let line = "advise --period bead=1ps --period other=1.0733ps --steps 310fs,2480fs --no-levers --friction";

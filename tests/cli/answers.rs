@@ -148,7 +148,8 @@ fn at_a_terminal(line: &str) -> String {
     let terminal = std::fs::OpenOptions::new().write(true).open(name).unwrap();
     let mut command = desk.command(&words(line, &[]));
     assert!(command.stdout(terminal).status().unwrap().success());
-    // The terminal must be closed on our side: then its reader comes to an end, which Linux tells by an error.
+    // The terminal must be closed on our side: then its reader comes to an end, which Linux tells by an
+    // error.
     drop(command);
     let (mut shown, mut screen) = (Vec::new(), std::fs::File::from(master));
     let _ = screen.read_to_end(&mut shown);
@@ -247,7 +248,8 @@ fn stiffnesses_far_beyond_doubles_are_answered_too() {
     assert_eq!(verdict["resonance"].to_string(), r#"{"m":60,"a":0,"b":12}"#);
 }
 
-/// No machine follows 10^12 kicks one by one within a test: s = 1 turns by π/3, so that they come to a turn by a multiple of π/3.
+/// No machine follows 10^12 kicks one by one within a test: s = 1 turns by π/3, so that they come to a turn
+/// by a multiple of π/3.
 #[test]
 fn a_slow_step_of_ever_so_many_fast_ones_is_leapt_over() {
     let desk = Desk::new();
@@ -422,7 +424,8 @@ fn a_sum_that_lacks_little_says_how_much() {
     assert!(text.contains("consistent   no: the coefficients sum to D 1 - 1.0e-19, K 1"), "{text}");
 }
 
-/// 71, 97 and 310 steps of 0.01 fs meet after 2.1 million kicks, and edges take a thousand orbits: the cost is told before any of it.
+/// 71, 97 and 310 steps of 0.01 fs meet after 2.1 million kicks, and edges take a thousand orbits: the cost
+/// is told before any of it.
 #[test]
 fn advice_on_steps_that_rarely_meet_is_refused_with_its_cost() {
     let line = "advise --period 10fs --period 20fs --period 60fs --steps 0.71fs,0.97fs,3.1fs --band 0";

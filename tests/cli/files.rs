@@ -67,14 +67,15 @@ fn two_results_do_not_share_a_file() {
 const LONG: &str = "map --lambda1 pi^2 --lambda2 pi^2/25 --step 1/6000 --h1-range 1/6000..2/pi \
                     --h2-range 1/6000..7/2 --output map.npz";
 
-/// The command with signals as a terminal leaves them. A script's background job ignores SIGINT, `nohup` ignores SIGHUP, and whatever runs
-/// these tests hands that on: the program would go on, as it should.
+/// The command with signals as a terminal leaves them. A script's background job ignores SIGINT, `nohup`
+/// ignores SIGHUP, and whatever runs these tests hands that on: the program would go on, as it should.
 #[cfg(unix)]
 fn hearing(mut command: std::process::Command) -> std::process::Command {
     use std::os::unix::process::CommandExt;
     let reset = || {
         for signal in [libc::SIGHUP, libc::SIGINT, libc::SIGTERM, libc::SIGXCPU] {
-            // SAFETY: `signal` may be called between fork and exec, and the default action runs no code of ours.
+            // SAFETY: `signal` may be called between fork and exec, and the default action runs no code of
+            // ours.
             unsafe { libc::signal(signal, libc::SIG_DFL) };
         }
         Ok(())
@@ -324,7 +325,8 @@ fn names_and_titles_reach_a_terminal_without_control_characters() {
     assert!(!ended.stdout.contains(is_control) && !ended.stderr.contains(is_control));
 }
 
-/// Values that a file says it has, counted before there is room for them: within the memory that a shell allows, and at once.
+/// Values that a file says it has, counted before there is room for them: within the memory that a shell
+/// allows, and at once.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_file_of_more_values_than_memory_holds_is_refused() {

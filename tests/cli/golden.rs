@@ -1,5 +1,5 @@
-//! Counts that must come out exactly, the small ones from a route of their own: the full period, kick by kick,
-//! in rational arithmetic, classified by its trace and by Q = ±I.
+//! Counts that must come out exactly, the small ones from a route of their own: the full period, kick by
+//! kick, in rational arithmetic, classified by its trace and by Q = ±I.
 
 use std::collections::BTreeMap;
 
@@ -53,8 +53,8 @@ fn classified(
     }
 }
 
-/// λ1 = 16 with multiples of 1/20 makes s = i²/25: s = 1 at i = 5 (edges that are exactly rational), the Verlet
-/// limit at i = 10, and two columns beyond it.
+/// λ1 = 16 with multiples of 1/20 makes s = i²/25: s = 1 at i = 5 (edges that are exactly rational), the
+/// Verlet limit at i = 10, and two columns beyond it.
 #[test]
 fn a_map_agrees_pair_by_pair_with_the_full_period_in_rationals() {
     let line = "map --lambda1 16 --lambda2 16/25 --step 1/20 --h1-range 1/20..3/5 --h2-range 1/20..7/4";

@@ -78,7 +78,8 @@ fn a_number_of_a_hundred_thousand_digits_is_refused_at_once() {
 #[test]
 fn a_ratio_that_costs_too_much_names_the_flag_that_allows_it() {
     let desk = Desk::new();
-    // Both clocks are beyond their own limits, so every kick would be followed; few of them are slow, so no return map helps.
+    // Both clocks are beyond their own limits, so every kick would be followed; few of them are slow, so no
+    // return map helps.
     refused(&desk, &verdict("1000", "10", "0.12345", "100003"), &["kicks", "--budget", " s;"]);
     // Its verdict is known, and its growth over a period has 2^84 digits.
     refused(

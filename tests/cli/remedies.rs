@@ -58,7 +58,8 @@ fn the_budget_that_a_message_names_is_enough() {
     }
 }
 
-/// Doubles do not reach the end of this period, whatever they may cost: the first refusal named a budget after which came another one.
+/// Doubles do not reach the end of this period, whatever they may cost: the first refusal named a budget
+/// after which came another one.
 #[test]
 fn kicks_beyond_both_limits_name_what_exact_numbers_cost() {
     let line = "verdict --lambda1 1000 --lambda2 10 --h1 0.12345 --h2 100003";

@@ -1,4 +1,5 @@
-//! Every leaf of every kind of document changed: `verify` finds the change, or names the leaf as one that it does not recheck.
+//! Every leaf of every kind of document changed: `verify` finds the change, or names the leaf as one that it
+//! does not recheck.
 
 use std::path::Path;
 
@@ -8,8 +9,9 @@ use serde_json::{Value, json};
 
 use super::support::Desk;
 
-/// Other runs and frictions with the same answer: whether growth is tenfold within the run, and whether friction masks it. Advice
-/// echoes what it was asked in other words than the arguments', so [`is_asked_for`] cannot ask again.
+/// Other runs and frictions with the same answer: whether growth is tenfold within the run, and whether
+/// friction masks it. Advice echoes what it was asked in other words than the arguments', so [`is_asked_for`]
+/// cannot ask again.
 const STILL_TRUE: [(&str, &str); 7] = [
     // The schemes of steps replace those of the file.
     ("advise tiny.json", ".input.system.potentials.1.step a digit"),
@@ -86,8 +88,8 @@ fn document(desk: &Desk, line: &str) -> Result<Value, Error> {
     Ok(serde_json::from_slice(&bytes).unwrap())
 }
 
-/// Whether kickdrift writes these rows when it is asked what the input says: a question with another wording, or another
-/// question with the same answer, is no lie.
+/// Whether kickdrift writes these rows when it is asked what the input says: a question with another wording,
+/// or another question with the same answer, is no lie.
 fn is_asked_for(desk: &Desk, line: &str, tampered: &Value) -> bool {
     let asked = arguments(desk, line, tampered).and_then(|line| document(desk, &line).ok());
     let rows = |whole: &Value| {
@@ -139,8 +141,8 @@ fn arguments(desk: &Desk, line: &str, tampered: &Value) -> Option<String> {
     Some(words.join(" "))
 }
 
-/// Everything that is done to a value. `see` is shown each tampered document, with the path and what was done there; `back`
-/// puts a value into the whole.
+/// Everything that is done to a value. `see` is shown each tampered document, with the path and what was done
+/// there; `back` puts a value into the whole.
 fn tamper(value: &Value, path: &str, back: &dyn Fn(Value) -> Value, see: &mut dyn FnMut(Value, &str, &str)) {
     let mut now = |what: &str, value: Value| see(back(value), path, what);
     match value {
@@ -270,7 +272,8 @@ fn nudge(value: &Value, path: &str, back: &dyn Fn(Value) -> Value, see: &mut dyn
     }
 }
 
-/// Whether `path` (`.modes.0.before`) lies at or below what is named as not rechecked (`modes.*.before: why`).
+/// Whether `path` (`.modes.0.before`) lies at or below what is named as not rechecked (`modes.*.before:
+/// why`).
 fn is_below(path: &str, named: &str) -> bool {
     let named: Vec<&str> = named.split(':').next().unwrap().split('.').collect();
     let path: Vec<&str> = path.split('.').skip(1).collect();
@@ -284,8 +287,9 @@ fn passed(desk: &Desk, name: &str, whole: &Value) -> (usize, Vec<String>) {
     let sound = claim.recheck(&options, None).unwrap_or_else(|error| panic!("{name}: {error}"));
     assert_eq!(sound.failures, [], "{name}");
     let again = claim.again(&options).unwrap();
-    // A recheck begins with the document computed again from its input. It is the same for all changes beside the input: where it shows the
-    // change, there is no need to compute it once more; where it does not, the whole recheck follows.
+    // A recheck begins with the document computed again from its input. It is the same for all changes beside
+    // the input: where it shows the change, there is no need to compute it once more; where it does not, the
+    // whole recheck follows.
     let passes = |tampered: &Value| {
         let Ok(claim) = Claim::read(&tampered.to_string()) else { return false };
         let apart = again.as_ref().and_then(|again| claim.apart(again)).unwrap_or_default();

@@ -300,7 +300,8 @@ fn a_window_of_steps_ends_where_it_is_said_to_end() {
     assert_eq!(count("", "--h2-range 0..2"), 1);
 }
 
-/// 3/2, m = 1: s = 4 sin²(pi/6) = 1. And the law at rho = 1e-9, whose tongue is not known to the digits that it misses.
+/// 3/2, m = 1: s = 4 sin²(pi/6) = 1. And the law at rho = 1e-9, whose tongue is not known to the digits that
+/// it misses.
 #[test]
 fn points_and_laws_are_the_nearest_doubles_and_what_they_miss_is_enclosed() {
     let line = "tongues --ratio 3/2 --rho 2/3 --columns predicted,first-order";

@@ -1,4 +1,5 @@
-//! i-PI: `Dynamics` nests `nmts`, level 0 outermost, half a step of each level around those below (`ipi/engine/motion/dynamics.py`).
+//! i-PI: `Dynamics` nests `nmts`, level 0 outermost, half a step of each level around those below
+//! (`ipi/engine/motion/dynamics.py`).
 
 use super::{all_are_refused, all_have_their_steps, of, steps};
 use kickdrift::advise::engine::Engine;
@@ -135,7 +136,8 @@ fn motions_of_different_steps_are_refused_and_of_equal_ones_rewritten_together()
     assert!(error.field() == "dynamics" && error.to_string().contains("different steps"), "{error}");
 }
 
-/// n beads at T: omega_n = n k T/hbar, and the fastest mode of a ring has 2 omega_n sin(pi floor(n/2)/n): 2.4996 fs of 32 at 300 K.
+/// n beads at T: omega_n = n k T/hbar, and the fastest mode of a ring has 2 omega_n sin(pi
+/// floor(n/2)/n): 2.4996 fs of 32 at 300 K.
 #[test]
 fn modes_of_rings_are_named_with_their_fastest_period() {
     let beads =

@@ -1,6 +1,7 @@
-//! LAMMPS, GROMACS, NAMD: the steps are those that the engine itself takes, or the text is refused with the reason.
-//! What LAMMPS takes was asked of LAMMPS (22 Jul 2025, the files in `lammps` run by it); what GROMACS and NAMD take are the rules of
-//! their sources (`readir.cpp` and `multipletimestepping.cpp`, `SimParameters.C`).
+//! LAMMPS, GROMACS, NAMD: the steps are those that the engine itself takes, or the text is refused with the
+//! reason. What LAMMPS takes was asked of LAMMPS (22 Jul 2025, the files in `lammps` run by it); what GROMACS
+//! and NAMD take are the rules of their sources (`readir.cpp` and `multipletimestepping.cpp`,
+//! `SimParameters.C`).
 
 use std::time::{Duration, Instant};
 
@@ -16,7 +17,8 @@ macro_rules! lammps {
     };
 }
 
-/// Inputs that LAMMPS runs, its steps in fs ("Time steps" as a run begins), and its forces on each level less those that have no style.
+/// Inputs that LAMMPS runs, its steps in fs ("Time steps" as a run begins), and its forces on each level less
+/// those that have no style.
 const LAMMPS: [(&str, &str, &str, &str); 17] = lammps![
     "two_levels" "0.5,4" "bond, angle; pair",
     "default_levels" "0.5,2" "bond, angle; pair",
@@ -74,7 +76,8 @@ const GROMACS: [(&str, &str); 12] = [
     ("integrator = bd\nbd-fric = 100\ndt = +0.01\n", "10"),
 ];
 
-/// NAMD's rules: `timestep` in fs is the inner step, 1 by default; no full electrostatics without a method for them.
+/// NAMD's rules: `timestep` in fs is the inner step, 1 by default; no full electrostatics without a method
+/// for them.
 const NAMD: [(&str, &str); 15] = [
     ("structure a.psf\ncoordinates a.pdb\ntimestep 2.0\noutputEnergies 100\n", "2"),
     ("structure a.psf\ncutoff 12.0\noutputname b\n", "1"),
@@ -243,7 +246,8 @@ const LINES: [(&str, (i64, i64), &[&str]); 15] = [
         (3, 1),
         &["variable dt equal 3", "run_style respa 2 6"],
     ),
-    // NAMD: both frequencies divide the cycle, energies are written at full electrostatics or the other way round.
+    // NAMD: both frequencies divide the cycle, energies are written at full electrostatics or the other way
+    // round.
     (
         "structure a.psf\nPME yes\ntimestep 1\nfullElectFrequency 4\nstepspercycle 20\noutputEnergies 100\n",
         (3, 1),
@@ -456,7 +460,8 @@ fn large_texts_are_read_or_refused_in_time_that_grows_with_their_length() {
     };
     for (short, long) in large(10_000).iter().zip(large(40_000)) {
         let [short, long] = [short, &long].map(|text| fastest(text));
-        // Four times as long: a quadratic reader takes sixteen times as long. Short times are hardly measured.
+        // Four times as long: a quadratic reader takes sixteen times as long. Short times are hardly
+        // measured.
         assert!(long < 10 * short.max(Duration::from_millis(50)), "{short:?} {long:?}");
     }
 }

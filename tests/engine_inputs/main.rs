@@ -1,6 +1,8 @@
-//! Small inputs in the style of each engine's documentation, with what the engine itself does with them: its steps, or that it refuses.
+//! Small inputs in the style of each engine's documentation, with what the engine itself does with them: its
+//! steps, or that it refuses.
 //!
-//! LAMMPS and OpenMM were asked: inputs and scripts ran, and the steps are those that they took. The others' rules are in the files.
+//! LAMMPS and OpenMM were asked: inputs and scripts ran, and the steps are those that they took. The others'
+//! rules are in the files.
 
 mod ipi;
 mod lines;

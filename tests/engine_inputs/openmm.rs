@@ -1,4 +1,5 @@
-//! OpenMM's scripts. Each of those with steps ran in OpenMM 8.6; `dt/n` of a group is half its number of kicks in the integrator that was made.
+//! OpenMM's scripts. Each of those with steps ran in OpenMM 8.6; `dt/n` of a group is half its number of
+//! kicks in the integrator that was made.
 
 use super::{all_are_refused, all_have_their_steps, of, steps};
 use kickdrift::advise::Constraints;

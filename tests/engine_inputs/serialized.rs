@@ -1,4 +1,5 @@
-//! OpenMM's serialized integrators and systems, as `XmlSerializer` of OpenMM 8.6 writes them; the steps are those of the objects.
+//! OpenMM's serialized integrators and systems, as `XmlSerializer` of OpenMM 8.6 writes them; the steps are
+//! those of the objects.
 
 use super::{all_are_refused, all_have_their_steps, of, steps};
 use kickdrift::advise::Constraints;
@@ -80,7 +81,8 @@ fn computations_of_other_integrators_are_refused() {
             "Integrator",
             "CompoundIntegrator",
         ),
-        // A splitting of openmmtools, velocity Verlet, a group that kicks once, distances that do not fill a step.
+        // A splitting of openmmtools, velocity Verlet, a group that kicks once, distances that do not fill a
+        // step.
         (&mts.replace("v+0.5*(dt/1)*f0/m", "v + (dt / 2) * f0 / m"), "CustomIntegrator", "--steps"),
         (&mts.replace("v+0.5*(dt/2)*f1/m", "v+0.5*dt*f/m"), "CustomIntegrator", "--steps"),
         (&mts.replacen(&computation(1, "v", "v+0.5*(dt/2)*f1/m"), "", 1), "CustomIntegrator", "kicks"),

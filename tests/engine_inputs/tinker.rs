@@ -1,4 +1,5 @@
-//! Tinker 8 and 26, Tinker-HP 1.2 and its version for GPUs, by the rules of their `mdinit`. Each run is started with 3 fs.
+//! Tinker 8 and 26, Tinker-HP 1.2 and its version for GPUs, by the rules of their `mdinit`. Each run is
+//! started with 3 fs.
 
 use super::{all_are_refused, all_have_their_steps, of};
 use kickdrift::advise::Constraints;

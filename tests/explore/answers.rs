@@ -110,7 +110,8 @@ fn two_hundred_levels_deep_points_and_tongues_are_exact() {
     ];
     let theirs: Value = serde_json::from_slice(&program(&words)).unwrap();
     assert!(theirs.as_object().unwrap().iter().all(|(key, value)| &unstable[key] == value));
-    // A window of 2^-190 about the edge: the tongue enters it in the middle, to the last digit that a double has.
+    // A window of 2^-190 about the edge: the tongue enters it in the middle, to the last digit that a double
+    // has.
     let half = Rational::new(1.into(), BigInt::from(1) << 191u32);
     let range = |x: &Rational| format!("{}..{}", x - &half, x + &half);
     let window = format!("h1={}&h2={}", range(&above), range(&(&above * &slope)));
@@ -240,7 +241,8 @@ fn tiles_that_cost_too_much_are_refused_with_their_cost() {
 
 #[test]
 fn tongues_lie_on_unstable_pixels_and_on_no_others() {
-    // All pairs of a grid whose ratio has p + q ≤ 24: unstable exactly where a segment of their ratio says so.
+    // All pairs of a grid whose ratio has p + q ≤ 24: unstable exactly where a segment of their ratio says
+    // so.
     let told = told("tongues", "h1=0..3/5&h2=0..3&max_sum=24");
     assert_eq!((&told["max_sum"], &told["complete"]), (&24.into(), &true.into()));
     let segments = told["segments"].as_array().unwrap();

@@ -214,7 +214,8 @@ fn malformed_requests_do_no_harm(share: u32) {
     let (of_addresses, of_bytes) = (22_000 / share, 3000 / share);
     let page = Page::start("--threads 2");
     let before = page.most_memory();
-    // Of addresses, one after the other on connections that live as long as the server lets them; of bytes, each on its own.
+    // Of addresses, one after the other on connections that live as long as the server lets them; of bytes,
+    // each on its own.
     let (mut answered, mut ended) = (0, 0);
     std::thread::scope(|scope| {
         let addresses = |seed: u64| {
@@ -295,7 +296,8 @@ fn strangers_that_drip_or_idle_leave_for_those_who_come_later() {
     assert_eq!(page.get("start").status, 200);
     // It was answered while they were there, not when all had been silent for too long.
     assert!(is_open(&mut strangers[290]) && !is_open(&mut strangers[0]));
-    // Nor does the head of a request take for ever, however it drips: who has not shown the token is sent away.
+    // Nor does the head of a request take for ever, however it drips: who has not shown the token is sent
+    // away.
     let mut one = page.connect();
     let request = page.request("start");
     let sent = request.bytes().cycle().take(100).take_while(|byte| {

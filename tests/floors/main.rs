@@ -1,4 +1,5 @@
-//! Rooms have the lines that ARCHITECTURE.md lists; no sources need each other in a circle. What a crate may import, cargo keeps.
+//! Rooms have the lines that ARCHITECTURE.md lists; no sources need each other in a circle. What a crate may
+//! import, cargo keeps.
 
 mod sources;
 

@@ -1,5 +1,5 @@
-//! What the sources import, read from their tokens: `use` trees and paths in the code, in the module they stand in. A crate in
-//! crates/ counts as a module, named as its folder is.
+//! What the sources import, read from their tokens: `use` trees and paths in the code, in the module they
+//! stand in. A crate in crates/ counts as a module, named as its folder is.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -87,8 +87,8 @@ impl Sources {
         self.definition(&[&bound.path[..], &path[depth + 1..]].concat())
     }
 
-    /// For each source the sources that its code, tests apart, takes something from. Handing on a name that the source
-    /// does not use itself is no such tie.
+    /// For each source the sources that its code, tests apart, takes something from. Handing on a name that
+    /// the source does not use itself is no such tie.
     pub fn ties(&self) -> Vec<BTreeSet<usize>> {
         let ties = |(at, source): (usize, &Source)| {
             let taken = |import: &&Import| {

@@ -1,5 +1,6 @@
-//! The golden corpus: every command in every format on small inputs, texts of errors and files too, held by a hash of all that a run
-//! leaves behind. A change of bytes is a change of `hashes.txt`, in a commit that says which and why:
+//! The golden corpus: every command in every format on small inputs, texts of errors and files too, held by a
+//! hash of all that a run leaves behind. A change of bytes is a change of `hashes.txt`, in a commit that says
+//! which and why:
 //!
 //! ```text
 //! GOLDEN=write cargo test --release --test golden
@@ -21,7 +22,8 @@ fn here() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// The command lines. `* line` is the line in every format; `#` begins a comment; `line && line` runs on one desk.
+/// The command lines. `* line` is the line in every format; `#` begins a comment; `line && line` runs on one
+/// desk.
 fn lines() -> Vec<String> {
     let lines = COMMANDS.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with('#'));
     let formats = |line: &str| FORMATS.map(|format| format!("{line} --format {format}")).to_vec();

@@ -88,8 +88,8 @@ fn words_have_certificates_where_their_numbers_are_fractions() {
     }
 }
 
-/// As many kicks as a certificate may have: elliptic and hyperbolic, with pi and without, and a tongue's edges. Needs coqc and the
-/// compiled theory (make -C proofs theory); some three minutes of Coq's time.
+/// As many kicks as a certificate may have: elliptic and hyperbolic, with pi and without, and a tongue's
+/// edges. Needs coqc and the compiled theory (make -C proofs theory); some three minutes of Coq's time.
 #[test]
 #[ignore = "three minutes of Coq"]
 fn what_is_allowed_is_proven() {
@@ -138,7 +138,8 @@ fn sums_with_pi_edges_with_pi_and_bad_names_are_refused() {
     }
 }
 
-/// Exact numbers gain digits with every kick: where a verdict holds around its input, many kicks are proven by intervals.
+/// Exact numbers gain digits with every kick: where a verdict holds around its input, many kicks are proven
+/// by intervals.
 #[test]
 fn many_kicks_are_proven_by_intervals_and_edges_never() {
     let x = |text: &str| parse("x", text).unwrap();

@@ -100,7 +100,8 @@ fn the_proposition_holds_exactly_for_all_p_and_q_up_to_60() {
     assert_eq!(check.forward, (1..=60).map(|p| (p - 1) * coprime(p)).sum::<u64>());
 }
 
-/// For s > 4 the turns grow, and some thousand bits of balls are lost; exact arithmetic over Q[π] would take minutes, and is beyond this budget.
+/// For s > 4 the turns grow, and some thousand bits of balls are lost; exact arithmetic over Q[π] would take
+/// minutes, and is beyond this budget.
 #[test]
 fn beyond_the_verlet_limit_balls_decide_the_tan_criterion() {
     let x = |text| kickdrift::number::parse::parse("x", text).unwrap();

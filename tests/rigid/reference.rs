@@ -1,5 +1,6 @@
-//! Small systems and the truth about them: the period as a product of rational matrices, substep by substep; its characteristic polynomial, Sturm's
-//! chain, and whether the squarefree part annihilates it. Nothing of the library but its rationals.
+//! Small systems and the truth about them: the period as a product of rational matrices, substep by substep;
+//! its characteristic polynomial, Sturm's chain, and whether the squarefree part annihilates it. Nothing of
+//! the library but its rationals.
 
 use kickdrift::number::Rational;
 use kickdrift::number::rational::ratio;
@@ -47,7 +48,8 @@ pub struct Given {
 }
 
 impl Given {
-    /// Stiffnesses that share a few directions, of which some are held by none, some fall, and along some potentials cancel.
+    /// Stiffnesses that share a few directions, of which some are held by none, some fall, and along some
+    /// potentials cancel.
     pub fn random(numbers: &mut Numbers, seed: u64) -> Given {
         if seed % 24 == 5 {
             return Given::molecule(numbers);
@@ -108,7 +110,8 @@ impl Given {
         Given { masses, potentials, phases, positions: None, step }
     }
 
-    /// Two atoms or three, bonds between them along which they stand, and sometimes what ties one of them to its place.
+    /// Two atoms or three, bonds between them along which they stand, and sometimes what ties one of them to
+    /// its place.
     fn molecule(numbers: &mut Numbers) -> Given {
         let step = Step::Dense { accuracy: 1e-6, keeps: numbers.below(6) == 0 };
         let atoms = if numbers.below(20) == 0 { 3 } else { 2 };
@@ -156,8 +159,8 @@ impl Given {
         Given { potentials, ..self.clone() }
     }
 
-    /// With a spring more at the i-th degree of freedom, in each potential so many times its largest diagonal entry over the mass, which its
-    /// norm is not below.
+    /// With a spring more at the i-th degree of freedom, in each potential so many times its largest diagonal
+    /// entry over the mass, which its norm is not below.
     pub fn sprung(&self, i: usize, part: &Rational) -> Given {
         let other = |(h, k): &(Rational, Matrix)| {
             let least = (0..self.size()).map(|j| k[(j, j)].abs() / &self.masses[j]).max().expect("one");
@@ -273,7 +276,8 @@ impl Given {
     }
 }
 
-/// G of x₊ − 2 x + x₋ = −G x over a step, run substep by substep from rest: forces on what is not fine stand still.
+/// G of x₊ − 2 x + x₋ = −G x over a step, run substep by substep from rest: forces on what is not fine stand
+/// still.
 fn substepped(pull: &Matrix, levels: &[(Vec<usize>, u32)], step: &Rational) -> Matrix {
     let Some(((fine, substeps), finer)) = levels.split_first() else { return pull * (step * step) };
     let n = pull.nrows();
@@ -339,7 +343,8 @@ fn direction(numbers: &mut Numbers, n: usize) -> Vec<i64> {
     }
 }
 
-/// Makes the last degree of freedom, which is fine, turn fully in a step: p² 2 (1 − cos(2 π/p)) over the squared step.
+/// Makes the last degree of freedom, which is fine, turn fully in a step: p² 2 (1 − cos(2 π/p)) over the
+/// squared step.
 fn full_turn((step, k): &mut (Rational, Matrix), levels: &[(Vec<usize>, u32)], masses: &[Rational]) {
     if levels.len() > 1 {
         return;
@@ -456,7 +461,8 @@ fn real_roots(p: &Polynomial, lo: &Rational, hi: &Rational) -> usize {
     changes(lo) - changes(hi) + usize::from(value(p, lo).is_zero())
 }
 
-/// Whether all powers of a matrix with the eigenvalues of its inverse are bounded: they lie on the unit circle, and none has a chain.
+/// Whether all powers of a matrix with the eigenvalues of its inverse are bounded: they lie on the unit
+/// circle, and none has a chain.
 fn is_bounded(q: &Matrix) -> bool {
     let n = q.nrows();
     // Faddeev and Leverrier, over the integers: of d q.

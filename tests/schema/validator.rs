@@ -1,5 +1,5 @@
-//! JSON Schema (2020-12) as far as `data/schema` uses it. A schema with any other keyword is refused, for what is not
-//! understood would not be checked.
+//! JSON Schema (2020-12) as far as `data/schema` uses it. A schema with any other keyword is refused, for
+//! what is not understood would not be checked.
 
 use regex_lite::Regex;
 use serde_json::{Map, Value};
@@ -92,7 +92,8 @@ impl Validator {
         }
     }
 
-    /// The members of an object or the elements of an array: those with a schema of their own, and the others.
+    /// The members of an object or the elements of an array: those with a schema of their own, and the
+    /// others.
     fn parts(
         &self,
         all: &Map<String, Value>,

@@ -70,8 +70,8 @@ pub fn random(seed: u64, cases: u64) -> Record {
     (0..cases.div_ceil(BATCH)).into_par_iter().map(batch).reduce(Record::default, Record::join)
 }
 
-/// About each of many edges in s, found by bisection in exact arithmetic down to two neighbouring doubles: the
-/// doubles up to 40 steps to either side, and 10^-k beside the last stable one for k = 1 ... 40.
+/// About each of many edges in s, found by bisection in exact arithmetic down to two neighbouring doubles:
+/// the doubles up to 40 steps to either side, and 10^-k beside the last stable one for k = 1 ... 40.
 pub fn adversarial(seed: u64, cases: u64) -> Record {
     const AROUND: u64 = 40;
     const EACH: u64 = 2 * AROUND + 1 + 40;

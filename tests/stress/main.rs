@@ -1,5 +1,5 @@
-//! Every tier's claims on inputs built to break them. Quick parts always; the long run of ten million random and a
-//! million adversarial cases, whose log is in data/published, by
+//! Every tier's claims on inputs built to break them. Quick parts always; the long run of ten million random
+//! and a million adversarial cases, whose log is in data/published, by
 //!
 //!     cargo test --release --test stress -- --ignored --nocapture ten_million
 

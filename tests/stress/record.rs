@@ -12,7 +12,8 @@ pub struct Record {
     pub by_tier: [u64; 3],
     /// Pairs on an edge: parabolic or coexistence.
     pub ties: u64,
-    /// The filter's trace enclosures, those that do not hold the exact trace, and the largest error over bound.
+    /// The filter's trace enclosures, those that do not hold the exact trace, and the largest error over
+    /// bound.
     pub enclosures: u64,
     pub outside: u64,
     pub worst_ratio: f64,

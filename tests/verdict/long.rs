@@ -22,7 +22,8 @@ impl Numbers {
     }
 }
 
-/// Verdicts by return maps and kick by kick: small and large ratios, ratios beside simple ones, weak and strong, attracting and repelling.
+/// Verdicts by return maps and kick by kick: small and large ratios, ratios beside simple ones, weak and
+/// strong, attracting and repelling.
 fn agree(pairs: usize) {
     let mut numbers = Numbers(5);
     let mut undecided = 0;

@@ -191,7 +191,8 @@ fn periods_that_nobody_follows_kick_by_kick_are_decided_at_once() {
         let growth = answer.growth().unwrap();
         assert_eq!(growth.ln_multiplier.is_some(), !answer.verdict.is_stable());
         assert_eq!(growth.label.is_some(), !answer.verdict.is_stable());
-        // The resonance that the label names lies near: m θ-turns of the fast clock alone, less than one tongue's width away.
+        // The resonance that the label names lies near: m θ-turns of the fast clock alone, less than one
+        // tongue's width away.
         if let Some(m) = growth.label {
             let (h1, p) = (pair.h1().enclosure(64).mid_f64(), pair.clocks().unwrap().p() as f64);
             let theta = 2.0 * (0.5 * h1 * std::f64::consts::PI).asin();
@@ -209,8 +210,8 @@ fn a_period_beyond_the_budget_is_refused_before_it_begins() {
     let error = decide_from(Tier::Exact, &clocks, &Limits::default()).unwrap_err();
     assert!(error.needed() >= Some(1_000_000_000), "{error}");
 }
-/// A strength of 10^90 leaves the bound of the refine tier no room at any precision: balls tell the signs, where exact
-/// arithmetic would multiply polynomials of degree 150 with every kick.
+/// A strength of 10^90 leaves the bound of the refine tier no room at any precision: balls tell the signs,
+/// where exact arithmetic would multiply polynomials of degree 150 with every kick.
 #[test]
 fn high_powers_of_pi_are_decided_without_exact_arithmetic() {
     let x = |text| parse::parse("x", text).unwrap();
@@ -244,8 +245,8 @@ fn exact_arithmetic_tells_what_many_powers_of_pi_cost() {
     );
 }
 
-/// Half turns a period, kick by kick in doubles: after one period any start has turned into the solution that grows, if it grows much,
-/// and x is linear between kicks, so each change of its sign shows at the next kick.
+/// Half turns a period, kick by kick in doubles: after one period any start has turned into the solution that
+/// grows, if it grows much, and x is linear between kicks, so each change of its sign shows at the next kick.
 fn half_turns(p: u64, q: u64, fast: f64, slow: f64) -> u64 {
     let (mut x, mut v, mut changes) = (1.0_f64, 0.3_f64, 0);
     for _ in 0..2 {
@@ -267,8 +268,8 @@ fn half_turns(p: u64, q: u64, fast: f64, slow: f64) -> u64 {
     changes
 }
 
-/// Both clocks beyond their own limits, or the fast one, or none: labels of long periods come from return maps, or from kicks where these
-/// lose the turns.
+/// Both clocks beyond their own limits, or the fast one, or none: labels of long periods come from return
+/// maps, or from kicks where these lose the turns.
 #[test]
 fn hyperbolic_pairs_of_long_periods_have_the_label_that_their_kicks_count() {
     let mut seed = 7u64;
@@ -298,7 +299,8 @@ fn hyperbolic_pairs_of_long_periods_have_the_label_that_their_kicks_count() {
     assert_eq!(decide(&at(16411, 16421), &Limits::default()).unwrap().label().unwrap(), Some(16411));
 }
 
-/// Strengths of 83,000 bits: balls tell the signs, and exact arithmetic says what their digits cost before it begins.
+/// Strengths of 83,000 bits: balls tell the signs, and exact arithmetic says what their digits cost before it
+/// begins.
 #[test]
 fn long_strengths_cost_what_their_digits_do() {
     let x = |text| parse::parse("x", text).unwrap();

@@ -1,5 +1,5 @@
-//! Another program for long periods, to compare with: states right after slow kicks, functions as values at nodes, integers of 400 bits
-//! for numbers, no bounds. Nothing of it is shared with the library.
+//! Another program for long periods, to compare with: states right after slow kicks, functions as values at
+//! nodes, integers of 400 bits for numbers, no bounds. Nothing of it is shared with the library.
 
 use kickdrift::number::rational::to_f64;
 use kickdrift::number::{Laurent, Rational, Real};
@@ -143,7 +143,8 @@ fn trace(oscillator: &Oscillator, nodes: &Nodes) -> (Option<f64>, f64) {
     let [s, k] = [clocks.fast(), clocks.slow()].map(|x| fixed(&x.enclosure(BITS).lower()));
     let (whole, rest) = (p / q, p % q);
     let part = |n: i128| over(&BigInt::from(n), &BigInt::from(q));
-    // From right after a slow kick, x behind a fast one, through m fast ones to right after the next, y behind one.
+    // From right after a slow kick, x behind a fast one, through m fast ones to right after the next, y
+    // behind one.
     let step = |x: &Fixed, m: i128, y: &Fixed| {
         let mut all = drift(&(one() - x));
         for n in 0..m {
@@ -238,7 +239,8 @@ fn doubles_are_decided_as_by_values_at_nodes() {
         (state >> 11) as f64 / (1u64 << 53) as f64
     };
     let exact = |x: f64| Laurent::from_rational(Rational::from_float(x).unwrap());
-    // What this program loses itself: 2^53 passes of what 36 nodes leave out, some 10^-30 each, and the rounding to a double.
+    // What this program loses itself: 2^53 passes of what 36 nodes leave out, some 10^-30 each, and the
+    // rounding to a double.
     const OWN: f64 = 1e-12;
     let (mut stable, mut unstable) = (0, 0);
     while stable + unstable < 12 || unstable < 3 {

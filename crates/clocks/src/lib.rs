@@ -1,8 +1,9 @@
 //! Two clocks that kick one oscillator: verdicts, unstable intervals, maps, and the predictions of resonance.
 //!
-//! x'' + (Λ1 + Λ2) x = 0 is kicked by Λ1 at the multiples of h1 and by Λ2 at those of h2, and drifts between: velocity Verlet with one
-//! clock, r-RESPA with h2 = p h1, an asynchronous variational integrator with any h2/h1 = p/q. The propagator over T = q h2 = p h1
-//! decides: |Tr Q| < 2 is stable. Every verdict is certified in doubles, certified in more bits, or decided exactly, in this order.
+//! x'' + (Λ1 + Λ2) x = 0 is kicked by Λ1 at the multiples of h1 and by Λ2 at those of h2, and drifts between:
+//! velocity Verlet with one clock, r-RESPA with h2 = p h1, an asynchronous variational integrator with any
+//! h2/h1 = p/q. The propagator over T = q h2 = p h1 decides: |Tr Q| < 2 is stable. Every verdict is certified
+//! in doubles, certified in more bits, or decided exactly, in this order.
 //!
 //! | type | what it is |
 //! |---|---|
@@ -12,8 +13,9 @@
 //! | [`Map`](map::Map) | the verdicts of a grid of steps |
 //! | [`Families`](resonance::Families) | the curves (a, b) of the Proposition, on which resonance is predicted |
 //!
-//! Rooms import downwards only: `schedule` (which clock kicks when), `propagator` (kick, drift, half period), `orbit` (orbits followed with
-//! a proven bound), `verdict`, `resonance`, then side by side `tongue`, `map` and `band`.
+//! Rooms import downwards only: `schedule` (which clock kicks when), `propagator` (kick, drift, half period),
+//! `orbit` (orbits followed with a proven bound), `verdict`, `resonance`, then side by side `tongue`, `map`
+//! and `band`.
 //!
 //! ```
 //! use kickdrift_clocks::number::rational::ratio;

@@ -1,4 +1,5 @@
-//! What is asked and what is answered, as documents: questions, inputs, tables and figures, and documents verified.
+//! What is asked and what is answered, as documents: questions, inputs, tables and figures, and documents
+//! verified.
 //!
 //! | type | what it is |
 //! |---|---|

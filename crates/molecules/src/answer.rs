@@ -25,7 +25,8 @@ named! {
     /// The judgement of a scheme, the best first.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
     pub enum Status {
-        /// Proven stable for every period in the band, and below all that is published; of a clock without a period as far as [`Answer::needs`] says.
+        /// Proven stable for every period in the band, and below all that is published; of a clock without a
+        /// period as far as [`Answer::needs`] says.
         Safe = "safe",
         /// Proven stable for every period in the band; beyond a published limit.
         Caution = "caution",
@@ -33,7 +34,8 @@ named! {
         Near = "near",
         /// Stable for the periods given, but above an unstable interval.
         Island = "island",
-        /// Within the accuracy of the measured stiffnesses no verdict is proven; or nothing is known of the fastest motion.
+        /// Within the accuracy of the measured stiffnesses no verdict is proven; or nothing is known of the
+        /// fastest motion.
         NotTold = "not told",
         /// Unstable.
         Unstable = "unstable",
@@ -48,27 +50,31 @@ pub struct Row {
     pub found: Found,
     /// Outer steps until an amplitude is tenfold, enclosed; `None` unless it grows exponentially.
     pub tenfold_steps: Option<(f64, f64)>,
-    /// The first unstable interval of outer steps at the ratio of the scheme. Its upper end and growth are known for one or two clocks.
+    /// The first unstable interval of outer steps at the ratio of the scheme. Its upper end and growth are
+    /// known for one or two clocks.
     pub first: Option<Unstable>,
-    /// With two clocks: the unstable intervals next to a stable scheme, below and above; for an unstable scheme the interval that holds it.
+    /// With two clocks: the unstable intervals next to a stable scheme, below and above; for an unstable
+    /// scheme the interval that holds it.
     pub below: Option<Unstable>,
     pub above: Option<Unstable>,
     pub inside: Option<Unstable>,
-    /// Open intervals from the first one on, up to some way beyond the scheme and the first of them; at most 32.
+    /// Open intervals from the first one on, up to some way beyond the scheme and the first of them; at
+    /// most 32.
     pub intervals: Vec<Unstable>,
     /// Where it grows: the frictions per fs that mask that (BAOAB).
     pub masking: Option<Masked>,
     /// Whether the friction given keeps it bounded.
     pub is_damped: Option<bool>,
-    /// With two clocks, where it grows: with the inner step every ratio of steps from lo to hi, rational or not, is unstable; `None` where
-    /// that is not proven ([`unstable_ratios`]).
+    /// With two clocks, where it grows: with the inner step every ratio of steps from lo to hi, rational or
+    /// not, is unstable; `None` where that is not proven ([`unstable_ratios`]).
     pub ratios: Option<(Rational, Rational)>,
 }
 
 /// The most intervals that are listed of a row.
 pub const MOST_INTERVALS: usize = 32;
 
-/// Intervals are listed that begin below so many times the scheme's outer step, or the end of the first interval.
+/// Intervals are listed that begin below so many times the scheme's outer step, or the end of the first
+/// interval.
 const REACH: f64 = 1.1;
 
 pub fn reach(first_upper: Option<f64>, outer: f64) -> f64 {
@@ -91,15 +97,16 @@ pub struct Answer {
     pub rows: Vec<Row>,
     /// Every outer step below this, in fs, at this ratio, is proven stable for every period in the band.
     pub band_edge: (f64, f64),
-    /// The longest outer step, a multiple of the step before it, that is proven stable for every period in the band; `None`: not even
-    /// that step itself, or a clock is without a period.
+    /// The longest outer step, a multiple of the step before it, that is proven stable for every period in
+    /// the band; `None`: not even that step itself, or a clock is without a period.
     pub largest: Option<Rational>,
-    /// The longest multiple that is `largest` at most and below what is published ([`Caps`]); `None` also where an inner step is not.
+    /// The longest multiple that is `largest` at most and below what is published ([`Caps`]); `None` also
+    /// where an inner step is not.
     pub safe: Option<Rational>,
     /// What bounds `safe`.
     pub bound: Option<Bound>,
-    /// Where nothing is known to be on other clocks than the innermost: the shortest period there, in fs, for which the scheme is proven stable for
-    /// every period in the band; rounded up.
+    /// Where nothing is known to be on other clocks than the innermost: the shortest period there, in fs, for
+    /// which the scheme is proven stable for every period in the band; rounded up.
     pub needs: Option<f64>,
     pub pairs: Vec<Pair>,
     /// Where it grows: whether an amplitude is tenfold within the run.
@@ -295,7 +302,8 @@ impl Question {
         Ok(())
     }
 
-    /// The largest multiple of the step before the outermost one at which the corner of the band is in the first region.
+    /// The largest multiple of the step before the outermost one at which the corner of the band is in the
+    /// first region.
     pub(super) fn largest(&self, scheme: &Scheme) -> Result<Option<Rational>> {
         let step = scheme.last_but_one();
         if scheme.steps().len() == 1 {
@@ -321,7 +329,8 @@ impl Question {
         }
         let mut found = 1;
         if scheme.steps().len() == 2 {
-            // p θ < π and sin θ cot(p θ/2) > (p/2) h² L2 (proofs/REGION.md, section 2): both fail for good as p grows.
+            // p θ < π and sin θ cot(p θ/2) > (p/2) h² L2 (proofs/REGION.md, section 2): both fail for good as
+            // p grows.
             let mut beyond = 2;
             while beyond < MOST_INNER_STEPS && holds(beyond)? {
                 (found, beyond) = (beyond, 2 * beyond);
@@ -381,7 +390,8 @@ impl Question {
                 let middle = (lo + hi) / 2.0;
                 if turns(middle) < 2.0 * std::f64::consts::PI { lo = middle } else { hi = middle }
             }
-            // Beyond the inner step's own limit a mode grows by itself; with one step both are there before they meet.
+            // Beyond the inner step's own limit a mode grows by itself; with one step both are there before
+            // they meet.
             let is_within = |i: usize| std::f64::consts::PI * lo < (1.0 - 1e-9) * parts * period(i);
             (is_within(i) && is_within(j)).then_some(lo)
         };

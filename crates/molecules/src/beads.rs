@@ -1,7 +1,8 @@
 //! Ring polymers: path integrals of P beads have modes of their own, faster than any bond.
 //!
-//! Between two kicks a free ring of P beads moves exactly, its normal modes with w_k = 2 (P k_B T/ħ) sin(k π/P). A kick every h resonates with mode k
-//! near h = π/w_k, and with stiff forces from below that on (docs/safe-step.md). The verdicts here are those of the centroid, k = 0, alone.
+//! Between two kicks a free ring of P beads moves exactly, its normal modes with w_k = 2 (P k_B T/ħ) sin(k
+//! π/P). A kick every h resonates with mode k near h = π/w_k, and with stiff forces from below that on
+//! (docs/safe-step.md). The verdicts here are those of the centroid, k = 0, alone.
 
 use num_traits::ToPrimitive;
 

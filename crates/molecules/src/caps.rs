@@ -1,8 +1,10 @@
 //! Bounds on steps beside linear theory: where published resonances of anharmonic motion begin.
 //!
-//! A clock's own step is kept below T/6.28 of the fastest motion on it, h w ≤ 1 ([`OF_ONE`](super::OF_ONE)); of the innermost ones that is lifted where
-//! their bonds are said to be harmonic. The force of the outermost of several clocks is followed by Verlet's rule whatever moves the others, so its
-//! step has that bound for every method. The outermost of several steps of kicks and drifts also stays below T/3 of the fastest other motion.
+//! A clock's own step is kept below T/6.28 of the fastest motion on it, h w ≤ 1 ([`OF_ONE`](super::OF_ONE));
+//! of the innermost ones that is lifted where their bonds are said to be harmonic. The force of the outermost
+//! of several clocks is followed by Verlet's rule whatever moves the others, so its step has that bound for
+//! every method. The outermost of several steps of kicks and drifts also stays below T/3 of the fastest other
+//! motion.
 
 use num_traits::One;
 
@@ -20,7 +22,8 @@ named! {
         Band = "band",
         /// A third of the fastest period: published of kicks and drifts.
         Third = "T/3",
-        /// h w ≤ 1 of the fastest motion on an inner clock, or on the only one: beyond it bonds that are not harmonic are lost.
+        /// h w ≤ 1 of the fastest motion on an inner clock, or on the only one: beyond it bonds that are not
+        /// harmonic are lost.
         Turn = "T/6.28",
         /// The same of the slow force, which every method here follows by Verlet's rule.
         SlowTurn = "slow T/6.28",
@@ -39,7 +42,8 @@ pub struct Caps {
 }
 
 impl Caps {
-    /// From the shortest period on each clock in fs, rounded down, `None` where none is known; bonds harmonic or not.
+    /// From the shortest period on each clock in fs, rounded down, `None` where none is known; bonds harmonic
+    /// or not.
     pub fn new(periods: &[Option<f64>], harmonic: bool) -> Caps {
         let last = periods.len().saturating_sub(1);
         let finite = |x: f64| from_f64_exact(x).filter(|_| x > 0.0);
@@ -94,7 +98,8 @@ impl Caps {
         self.too_long(scheme).is_none() && self.outer().is_none_or(|(cap, _)| scheme.outer() < cap)
     }
 
-    /// The longest multiple of the step before the outermost one up to `largest` and below the bounds; of one step their least.
+    /// The longest multiple of the step before the outermost one up to `largest` and below the bounds; of one
+    /// step their least.
     pub fn safe(&self, scheme: &Scheme, largest: Option<&Rational>) -> Option<(Rational, Bound)> {
         let largest = largest.filter(|_| self.too_long(scheme).is_none())?;
         let Some((cap, bound)) = self.outer() else { return Some((largest.clone(), Bound::Band)) };
@@ -112,7 +117,8 @@ impl Caps {
         inner.chain(self.outer().map(|(cap, bound)| (cap.clone(), bound))).min_by(|a, b| a.0.cmp(&b.0))
     }
 
-    /// The longest step up to `inner`, and below the bound on the innermost one, of which `step` is a multiple.
+    /// The longest step up to `inner`, and below the bound on the innermost one, of which `step` is a
+    /// multiple.
     pub fn part_of(&self, step: &Option<(Rational, Bound)>, inner: &Rational) -> Option<Rational> {
         let (step, _) = step.as_ref()?;
         let count = (step / inner).ceil();

@@ -5,7 +5,8 @@
 pub enum Place {
     /// The outermost of several steps is T/n, T the fastest period on any clock but the outermost.
     Part(u64),
-    /// A clock's own step at which Verlet's rule turns by 2 π/k a step: h = (T/π) sin(π/k), never beyond its own limit T/π.
+    /// A clock's own step at which Verlet's rule turns by 2 π/k a step: h = (T/π) sin(π/k), never beyond its
+    /// own limit T/π.
     Turn(u64),
 }
 
@@ -42,7 +43,8 @@ const fn turn(k: u64, statement: &'static str) -> Caution {
     Caution { place: Place::Turn(k), inner: true, statement, source }
 }
 
-/// The least turn whose resonance is heeded: below h = T/6.28, that is h w ≤ 1, none was seen to lose a bond at room temperature.
+/// The least turn whose resonance is heeded: below h = T/6.28, that is h w ≤ 1, none was seen to lose a bond
+/// at room temperature.
 pub const HEEDED: u64 = 6;
 
 /// Where a step of its own has to end for bonds that are not harmonic.
@@ -87,5 +89,6 @@ pub fn published(steps: usize) -> &'static [Caution] {
 pub const PRACTICE: &str =
     "practice arrived there: 1 fs with flexible O-H, 2 fs with them held, 4 fs with heavy hydrogens besides";
 
-/// GROMACS's own check of the innermost step (grompp.cpp, check_bonds_timestep): T/5 it warns of, T/10 it notes.
+/// GROMACS's own check of the innermost step (grompp.cpp, check_bonds_timestep): T/5 it warns of, T/10 it
+/// notes.
 pub const GROMPP: [(u64, &str); 2] = [(5, "warns"), (10, "notes")];

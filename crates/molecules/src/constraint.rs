@@ -1,7 +1,8 @@
 //! Constrained bonds: they do not vibrate, so they are on no clock.
 //!
-//! Assumed is that constraints are solved to convergence at every innermost step, and that the periods given are those of the constrained
-//! molecule. Then the projected forces have a potential again, and the proofs for kicks and drifts hold for small motions on the constraints.
+//! Assumed is that constraints are solved to convergence at every innermost step, and that the periods given
+//! are those of the constrained molecule. Then the projected forces have a potential again, and the proofs
+//! for kicks and drifts hold for small motions on the constraints.
 
 use super::mode::Mode;
 use number::error::{Error, Result};

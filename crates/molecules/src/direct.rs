@@ -1,12 +1,15 @@
-//! Forces that are no gradient, as learned ones that are predicted directly: what the steps add to their own growth.
+//! Forces that are no gradient, as learned ones that are predicted directly: what the steps add to their own
+//! growth.
 //!
-//! x'' = −A x itself grows where A has eigenvalues that are not real and positive, whatever the steps. So no step is stable there, and the question is how
-//! much growth the steps add. They add *little* where growth with them is proven to be at most twice that without: then no shorter step can halve it.
-//! If the forces do not grow by themselves, little means stable. Where motions lie too close together for doubles to prove that, growth which takes more
-//! than 1 µs to be tenfold counts as little, too.
+//! x'' = −A x itself grows where A has eigenvalues that are not real and positive, whatever the steps. So no
+//! step is stable there, and the question is how much growth the steps add. They add *little* where growth
+//! with them is proven to be at most twice that without: then no shorter step can halve it. If the forces do
+//! not grow by themselves, little means stable. Where motions lie too close together for doubles to prove
+//! that, growth which takes more than 1 µs to be tenfold counts as little, too.
 //!
-//! The advice rests on points: the multiples of the step before the outermost one, which are the outer steps that can be chosen beside it. Each is decided
-//! with the periods given and with all periods shorter by the band. Nothing is known of the steps between.
+//! The advice rests on points: the multiples of the step before the outermost one, which are the outer steps
+//! that can be chosen beside it. Each is decided with the periods given and with all periods shorter by the
+//! band. Nothing is known of the steps between.
 
 use num_traits::{One, ToPrimitive};
 
@@ -24,11 +27,12 @@ use systems::{Jacobians, Limits};
 /// Growth with the steps may be so many times that without: then no shorter step can halve it.
 pub const TIMES: f64 = 2.0;
 
-/// Growth per fs up to this is little, whatever the forces do by themselves: an amplitude takes 1 µs to be tenfold (ln 10/10⁹ fs), and no run with such
-/// forces is as long.
+/// Growth per fs up to this is little, whatever the forces do by themselves: an amplitude takes 1 µs to be
+/// tenfold (ln 10/10⁹ fs), and no run with such forces is as long.
 const SLOW: f64 = 2.3e-9;
 
-/// The most multiples that are decided: where a fast period has more, the step before the outermost one is far shorter than anyone chooses.
+/// The most multiples that are decided: where a fast period has more, the step before the outermost one is
+/// far shorter than anyone chooses.
 const MOST_RUNGS: u64 = 200;
 
 /// A scheme is decided as given and within the band, and its friction looked for.
@@ -49,7 +53,8 @@ named! {
     /// The growth that the steps add to that of the forces.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub enum Adds {
-        /// Growth is proven to be at most [`TIMES`] that without steps, none where that is none; or tenfold after 1 µs at the earliest.
+        /// Growth is proven to be at most [`TIMES`] that without steps, none where that is none; or tenfold
+        /// after 1 µs at the earliest.
         Little = "little",
         /// It is proven to be more.
         Much = "much",
@@ -83,7 +88,8 @@ pub struct DirectFinding {
     pub in_band: Adds,
     /// How much faster it grows with the steps than without, enclosed; negative where it is slower.
     pub added: Option<(f64, f64)>,
-    /// Growth for all matrices within their accuracy, enclosed; `None` of exact ones, and where that is not bounded.
+    /// Growth for all matrices within their accuracy, enclosed; `None` of exact ones, and where that is not
+    /// bounded.
     pub within_accuracy: Option<(f64, f64)>,
     /// Outer steps until an amplitude is tenfold, enclosed; `None` where growth is not proven.
     pub tenfold_steps: Option<(f64, f64)>,
@@ -97,7 +103,8 @@ pub struct DirectFinding {
     pub within_run: Option<bool>,
     /// The longest multiple up to which all are proven to add little, within the band too.
     pub largest: Option<Rational>,
-    /// The longest multiple that is `largest` at most and below what is published ([`Caps`]); `None` also where an inner step is not.
+    /// The longest multiple that is `largest` at most and below what is published ([`Caps`]); `None` also
+    /// where an inner step is not.
     pub safe: Option<Rational>,
     /// The longest multiple up to which the friction given is proven to mask all growth.
     pub masked: Option<Rational>,
@@ -166,8 +173,9 @@ impl Direct {
     /// The findings at each scheme.
     ///
     /// # Errors
-    /// No scheme, one of another number of steps than there are clocks, a band outside [0, 1), a length or a friction that is not positive, forces of the
-    /// innermost step under which nothing vibrates; a budget error before work beyond `limits`.
+    /// No scheme, one of another number of steps than there are clocks, a band outside [0, 1), a length or a
+    /// friction that is not positive, forces of the innermost step under which nothing vibrates; a budget
+    /// error before work beyond `limits`.
     pub fn advise(
         &self,
         schemes: &[Scheme],
@@ -304,7 +312,8 @@ impl Direct {
     }
 }
 
-/// The multiples that are looked at: up to a period of the fastest motion, and to the scheme's own outer step.
+/// The multiples that are looked at: up to a period of the fastest motion, and to the scheme's own outer
+/// step.
 fn multiples(scheme: &Scheme, fastest: f64) -> Vec<u64> {
     if scheme.steps().len() < 2 {
         return Vec::new();

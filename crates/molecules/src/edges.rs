@@ -1,16 +1,18 @@
 //! The unstable intervals of an outer step on any number of clocks, at fixed ratios.
 //!
-//! Let all steps be t times those of the scheme. Over half a period the four solutions that begin even or odd and end at rest or at 0 belong
-//! to four strings of point masses (Krein), whose eigenvalues in t² are the edges. By the negative pivots of the action, that is by the
-//! sign changes of two orbits, balls count the eigenvalues below t² for sure:
+//! Let all steps be t times those of the scheme. Over half a period the four solutions that begin even or odd
+//! and end at rest or at 0 belong to four strings of point masses (Krein), whose eigenvalues in t² are the
+//! edges. By the negative pivots of the action, that is by the sign changes of two orbits, balls count the
+//! eigenvalues below t² for sure:
 //!
 //! ```text
 //!     A: even, x(T/2) = 0     changes of the even orbit          B: odd, x(T/2) = 0     changes of the odd orbit
 //!     C: even, v(T/2) = 0     the same, and 1 where v x < 0      D: odd, v(T/2) = 0     the same, and 1 where v x < 0
 //! ```
 //!
-//! (of C without the eigenvalue 0). Counts only grow with t. Interval m = 2 k − 1 lies between the k-th edges of A and D, interval 2 k between
-//! those of B and C, so bisection finds every one, and none is missed. Source: Gantmacher, Krein; docs/theory/tongues.md.
+//! (of C without the eigenvalue 0). Counts only grow with t. Interval m = 2 k − 1 lies between the k-th edges
+//! of A and D, interval 2 k between those of B and C, so bisection finds every one, and none is missed.
+//! Source: Gantmacher, Krein; docs/theory/tongues.md.
 
 use num_traits::Zero;
 
@@ -76,7 +78,8 @@ impl<'a> Edges<'a> {
         })
     }
 
-    /// Neighbouring scales between which the k-th edge of a problem lies, or as close as balls can decide; `None` above `most`.
+    /// Neighbouring scales between which the k-th edge of a problem lies, or as close as balls can decide;
+    /// `None` above `most`.
     fn edge(&self, problem: usize, k: u64, most: f64) -> Option<(f64, f64)> {
         let below = |t: f64| self.half(t).map(|half| half.counts[problem] < k);
         let (lo, hi) = (most * 1e-6, most);
@@ -86,7 +89,8 @@ impl<'a> Edges<'a> {
         Some(bisected((lo, hi), 0.0, below))
     }
 
-    /// Interval m, as outer steps; `None` where it is closed or thinner than doubles, or ends above `most` times the scheme.
+    /// Interval m, as outer steps; `None` where it is closed or thinner than doubles, or ends above `most`
+    /// times the scheme.
     fn get(&self, m: u64, most: f64) -> Option<Unstable> {
         let (problems, k) = if m % 2 == 1 { ([0, 3], m.div_ceil(2)) } else { ([1, 2], m / 2) };
         let [a, b] = problems.map(|problem| self.edge(problem, k, most));

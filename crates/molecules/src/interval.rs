@@ -17,7 +17,8 @@ const AT_ONCE: u64 = 8;
 pub struct Unstable {
     /// m, the half turns of the growing solution in a synchronization period.
     pub label: u64,
-    /// Both ends in fs, enclosed; no upper end beyond the fast clock's own limit, nor where the two are one point.
+    /// Both ends in fs, enclosed; no upper end beyond the fast clock's own limit, nor where the two are one
+    /// point.
     pub lower: (f64, f64),
     pub upper: Option<(f64, f64)>,
     /// Where growth is fastest.
@@ -117,7 +118,8 @@ impl<'a> Intervals<'a> {
         Ok(Some(Unstable { label: low.m, lower, upper, worst }))
     }
 
-    /// The first tongue, at which the stable region that begins at step 0 ends; without an upper end where it is closed, as without a slow force.
+    /// The first tongue, at which the stable region that begins at step 0 ends; without an upper end where it
+    /// is closed, as without a slow force.
     pub fn first(&self) -> Result<Unstable> {
         let gaps = self.gap(1)?;
         let lower = self.lower(&gaps);

@@ -1,13 +1,14 @@
 //! One mass under several potentials, each on its own clock: a verdict, and the first stable region.
 //!
-//! **The first region covers every molecule.** The action J of a path over the half period (proofs/REGION.md) decreases where a stiffness
-//! increases, in Loewner's order. So let one mass with the stiffnesses λ_1, ..., λ_K on its clocks satisfy conditions (1) and (2) of the
-//! theorem there. Then *any number* of coupled modes whose stiffness matrices are 0 ≤ K_k ≤ λ_k I with a definite sum is stable, at these steps and
-//! at all smaller ones of the same ratios: longer periods, other couplings, and sums of two modes included. One mass of the stiffest
-//! potentials is therefore all that has to be looked at.
+//! **The first region covers every molecule.** The action J of a path over the half period (proofs/REGION.md)
+//! decreases where a stiffness increases, in Loewner's order. So let one mass with the stiffnesses λ_1, ...,
+//! λ_K on its clocks satisfy conditions (1) and (2) of the theorem there. Then *any number* of coupled modes
+//! whose stiffness matrices are 0 ≤ K_k ≤ λ_k I with a definite sum is stable, at these steps and at all
+//! smaller ones of the same ratios: longer periods, other couplings, and sums of two modes included. One mass
+//! of the stiffest potentials is therefore all that has to be looked at.
 //!
-//! For one mass the conditions are positivity of two orbits. Eliminating the nodes of J from t = 0 on, its pivots are quotients of consecutive
-//! positions, so
+//! For one mass the conditions are positivity of two orbits. Eliminating the nodes of J from t = 0 on, its
+//! pivots are quotients of consecutive positions, so
 //!
 //! ```text
 //!     (1)  J free at 0, held at T/2 > 0:   the even orbit (x, v) = (1, 0) has x > 0 at every kick time and at T/2;
@@ -86,7 +87,8 @@ impl Scheme {
         self.steps.last().expect("at least one step")
     }
 
-    /// The step whose multiple the outermost one is, for as many levels as there are; the step itself where it is alone.
+    /// The step whose multiple the outermost one is, for as many levels as there are; the step itself where
+    /// it is alone.
     pub fn last_but_one(&self) -> &Rational {
         &self.steps[self.steps.len().saturating_sub(2)]
     }
@@ -201,7 +203,8 @@ impl Levels<'_> {
         ManyClocks::new(&steps, &vec![Rational::zero(); steps.len()], heard.iter().map(strength).collect())
     }
 
-    /// Whether conditions (1) and (2) hold for the stiffnesses times `factor`: `None` where the balls cannot decide.
+    /// Whether conditions (1) and (2) hold for the stiffnesses times `factor`: `None` where the balls cannot
+    /// decide.
     pub fn in_first_region(&self, factor: &Ball) -> Option<bool> {
         let steps = &self.scheme.steps;
         let schedule = Schedule::new(steps, &vec![Rational::zero(); steps.len()]).ok()?;
@@ -230,11 +233,13 @@ impl Levels<'_> {
         if orbits.left { Some(false) } else { (!orbits.doubtful).then_some(true) }
     }
 
-    /// The factors of all steps, at fixed ratios, up to which the first region provably reaches and beyond which it provably has ended:
-    /// neighbours, or as close as balls can decide. The conditions hold at every smaller step (proofs/REGION.md), so a bisection finds them.
+    /// The factors of all steps, at fixed ratios, up to which the first region provably reaches and beyond
+    /// which it provably has ended: neighbours, or as close as balls can decide. The conditions hold at every
+    /// smaller step (proofs/REGION.md), so a bisection finds them.
     ///
     /// # Errors
-    /// Where no factor from 2^-60 to 2^60 ends it: there is no stiffness, or the steps are far from its period.
+    /// Where no factor from 2^-60 to 2^60 ends it: there is no stiffness, or the steps are far from its
+    /// period.
     pub fn first_region_ends(&self) -> Result<(f64, f64)> {
         let square = |t: f64| {
             let t = from_f64_exact(t).expect("a finite factor");

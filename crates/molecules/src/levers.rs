@@ -1,10 +1,13 @@
-//! Levers, changes that would let the outer step grow: other masses, constraints, methods and ratios, each with its own proof.
+//! Levers, changes that would let the outer step grow: other masses, constraints, methods and ratios, each
+//! with its own proof.
 //!
-//! A lever is the question with one thing changed. A lever of r-RESPA (kicks and drifts) is proven by the first region of the levels; one of
-//! mollified kicks by the edge of all coupled modes ([`Trigonometric::coupled_edge`](words::Trigonometric::coupled_edge)), for Hessians by
-//! the band of their modes ([`Kernel::band_edge`](systems::levels::Kernel::band_edge)). Two methods have no resonance with the fast modes
-//! at all: with the fast forces by the midpoint rule a step is stable iff h² S < 4 (and F + S > 0), whatever F (proofs/ImplicitExplicit.v);
-//! MOLLY by the equilibrium does not kick the fast modes. A lever that cannot be computed is left out, with the reason.
+//! A lever is the question with one thing changed. A lever of r-RESPA (kicks and drifts) is proven by the
+//! first region of the levels; one of mollified kicks by the edge of all coupled modes
+//! ([`Trigonometric::coupled_edge`](words::Trigonometric::coupled_edge)), for Hessians by the band of their
+//! modes ([`Kernel::band_edge`](systems::levels::Kernel::band_edge)). Two methods have no resonance with the
+//! fast modes at all: with the fast forces by the midpoint rule a step is stable iff h² S < 4 (and F +
+//! S > 0), whatever F (proofs/ImplicitExplicit.v); MOLLY by the equilibrium does not kick the fast modes. A
+//! lever that cannot be computed is left out, with the reason.
 
 use num_bigint::BigInt;
 use num_traits::{One, Zero};
@@ -28,14 +31,15 @@ const BITS: u32 = 96;
 pub struct Lever {
     pub name: String,
     pub way: Way,
-    /// The first unstable outer step of the periods given, one fast mode at a time; `None` where there is none ([`is_free`](Self::is_free)), or
-    /// where none is computed.
+    /// The first unstable outer step of the periods given, one fast mode at a time; `None` where there is
+    /// none ([`is_free`](Self::is_free)), or where none is computed.
     pub first: Option<(f64, f64)>,
     /// This step exactly, where it is c π^k.
     pub exact: Option<Laurent>,
     /// Whether no outer step of the band is unstable by a resonance of one fast mode.
     pub is_free: bool,
-    /// Every outer step below its lower end is proven stable for all periods in the band and any coupling of such modes.
+    /// Every outer step below its lower end is proven stable for all periods in the band and any coupling of
+    /// such modes.
     pub band_edge: Option<(f64, f64)>,
     /// The outer step to take, and what bounds it; `None` where no step of the kind is proven.
     pub step: Option<(Rational, Bound)>,
@@ -226,8 +230,9 @@ impl Question {
         Ok(all)
     }
 
-    /// Kicks and drifts with the inner steps of this scheme: the outermost one is a multiple of the one before it, and the edges are those at the
-    /// ratio of the step to take, of the scheme itself where there is none.
+    /// Kicks and drifts with the inner steps of this scheme: the outermost one is a multiple of the one
+    /// before it, and the edges are those at the ratio of the step to take, of the scheme itself where there
+    /// is none.
     fn respa(&self, name: String, way: Way, scheme: &Scheme) -> Result<Lever> {
         let largest = self.largest(scheme)?;
         let one_clock = scheme.steps().len() == 1;
@@ -255,7 +260,8 @@ impl Question {
         })
     }
 
-    /// The first unstable outer step at the ratio of a scheme, and the same for the shortest periods of the band.
+    /// The first unstable outer step at the ratio of a scheme, and the same for the shortest periods of the
+    /// band.
     fn edges(&self, scheme: &Scheme) -> Result<((f64, f64), (f64, f64))> {
         let of = |i: Option<usize>| i.map_or_else(Laurent::zero, |i| self.modes[i].stiffness.clone());
         let levels = Levels { scheme, stiffness: self.stiffest().into_iter().map(of).collect() };
@@ -282,7 +288,8 @@ impl Question {
         Ok(Question { modes: modes.collect(), schemes, ..self.clone() })
     }
 
-    /// Steps of other ratios are multiples of this: of 0.01 fs, or of about a thousandth of the fastest period of plain times.
+    /// Steps of other ratios are multiples of this: of 0.01 fs, or of about a thousandth of the fastest
+    /// period of plain times.
     fn least(&self) -> Rational {
         if self.unit == TimeUnit::Femtoseconds {
             return least();
@@ -334,7 +341,8 @@ impl Question {
         Ok(())
     }
 
-    /// Without the bonds that have hydrogens. What is left has no hydrogen's mass to change: then both levers are one.
+    /// Without the bonds that have hydrogens. What is left has no hydrogen's mass to change: then both levers
+    /// are one.
     fn held(&self, all: &mut Levers) -> Result<()> {
         let left = |why: &str| format!("h-bonds held: {why}");
         let (free, held) = match Constraints::HBonds.split(self.modes.clone()) {
@@ -444,7 +452,8 @@ impl Question {
         Ok(())
     }
 
-    /// The longest outer step that the friction keeps bounded, all shorter multiples too, for the periods given.
+    /// The longest outer step that the friction keeps bounded, all shorter multiples too, for the periods
+    /// given.
     fn masked(&self, scheme: &Scheme, rate: &Rational) -> Option<Lever> {
         let holds = |p: u64| -> Option<bool> {
             let other = scheme.with_outer(scheme.last_but_one() * Rational::from_integer(p.into())).ok()?;
@@ -466,7 +475,8 @@ fn exact_root(stiffness: &Laurent) -> Option<Laurent> {
     (power % 2 == 0).then(|| Laurent::monomial(Rational::new(above * 2, below), -power / 2))
 }
 
-/// The longest multiple of `unit` below the band's edge and what is published, where all steps keep the ratios of a scheme.
+/// The longest multiple of `unit` below the band's edge and what is published, where all steps keep the
+/// ratios of a scheme.
 pub(super) fn of_units(
     edge: f64,
     caps: &Caps,

@@ -1,16 +1,18 @@
 //! Which steps are safe for these periods, for how long, and why.
 //!
-//! Periods or bonds on the clocks of a multiple-time-step integrator become one mass under several potentials. What is answered is of three
-//! kinds, kept apart:
+//! Periods or bonds on the clocks of a multiple-time-step integrator become one mass under several
+//! potentials. What is answered is of three kinds, kept apart:
 //!
-//! * **proven** (linear): the verdict at each scheme of steps, the unstable intervals about it, and the first stable region with a band of
-//!   periods: below its end no molecule whose periods are at least as long is unstable, however its modes are coupled (module `levels`,
-//!   proofs/REGION.md);
-//! * **published** (nonlinear): the outer one of several steps near T/3 and T/4, a clock's own step beyond T/6.28, with their source
-//!   ([`published`]);
-//! * **unknown**: whether the periods given are the fastest, how anharmonic they are, what another temperature does.
+//! * **proven** (linear): the verdict at each scheme of steps, the unstable intervals about it, and the first
+//!   stable region with a band of periods: below its end no molecule whose periods are at least as long is
+//!   unstable, however its modes are coupled (module `levels`, proofs/REGION.md);
+//! * **published** (nonlinear): the outer one of several steps near T/3 and T/4, a clock's own step beyond
+//!   T/6.28, with their source ([`published`]);
+//! * **unknown**: whether the periods given are the fastest, how anharmonic they are, what another
+//!   temperature does.
 //!
-//! A stable step *above* the first unstable interval is an island: periods move, intervals can be 0.006 fs wide, so it is never recommended.
+//! A stable step *above* the first unstable interval is an island: periods move, intervals can be 0.006 fs
+//! wide, so it is never recommended.
 //!
 //! | file | what |
 //! |---|---|

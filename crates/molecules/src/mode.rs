@@ -1,6 +1,7 @@
 //! Modes, the vibrations of advice: a stiffness over a mass, on one of the clocks.
 //!
-//! A period T is the stiffness (2 π/T)² of unit mass, exactly, in ℚ\[π\]; a bond is its force constant over its reduced mass.
+//! A period T is the stiffness (2 π/T)² of unit mass, exactly, in ℚ\[π\]; a bond is its force constant over
+//! its reduced mass.
 //!
 //! ```
 //! use kickdrift_molecules::Mode;
@@ -100,8 +101,8 @@ impl Mode {
         Mode { name: name.trim().into(), origin, stiffness, clock: None, bond: None }
     }
 
-    /// `NAME=10fs`, `10fs`, `NAME=3700/cm`, `slow=water`, `fast=water`: a period, a wavenumber, or what one of [`SLOW`](super::SLOW) or
-    /// [`FAST`](super::FAST) is called.
+    /// `NAME=10fs`, `10fs`, `NAME=3700/cm`, `slow=water`, `fast=water`: a period, a wavenumber, or what one
+    /// of [`SLOW`](super::SLOW) or [`FAST`](super::FAST) is called.
     ///
     /// # Errors
     /// Names the period, with a unit that is missing or unknown.
@@ -142,12 +143,14 @@ impl Mode {
         Ok(Mode::new(name, Origin::Period, &frequency * &frequency))
     }
 
-    /// `NAME:k=1106kcal/mol/A^2,15.999,1.008`: a force constant (k of E = k x²/2, K of E = K x²) and two masses in amu, behind them the
-    /// number of hydrogens on the heavy atom where it is not 1. With `hydrogen`, a mass in amu, every hydrogen (1.1 amu and less) takes
-    /// that mass and its heavy atom loses what its hydrogens have gained.
+    /// `NAME:k=1106kcal/mol/A^2,15.999,1.008`: a force constant (k of E = k x²/2, K of E = K x²) and two
+    /// masses in amu, behind them the number of hydrogens on the heavy atom where it is not 1. With
+    /// `hydrogen`, a mass in amu, every hydrogen (1.1 amu and less) takes that mass and its heavy atom loses
+    /// what its hydrogens have gained.
     ///
     /// # Errors
-    /// Names the bond and the part that is wrong: no k or K, a unit, a mass, a heavy atom that would be left without mass.
+    /// Names the bond and the part that is wrong: no k or K, a unit, a mass, a heavy atom that would be left
+    /// without mass.
     pub fn from_bond(text: &str, hydrogen: Option<&Rational>) -> Result<Mode> {
         let form = || {
             let remedy = "write NAME:k=CONSTANT,MASS,MASS, as OH:K=450kcal/mol/A^2,15.999,1.008 (k of E = k x^2/2, K of E = K x^2)";
@@ -195,7 +198,8 @@ impl Mode {
         Ok(Mode { stiffness: &self.stiffness * &Laurent::from_rational(after), bond, ..self.clone() })
     }
 
-    /// Whether it is called slow, or known as a period of slow forces: then it is on no fast clock unless it is put there.
+    /// Whether it is called slow, or known as a period of slow forces: then it is on no fast clock unless it
+    /// is put there.
     pub fn is_called_slow(&self) -> bool {
         let by_origin = matches!(self.origin, Origin::Typical(typical) if !typical.is_fast);
         by_origin || self.name.to_lowercase().starts_with("slow")

@@ -1,7 +1,8 @@
 //! Hessians of a molecule on its clocks: its own modes, the first unstable interval, a band of periods.
 //!
-//! Where periods are given one by one the stiffest stands for all; Hessians have the coupling of the modes, too. The first stable
-//! region, its margin and its band are proven (proofs/REGION.md); growth rates are rounded.
+//! Where periods are given one by one the stiffest stands for all; Hessians have the coupling of the modes,
+//! too. The first stable region, its margin and its band are proven (proofs/REGION.md); growth rates are
+//! rounded.
 
 use std::sync::Arc;
 
@@ -41,7 +42,8 @@ pub struct Group {
     pub count: usize,
     /// The shortest and the longest period in fs, rounded.
     pub period: (f64, f64),
-    /// Their name; `None` where the bonds are not known, or where no bond, angle or molecule has most of a mode.
+    /// Their name; `None` where the bonds are not known, or where no bond, angle or molecule has most of a
+    /// mode.
     pub name: Option<String>,
     /// Who moves in the fastest of them.
     pub atoms: String,
@@ -58,9 +60,11 @@ pub struct Finding {
     pub margin: Option<f64>,
     /// \[lo, hi\]: every outer step up to lo is proven stable at this ratio, hi is proven unstable.
     pub first: Option<(f64, f64)>,
-    /// Every outer step from the first unstable one up to this is proven unstable; the interval may end later.
+    /// Every outer step from the first unstable one up to this is proven unstable; the interval may end
+    /// later.
     pub first_upper: Option<f64>,
-    /// Growth from there on, sampled, steps in fs and rates per fs; that a step is stable again is proven. None where no first one is.
+    /// Growth from there on, sampled, steps in fs and rates per fs; that a step is stable again is proven.
+    /// None where no first one is.
     pub growing: Vec<Growing>,
     /// Growth per fs, rounded; 0 where nothing grows, `None` where that is not decided.
     pub rate: Option<f64>,
@@ -68,7 +72,8 @@ pub struct Finding {
     pub name: Option<String>,
     /// Who moves in it.
     pub atoms: Option<String>,
-    /// Where a friction was given: whether it is proven to keep all bounded, or that something grows all the same; `None`: doubles cannot decide.
+    /// Where a friction was given: whether it is proven to keep all bounded, or that something grows all the
+    /// same; `None`: doubles cannot decide.
     pub is_damped: Option<bool>,
     /// And where something grows without one, a friction per fs that is proven to mask it, about the least.
     pub masking: Option<f64>,
@@ -76,7 +81,8 @@ pub struct Finding {
     pub band_edge: Option<f64>,
     /// The longest multiple of the inner step that is proven so, all shorter ones too.
     pub largest: Option<Rational>,
-    /// The longest multiple that is `largest` at most and below what is published ([`Caps`]); `None` also where an inner step is not.
+    /// The longest multiple that is `largest` at most and below what is published ([`Caps`]); `None` also
+    /// where an inner step is not.
     pub safe: Option<Rational>,
     /// What bounds `safe`.
     pub bound: Option<Bound>,
@@ -127,7 +133,8 @@ const NO_MODE: f64 = 1e-2;
 /// The most products unless a budget is given: a minute or two.
 pub const MOST_PRODUCTS: u64 = 1_000_000_000_000;
 
-/// A mode's inner step costs, over all the half periods that advice looks at, as much as so many products: some 1500 of them, measured.
+/// A mode's inner step costs, over all the half periods that advice looks at, as much as so many products:
+/// some 1500 of them, measured.
 const OF_AN_INNER_STEP: u64 = 30_000;
 
 /// Factorizations of the action by which many levels are advised on, each in n³ for a kick time, measured.
@@ -151,9 +158,10 @@ impl Molecule {
         Molecule { harmonic, ..self }
     }
 
-    /// The products that advice on so many degrees of freedom at these schemes costs, about: factorizations that bisect to edges and
-    /// margins, sampled eigenvalues; with a friction those of whole periods. For each of these every fast mode of two levels is followed over the inner
-    /// steps of half an outer one; of other numbers of levels a factorization has all kick times of half a period.
+    /// The products that advice on so many degrees of freedom at these schemes costs, about: factorizations
+    /// that bisect to edges and margins, sampled eigenvalues; with a friction those of whole periods. For
+    /// each of these every fast mode of two levels is followed over the inner steps of half an outer one; of
+    /// other numbers of levels a factorization has all kick times of half a period.
     ///
     /// # Errors
     /// A budget error where that is more than `most`.
@@ -185,8 +193,8 @@ impl Molecule {
     /// The findings at each scheme, all periods within `band` of theirs.
     ///
     /// # Errors
-    /// No scheme; one of another number of steps than there are levels, or of two whose outer step is no multiple of the inner one; a band outside
-    /// [0, 1).
+    /// No scheme; one of another number of steps than there are levels, or of two whose outer step is no
+    /// multiple of the inner one; a band outside [0, 1).
     pub fn advise(
         &self,
         schemes: &[Scheme],
@@ -277,7 +285,8 @@ impl Molecule {
         steps.iter().map(|step| step / &self.unit).collect()
     }
 
-    /// The steps of a scheme with an outermost step of `count` times the step before it: that outermost step in fs, and all steps in their unit.
+    /// The steps of a scheme with an outermost step of `count` times the step before it: that outermost step
+    /// in fs, and all steps in their unit.
     fn with_multiple(&self, scheme: &Scheme, count: u64) -> (Rational, Vec<Rational>) {
         let outer = scheme.last_but_one() * Rational::from_integer(count.into());
         let mut steps = scheme.steps().to_vec();
@@ -396,8 +405,8 @@ impl Molecule {
         first.map(|(lo, hi)| ((lo * unit).next_down(), (hi * unit).next_up()))
     }
 
-    /// Another method that takes the fast stiffness in one go, or follows it exactly by inner steps up to that of the scheme; `None` where no step is
-    /// proven, and of other than two levels.
+    /// Another method that takes the fast stiffness in one go, or follows it exactly by inner steps up to
+    /// that of the scheme; `None` where no step is proven, and of other than two levels.
     pub fn method(&self, name: &str, way: Way, scheme: &Scheme, band: &Rational) -> Option<Lever> {
         let method = match way {
             Way::Molly(trigonometric) => Method::Trigonometric(trigonometric),
@@ -418,7 +427,8 @@ impl Molecule {
         })
     }
 
-    /// The longest multiple of the inner step that a friction per fs is proven to mask, all shorter multiples too; `None` where it is none.
+    /// The longest multiple of the inner step that a friction per fs is proven to mask, all shorter multiples
+    /// too; `None` where it is none.
     ///
     /// # Errors
     /// As [`Molecule::advise`].
@@ -465,8 +475,8 @@ impl Molecule {
         Ok(AtRatio { first, first_upper: Some(upper * unit), growing, band_edge })
     }
 
-    /// The longest multiple of the step before the outermost one for the band, all shorter ones holding too; of one step alone the edge of the band, in
-    /// fs, to 1e-5 fs.
+    /// The longest multiple of the step before the outermost one for the band, all shorter ones holding too;
+    /// of one step alone the edge of the band, in fs, to 1e-5 fs.
     fn largest(&self, scheme: &Scheme, band: f64, edge: Option<f64>) -> Result<Option<Rational>> {
         if scheme.steps().len() == 1 {
             let digits = |edge: f64| Rational::new(((edge * 1e5).floor() as i64).into(), 100_000.into());

@@ -1,13 +1,14 @@
 //! Names of the motions of a molecule: "O-H stretch of HOH", "HIS 12 N-H stretch".
 //!
-//! A mode e, mass-weighted and normalized, moves atom i by e_i/√m_i. An internal coordinate q with gradient s has the kinetic energy
-//! (s·x)²/g of it, g = Σ |s_i|²/m_i (Wilson's G): of bonds that is the stretch, of neighbouring bonds the bend, of a whole molecule its
-//! rotation and translation. The first of these that has half of the energy names the mode; a mode without such a part has no name.
+//! A mode e, mass-weighted and normalized, moves atom i by e_i/√m_i. An internal coordinate q with gradient s
+//! has the kinetic energy (s·x)²/g of it, g = Σ |s_i|²/m_i (Wilson's G): of bonds that is the stretch, of
+//! neighbouring bonds the bend, of a whole molecule its rotation and translation. The first of these that has
+//! half of the energy names the mode; a mode without such a part has no name.
 
 use std::collections::BTreeMap;
 
-/// The symbol, standard mass (u, CIAAW 2021, abridged) and covalent radius (Å, Cordero et al. 2008) of elements; 0: of ions and metals, which
-/// are bonded to nothing here.
+/// The symbol, standard mass (u, CIAAW 2021, abridged) and covalent radius (Å, Cordero et al. 2008) of
+/// elements; 0: of ions and metals, which are bonded to nothing here.
 const ELEMENTS: [(&str, f64, f64); 21] = [
     ("H", 1.008, 0.31),
     ("H", 2.014, 0.31),
@@ -35,8 +36,9 @@ const ELEMENTS: [(&str, f64, f64); 21] = [
 /// How far, u, force fields' masses are from those of elements.
 const ISOTOPES: f64 = 0.05;
 
-/// Atoms are bonded up to so many times the sum of their radii, where the closest two atoms of all set what a radius is: the unit of length is
-/// unknown here. Bonds of one kind differ by less, and hydrogen bonds are 1.8 times as long.
+/// Atoms are bonded up to so many times the sum of their radii, where the closest two atoms of all set what a
+/// radius is: the unit of length is unknown here. Bonds of one kind differ by less, and hydrogen bonds
+/// are 1.8 times as long.
 const BONDED: f64 = 1.3;
 
 /// Sines of angles below this belong to a straight line, about which no bend is defined.
@@ -51,7 +53,8 @@ const MOST_LISTED: usize = 3;
 /// Atoms: what they are called, and where known what they are and where they stand.
 #[derive(Clone, Debug, Default)]
 pub struct Names {
-    /// As `H1 HOH 4`: atom, kind of residue and its number, or a text of one's own; empty where there are none.
+    /// As `H1 HOH 4`: atom, kind of residue and its number, or a text of one's own; empty where there are
+    /// none.
     labels: Vec<String>,
     structure: Option<Structure>,
 }
@@ -114,7 +117,8 @@ impl Names {
         Names { labels, structure: None }
     }
 
-    /// Who has most of the kinetic energy: up to three names, as long as they have a tenth of it and the first ones not nine.
+    /// Who has most of the kinetic energy: up to three names, as long as they have a tenth of it and the
+    /// first ones not nine.
     pub fn atoms(&self, shape: &[f64]) -> String {
         let each = if shape.len().is_multiple_of(3) && self.labels.len() != shape.len() { 3 } else { 1 };
         let share = |values: &[f64]| values.iter().map(|x| x * x).sum::<f64>();
@@ -132,7 +136,8 @@ impl Names {
         names.join(", ")
     }
 
-    /// The name of several modes together, each of one shape or of the two parts of a complex one; `None` where none of them has one.
+    /// The name of several modes together, each of one shape or of the two parts of a complex one; `None`
+    /// where none of them has one.
     pub fn motion(&self, modes: &[Vec<&[f64]>]) -> Option<String> {
         let structure = self.structure.as_ref()?;
         let (mut found, mut has_others) = (Vec::<Motion>::new(), false);
@@ -241,8 +246,8 @@ fn ordered<'a>(a: &'a str, b: &'a str) -> [&'a str; 2] {
 }
 
 impl Structure {
-    /// Who has half of the energy: stretches, bends, or the motions of whole molecules; empty where nobody has, and of shapes in other
-    /// coordinates than these atoms'.
+    /// Who has half of the energy: stretches, bends, or the motions of whole molecules; empty where nobody
+    /// has, and of shapes in other coordinates than these atoms'.
     fn shares(&self, parts: &[&[f64]]) -> Vec<Share> {
         if parts.iter().any(|part| part.len() != 3 * self.masses.len()) {
             return Vec::new();

@@ -44,16 +44,18 @@ pub struct Question {
 /// Periods that are followed for a scheme: verdicts, edges of intervals, multiples of the inner step.
 const PERIODS: u64 = 1000;
 
-/// The same where edges are found by balls, of three clocks and more: 8 ms for each kick of a period, measured, at 5,000 kicks a ms.
+/// The same where edges are found by balls, of three clocks and more: 8 ms for each kick of a period,
+/// measured, at 5,000 kicks a ms.
 const PERIODS_OF_MANY: u64 = 40_000;
 
 /// Schemes and modes beyond these numbers are a slip of the keyboard.
 const MOST_SCHEMES: usize = 1000;
 const MOST_MODES: usize = 1000;
 
-/// Gives each mode without a clock one by its place: with K steps the last K − 1 modes are on the slower clocks, in order, and all before them on the
-/// fastest; with fewer modes than steps, each on the clock of its place. What is called fast comes before all others and is on the fastest clock, what is
-/// called slow comes last and is never there.
+/// Gives each mode without a clock one by its place: with K steps the last K − 1 modes are on the slower
+/// clocks, in order, and all before them on the fastest; with fewer modes than steps, each on the clock of
+/// its place. What is called fast comes before all others and is on the fastest clock, what is called slow
+/// comes last and is never there.
 pub fn place(modes: &mut [Mode], clocks: usize) {
     let count = modes.len();
     let rank = |mode: &Mode| u8::from(mode.is_called_slow()) + u8::from(!mode.is_called_fast());
@@ -75,7 +77,8 @@ impl Question {
     /// The question, if it makes sense; a mode without a clock gets one ([`place`]).
     ///
     /// # Errors
-    /// No mode, no scheme, schemes with different numbers of steps, a clock that there is not, two modes of one name, a band outside [0, 1).
+    /// No mode, no scheme, schemes with different numbers of steps, a clock that there is not, two modes of
+    /// one name, a band outside [0, 1).
     pub fn new(mut modes: Vec<Mode>, schemes: Vec<Scheme>, band: Rational) -> Result<Question> {
         let missing = |field: &str, remedy: &str| Err(Error::missing(field, remedy));
         let Some(first) = schemes.first() else {
@@ -215,7 +218,8 @@ impl Question {
         Question { unit, ..self }
     }
 
-    /// Whether nothing is known of the fastest clock: no mode is on it, or all are called slow where there is but one.
+    /// Whether nothing is known of the fastest clock: no mode is on it, or all are called slow where there is
+    /// but one.
     pub(super) fn lacks_fast(&self) -> bool {
         let fast = |mode: &Mode| mode.clock == Some(0) && (self.clocks() > 1 || !mode.is_called_slow());
         !self.modes.iter().any(fast)
@@ -239,7 +243,8 @@ impl Question {
         (0..self.clocks()).map(|clock| on(clock).max_by(|i, j| stiffness(i).cmp(stiffness(j)))).collect()
     }
 
-    /// The modes that resonate with an outer clock: those on any clock but the outermost, or all where there is but one.
+    /// The modes that resonate with an outer clock: those on any clock but the outermost, or all where there
+    /// is but one.
     pub(super) fn faster(&self) -> Vec<usize> {
         let last = self.clocks() - 1;
         let inner: Vec<usize> =

@@ -1,4 +1,5 @@
-//! The sources of decisions about Hessians: two levels by their eigenbasis, any other number of them by the action. Advice uses both alike.
+//! The sources of decisions about Hessians: two levels by their eigenbasis, any other number of them by the
+//! action. Advice uses both alike.
 
 use std::fmt::Debug;
 
@@ -9,8 +10,8 @@ use systems::friction::Damping;
 use systems::levels::{Growing, Kernel, Nested, Outer};
 use systems::{Analysis, Holds, Instability, Removed};
 
-/// Stiffnesses of levels, steps and rates in their unit of time; `steps` are those of all levels, innermost first. What is proven of an outer step is so
-/// with all others in their ratios to it.
+/// Stiffnesses of levels, steps and rates in their unit of time; `steps` are those of all levels, innermost
+/// first. What is proven of an outer step is so with all others in their ratios to it.
 pub trait Source: Debug + Send + Sync {
     /// Checks that these steps can be asked about.
     ///
@@ -39,7 +40,8 @@ pub trait Source: Debug + Send + Sync {
     /// \[lo, hi\]: every outer step up to lo is proven stable, hi is proven unstable.
     fn first_unstable(&self, steps: &[Rational]) -> Result<Option<(f64, f64)>>;
 
-    /// The step up to which every one from an unstable step on is proven unstable, followed in relative steps no shorter than `least`.
+    /// The step up to which every one from an unstable step on is proven unstable, followed in relative steps
+    /// no shorter than `least`.
     fn unstable_up_to(&self, steps: &[Rational], from: f64, least: f64) -> Result<f64>;
 
     /// Growth from an unstable step on, the first samples `width` apart, relative.

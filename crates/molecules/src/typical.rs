@@ -16,7 +16,8 @@ pub struct Typical {
     pub source: &'static str,
 }
 
-/// The shortest period of nonbonded forces alone, as if nothing else acted. Torsions on the slow clock make it shorter.
+/// The shortest period of nonbonded forces alone, as if nothing else acted. Torsions on the slow clock make
+/// it shorter.
 pub const SLOW: [Typical; 3] = [
     Typical {
         name: "water",
@@ -46,8 +47,8 @@ pub const SLOW: [Typical; 3] = [
 
 macro_rules! fast {
     ($count:literal, $($source:ident: $($name:literal $period:literal $what:literal;)*)*) => {
-        /// The shortest period of all forces or of the bonded ones alone, whichever is shorter: rounded down, as python/tests/bench/periods.py measures it
-        /// with OpenMM, or as it is published.
+        /// The shortest period of all forces or of the bonded ones alone, whichever is shorter: rounded down,
+        /// as python/tests/bench/periods.py measures it with OpenMM, or as it is published.
         pub const FAST: [Typical; $count] = [$($(Typical {
             name: $name,
             is_fast: true,
@@ -94,7 +95,8 @@ fast! {
 }
 
 impl Typical {
-    /// The period that this name means where a mode is called `mode`: with `fast=` those of the fastest clock, else the slow ones first.
+    /// The period that this name means where a mode is called `mode`: with `fast=` those of the fastest
+    /// clock, else the slow ones first.
     pub fn of(mode: &str, name: &str) -> Option<&'static Typical> {
         let plain = name.split(',').map(str::trim).collect::<Vec<_>>().join(",");
         let found = |all: &'static [Typical]| all.iter().find(|typical| typical.name == plain);

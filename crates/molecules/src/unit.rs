@@ -1,9 +1,11 @@
 //! Units, converted exactly.
 //!
-//! Everything is held in femtoseconds and amu. An amu is taken as 1 g/mol over the Avogadro constant, as simulation engines do: then the
-//! Avogadro constant drops out of kcal/mol and kJ/mol, and all factors are rational. (The measured amu, CODATA 2022, is larger by 1e-9 of
-//! itself.) The constants are those of the SI since 2019 (BIPM, *The International System of Units*, 9th edition, table 1):
-//! c = 299792458 m/s, e = 1.602176634e-19 C, N_A = 6.02214076e23/mol, all exact; 1 cal = 4.184 J (thermochemical, ISO 31-4), exact too.
+//! Everything is held in femtoseconds and amu. An amu is taken as 1 g/mol over the Avogadro constant, as
+//! simulation engines do: then the Avogadro constant drops out of kcal/mol and kJ/mol, and all factors are
+//! rational. (The measured amu, CODATA 2022, is larger by 1e-9 of itself.) The constants are those of the SI
+//! since 2019 (BIPM, *The International System of Units*, 9th edition, table 1): c = 299792458 m/s,
+//! e = 1.602176634e-19 C, N_A = 6.02214076e23/mol, all exact; 1 cal = 4.184 J (thermochemical, ISO 31-4),
+//! exact too.
 //!
 //! ```
 //! use kickdrift_molecules::unit::{Dimension, measured};
@@ -163,7 +165,8 @@ pub fn dimension(text: &str) -> Option<Dimension> {
 /// A positive number with its unit, exactly, in the unit of its dimension.
 ///
 /// # Errors
-/// A unit that is missing, unknown or of another dimension, and a number that is not positive, named by `field`.
+/// A unit that is missing, unknown or of another dimension, and a number that is not positive, named by
+/// `field`.
 pub fn measured(field: &str, text: &str, dimension: Dimension) -> Result<Laurent> {
     let Some((number, unit)) = split(text) else {
         let remedy = match parse(field, text) {
@@ -216,7 +219,8 @@ pub fn rational(field: &str, text: &str, dimension: Dimension) -> Result<Rationa
         .ok_or_else(|| Error::input(field, text.trim(), "must be rational; write it without pi"))
 }
 
-/// The period in fs of a wavenumber in 1/cm: 1/(100 c ν̃) seconds, about 33356/ν̃; `None` where ν̃ is no c π^k.
+/// The period in fs of a wavenumber in 1/cm: 1/(100 c ν̃) seconds, about 33356/ν̃; `None` where ν̃ is no c
+/// π^k.
 pub fn period_of_wavenumber(wavenumber: &Laurent) -> Option<Laurent> {
     let per_second = Laurent::from_rational(Rational::from_integer(BigInt::from(29_979_245_800_u64)));
     let femtoseconds = Laurent::from_rational(Rational::from_integer(BigInt::from(10).pow(15)));

@@ -42,8 +42,8 @@ const MOST_BITS_OF_NEAREST: u32 = 3072;
 
 /// The set [mid − rad, mid + rad] · 2^exp.
 ///
-/// Invariant: rad ≤ 2^30 + 1; |exp| ≤ 2^60, so that no sum of a few exponents overflows (what is smaller becomes a ball about 0, an
-/// operation on what is larger **panics**); exp = 0 in the exact ball 0.
+/// Invariant: rad ≤ 2^30 + 1; |exp| ≤ 2^60, so that no sum of a few exponents overflows (what is smaller
+/// becomes a ball about 0, an operation on what is larger **panics**); exp = 0 in the exact ball 0.
 #[derive(Clone, Debug)]
 pub struct Ball {
     mid: BigInt,
@@ -231,13 +231,14 @@ impl Ball {
         (lower, upper)
     }
 
-    /// The double nearest to the midpoint, beyond the largest one that: for display and first guesses, not for proofs.
+    /// The double nearest to the midpoint, beyond the largest one that: for display and first guesses, not
+    /// for proofs.
     pub fn mid_f64(&self) -> f64 {
         float::nearest_dyadic(&self.mid, self.exp).clamp(f64::MIN, f64::MAX)
     }
 
-    /// The double nearest to a number that is evaluated in ever more bits, as both ends of its enclosure round to it. Of a number half
-    /// way between two doubles, which no bits tell apart, one of these.
+    /// The double nearest to a number that is evaluated in ever more bits, as both ends of its enclosure
+    /// round to it. Of a number half way between two doubles, which no bits tell apart, one of these.
     ///
     /// ```
     /// use kickdrift_number::Ball;
@@ -255,7 +256,8 @@ impl Ball {
         }
     }
 
-    /// Whether one double is the nearest to every point of the ball: [`Ball::mid_f64`], unless it is too large for one.
+    /// Whether one double is the nearest to every point of the ball: [`Ball::mid_f64`], unless it is too
+    /// large for one.
     pub fn has_nearest_f64(&self) -> bool {
         let end = |mid: BigInt| float::nearest_dyadic(&mid, self.exp);
         end(&self.mid - self.rad) == end(&self.mid + self.rad)

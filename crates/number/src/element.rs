@@ -79,7 +79,8 @@ impl<F: NumberField> Element<F> {
             let x = self.polynomial.coefficient(0);
             return (!x.is_zero()).then(|| Element::from_rational(&x.recip()));
         };
-        // Euclid on (ψ, f) with the cofactor u of f: u f = r mod ψ. ψ is irreducible, so r ends as a constant.
+        // Euclid on (ψ, f) with the cofactor u of f: u f = r mod ψ. ψ is irreducible, so r ends as a
+        // constant.
         let (mut r, mut next) = (field.minimal_polynomial(), self.polynomial.clone());
         let (mut u, mut next_u) = (Polynomial::zero(), Polynomial::one());
         while next.degree() > Some(0) {

@@ -18,7 +18,8 @@ use std::{fmt, io};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Kind {
-    /// The input is not meaningful: [`Error::field`], [`Error::value`] and [`Error::remedy`] say what to change.
+    /// The input is not meaningful: [`Error::field`], [`Error::value`] and [`Error::remedy`] say what to
+    /// change.
     Input,
     /// A file or stream could not be read or written.
     Io,
@@ -30,7 +31,8 @@ pub enum Kind {
 
 /// An error of any floor: a [`Kind`], what it is about, what was given and what to do instead.
 ///
-/// `Display` is one line, `field = value: remedy`, in which long texts are cut in the middle; the parts are whole.
+/// `Display` is one line, `field = value: remedy`, in which long texts are cut in the middle; the parts are
+/// whole.
 #[derive(Clone, Debug)]
 pub struct Error(Box<Parts>);
 
@@ -72,8 +74,8 @@ impl Error {
         error
     }
 
-    /// Bad input: a name that is none of these. The remedy is what it may be a slip of the keyboard for, else all of them,
-    /// or as many as a line has room for.
+    /// Bad input: a name that is none of these. The remedy is what it may be a slip of the keyboard for, else
+    /// all of them, or as many as a line has room for.
     pub fn unknown<'a>(field: &str, given: &str, names: impl IntoIterator<Item = &'a str>) -> Self {
         let names: Vec<&str> = names.into_iter().collect();
         let like: Vec<&str> = names.iter().copied().filter(|name| is_like(given, name)).collect();
@@ -132,7 +134,8 @@ impl Error {
         self
     }
 
-    /// This error about another field: an error of a stream becomes one about the path that the stream goes to.
+    /// This error about another field: an error of a stream becomes one about the path that the stream goes
+    /// to.
     #[must_use]
     pub fn at(mut self, field: impl fmt::Display) -> Self {
         self.0.field = field.to_string();
@@ -237,18 +240,21 @@ pub fn room(bytes: u128, fewer: &str) -> Result<()> {
     Err(Error::too_much(work, format!("there is no memory for it: choose {fewer}")))
 }
 
-/// Whether a word may be a slip of the keyboard for another: one letter in three is wrong, missing or too much.
+/// Whether a word may be a slip of the keyboard for another: one letter in three is wrong, missing or too
+/// much.
 pub fn is_like(given: &str, known: &str) -> bool {
     3 * strsim::damerau_levenshtein(given, known) <= given.len().max(known.len())
 }
 
-/// Characters that are not seen or turn the direction of what follows: marks, embeddings, isolates, tags, a byte order mark.
+/// Characters that are not seen or turn the direction of what follows: marks, embeddings, isolates, tags, a
+/// byte order mark.
 fn is_unseen(c: char) -> bool {
     matches!(c, '\u{ad}' | '\u{61c}' | '\u{180e}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}'
         | '\u{fe00}'..='\u{fe0f}' | '\u{feff}' | '\u{fff9}'..='\u{fffb}' | '\u{e0000}'..='\u{e01ef}')
 }
 
-/// `text` whose lines a terminal shows as they are: names of files and titles may hold what moves the cursor, or hides what follows.
+/// `text` whose lines a terminal shows as they are: names of files and titles may hold what moves the cursor,
+/// or hides what follows.
 pub fn visible(text: &str) -> String {
     let is_hidden = |c: char| c != '\n' && (c.is_control() || is_unseen(c));
     if !text.contains(is_hidden) {
@@ -258,7 +264,8 @@ pub fn visible(text: &str) -> String {
     text.chars().map(shown).collect()
 }
 
-/// `text` on one line, what is not seen escaped, its middle left out where it has more than `most` characters.
+/// `text` on one line, what is not seen escaped, its middle left out where it has more than `most`
+/// characters.
 fn one_line(text: &str, most: usize) -> String {
     let line: Vec<char> = visible(&text.replace(['\n', '\r', '\t'], " ")).chars().collect();
     if line.len() <= most {

@@ -4,7 +4,8 @@ use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read};
 use std::path::Path;
 
-/// The longest document or engine's input, in bytes: the reader of XML takes 4 GiB, and JSON takes ten times its size in memory.
+/// The longest document or engine's input, in bytes: the reader of XML takes 4 GiB, and JSON takes ten times
+/// its size in memory.
 pub const LONGEST: u64 = 1 << 30;
 
 /// Bytes that are read before they are looked at.
@@ -13,7 +14,8 @@ const AT_ONCE: u64 = 1 << 16;
 /// The text of a file, or of a pipe, of at most so many bytes.
 ///
 /// # Errors
-/// Those of the file; more bytes; a zero byte, which no text holds but devices and binary files do; bytes that are not UTF-8.
+/// Those of the file; more bytes; a zero byte, which no text holds but devices and binary files do; bytes
+/// that are not UTF-8.
 pub fn text(path: &Path, most: u64) -> io::Result<String> {
     let bytes = characters(path, most)?;
     String::from_utf8(bytes).map_err(|_| io::Error::new(ErrorKind::InvalidData, "it is not UTF-8"))

@@ -8,7 +8,8 @@ use num_bigint::{BigInt, BigUint, Sign as IntSign};
 use num_integer::Integer;
 use num_traits::{Float, ToPrimitive, Zero};
 
-/// Ends of doubles that one sum or one product rounded, moved outward: what is 0 is so exactly, unless a product vanished.
+/// Ends of doubles that one sum or one product rounded, moved outward: what is 0 is so exactly, unless a
+/// product vanished.
 pub fn outward((lo, hi): (f64, f64)) -> (f64, f64) {
     (if lo == 0.0 { 0.0 } else { lo.next_down() }, if hi == 0.0 { 0.0 } else { hi.next_up() })
 }
@@ -77,10 +78,12 @@ impl Leading {
     }
 }
 
-/// The double nearest to n/d, n and d positive, and the double nearest to what it lacks, but for 2^-51 of that.
+/// The double nearest to n/d, n and d positive, and the double nearest to what it lacks, but for 2^-51 of
+/// that.
 pub(super) fn short_quotient(n: u64, d: u64) -> (f64, f64) {
     let hi = Leading::of_quotient(n, d).around().nearest;
-    // hi = m 2^e with m of 53 bits, and hi d differs from n by less than 2^e d: both are whole in units of 2^min(e, 0).
+    // hi = m 2^e with m of 53 bits, and hi d differs from n by less than 2^e d: both are whole in units of
+    // 2^min(e, 0).
     let (m, e, _) = Float::integer_decode(hi);
     let e = i32::from(e);
     let (n, product) = (i128::from(n) << (-e).max(0), (i128::from(m) << e.max(0)) * i128::from(d));
@@ -150,7 +153,8 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// Quotients by long numbers equal those by short ones, next to doubles and next to halves between them, too.
+        /// Quotients by long numbers equal those by short ones, next to doubles and next to halves between
+        /// them, too.
         #[test]
         fn short_quotients_are_rounded_as_long_ones(
             n in 1u64.., d in 1u64.., small in 0u32..64, coarse in 0u32..64, double in any::<bool>(),

@@ -5,7 +5,8 @@ use num_traits::{One, Zero};
 use super::operators::ring_operators;
 use super::{Ball, Rational, Ring, Sign};
 
-/// f and f' of one variable, each in a ball of `BITS` bits. Over an interval of the variable both contain every value there.
+/// f and f' of one variable, each in a ball of `BITS` bits. Over an interval of the variable both contain
+/// every value there.
 #[derive(Clone, Debug)]
 pub struct Jet<const BITS: u32> {
     pub value: Ball,

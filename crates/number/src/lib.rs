@@ -10,8 +10,9 @@
 //! | [`Polynomial`] | R\[x\] over any ring R | not at all: a [`Ring`] only; real roots by Sturm chains |
 //! | `f64` | doubles | not at all: a [`Ring`] only |
 //!
-//! Exact types know their sign ([`ExactSign`]) and can be enclosed ([`Real`]); a [`Ball`] answers `None` where
-//! it cannot decide; no exact type converts from a double silently ([`rational::from_f64_exact`] is loud).
+//! Exact types know their sign ([`ExactSign`]) and can be enclosed ([`Real`]); a [`Ball`] answers `None`
+//! where it cannot decide; no exact type converts from a double silently ([`rational::from_f64_exact`] is
+//! loud).
 //!
 //! ```
 //! use kickdrift_number::{ExactSign, Laurent, Real, Sign, parse};

@@ -1,6 +1,7 @@
 //! Enums whose variants have names: in documents, in files, on the command line.
 
-/// An enum of variants without fields, each declared with its name: `ALL` has them in their order, `name` is the one declared.
+/// An enum of variants without fields, each declared with its name: `ALL` has them in their order, `name` is
+/// the one declared.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! named {

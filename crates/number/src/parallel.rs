@@ -1,5 +1,5 @@
-//! Work spread over threads; without the feature `parallel` one piece after the other. Same results, same order. And work
-//! that its caller may stop.
+//! Work spread over threads; without the feature `parallel` one piece after the other. Same results, same
+//! order. And work that its caller may stop.
 
 use std::cell::RefCell;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -12,8 +12,8 @@ thread_local! {
     static STOP: RefCell<Option<Arc<AtomicBool>>> = const { RefCell::new(None) };
 }
 
-/// Runs `work`, all of which ends with an error of the kind `Stopped` soon after the flag is set, on whatever threads it is:
-/// surveys, closings, comparisons, scans and simulations look at it piece by piece.
+/// Runs `work`, all of which ends with an error of the kind `Stopped` soon after the flag is set, on whatever
+/// threads it is: surveys, closings, comparisons, scans and simulations look at it piece by piece.
 ///
 /// ```
 /// use std::sync::{Arc, atomic::AtomicBool};

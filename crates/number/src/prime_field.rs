@@ -1,8 +1,8 @@
 //! Prime fields of 62 bits: a cheap look at exact numbers.
 //!
-//! x ↦ x mod p is a ring homomorphism of the rationals whose denominators p does not divide. So what is not 0 modulo p
-//! is not 0, polynomials without a common factor modulo p that keep their degrees have none, and an integer is put
-//! together from its residues modulo many primes.
+//! x ↦ x mod p is a ring homomorphism of the rationals whose denominators p does not divide. So what is not 0
+//! modulo p is not 0, polynomials without a common factor modulo p that keep their degrees have none, and an
+//! integer is put together from its residues modulo many primes.
 
 use num_bigint::{BigInt, Sign};
 use num_traits::{One, Zero};
@@ -200,8 +200,8 @@ impl PrimeField {
         result
     }
 
-    /// The roots of a monic polynomial without multiple ones, lowest coefficient first, by increasing values; `None` where it has fewer than
-    /// its degree (Cantor and Zassenhaus).
+    /// The roots of a monic polynomial without multiple ones, lowest coefficient first, by increasing values;
+    /// `None` where it has fewer than its degree (Cantor and Zassenhaus).
     pub fn roots(&self, f: &[u64]) -> Option<Vec<u64>> {
         let x = || vec![0, self.of(1)];
         if f.len() > 2 && self.power_modulo(x(), self.p, f) != x() {

@@ -1,7 +1,7 @@
 //! The fields ℚ(c^(1/n)) of one real root: the coefficients of integrators, as (3 − √3)/6 and 1/(2 − ∛2).
 //!
-//! With c > 0 an integer that is no p-th power for any prime p | n, xⁿ − c is irreducible (Vahlen, Capelli), so that
-//! every root of a rational number lies in one such field, and whether a number is 0 is decided.
+//! With c > 0 an integer that is no p-th power for any prime p | n, xⁿ − c is irreducible (Vahlen, Capelli),
+//! so that every root of a rational number lies in one such field, and whether a number is 0 is decided.
 //!
 //! ```
 //! use kickdrift_number::{ExactSign, Radical, Ring, Sign, rational::ratio};
@@ -116,7 +116,8 @@ impl Radical {
         Some(RadicalField::new(c, degree).element(Polynomial::monomial(factor, k as usize)))
     }
 
-    /// Both numbers in one field; `None` where that is not one that a single root generates which either of them is written in.
+    /// Both numbers in one field; `None` where that is not one that a single root generates which either of
+    /// them is written in.
     pub fn together(a: &Radical, b: &Radical) -> Option<(Radical, Radical)> {
         let (Some(f), Some(g)) = (a.field(), b.field()) else { return Some((a.clone(), b.clone())) };
         if f == g {

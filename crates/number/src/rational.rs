@@ -45,8 +45,9 @@ pub fn from_f64_exact(x: f64) -> Option<Rational> {
     Rational::from_float(x)
 }
 
-/// The rational number that a double most likely stands for after a few roundings (a change of units, a quotient of steps): a decimal of at
-/// most twelve digits within 2^-51 |x|, or p/q with p q below 2^40, else the shortest decimal that rounds to x. `None` for infinities and NaN.
+/// The rational number that a double most likely stands for after a few roundings (a change of units, a
+/// quotient of steps): a decimal of at most twelve digits within 2^-51 |x|, or p/q with p q below 2^40, else
+/// the shortest decimal that rounds to x. `None` for infinities and NaN.
 ///
 /// ```
 /// use kickdrift_number::rational::{from_f64_meant, ratio};
@@ -77,7 +78,8 @@ fn decimal(text: &str) -> Rational {
     Rational::from_integer(whole) * Rational::from_integer(10.into()).pow(power)
 }
 
-/// x 2^k, exactly. Its lowest terms are found by shifts, for a greatest common divisor costs the square of the digits.
+/// x 2^k, exactly. Its lowest terms are found by shifts, for a greatest common divisor costs the square of
+/// the digits.
 ///
 /// ```
 /// use kickdrift_number::rational::{ratio, scale2};
@@ -92,9 +94,9 @@ pub fn scale2(x: &BigInt, k: i64) -> Rational {
     Rational::new_raw(x >> common, BigInt::from(1) << (places - common))
 }
 
-/// The rational of least denominator in [lo, hi], 0 < lo ≤ hi (Stern and Brocot): the terms that the continued fractions of
-/// lo and hi have in common, and the least that fits for the last one. Whole numbers that stay coprime: nothing is
-/// ever reduced.
+/// The rational of least denominator in [lo, hi], 0 < lo ≤ hi (Stern and Brocot): the terms that the
+/// continued fractions of lo and hi have in common, and the least that fits for the last one. Whole numbers
+/// that stay coprime: nothing is ever reduced.
 pub fn simplest(lo: &Rational, hi: &Rational) -> Rational {
     let (mut lo, mut hi) = (lo.clone().into_raw(), hi.clone().into_raw());
     let (mut before, mut now) = ((BigInt::zero(), BigInt::one()), (BigInt::one(), BigInt::zero()));
@@ -115,8 +117,8 @@ pub fn simplest(lo: &Rational, hi: &Rational) -> Rational {
     }
 }
 
-/// The simplest rational within half a unit in the last place of a double, what a rounded number most likely stands for: 1/3 of
-/// 0.3333333333333333. `None` unless the double is finite.
+/// The simplest rational within half a unit in the last place of a double, what a rounded number most likely
+/// stands for: 1/3 of 0.3333333333333333. `None` unless the double is finite.
 pub fn simplest_beside(x: f64) -> Option<Rational> {
     let own = from_f64_exact(x.abs())?;
     let above = from_f64_exact(x.abs().next_up()).unwrap_or_else(|| own.clone());

@@ -1,4 +1,5 @@
-//! What types of numbers can do: compute ([`Ring`]), decide their sign ([`ExactSign`]), be enclosed ([`Real`]).
+//! What types of numbers can do: compute ([`Ring`]), decide their sign ([`ExactSign`]), be enclosed
+//! ([`Real`]).
 //!
 //! `f64` is a [`Ring`] and nothing more: it can compute but not certify, so no code that decides a
 //! verdict accepts it.
@@ -54,8 +55,8 @@ pub trait Real: ExactSign {
     /// the exact zero being the ball 0).
     fn enclosure(&self, bits: u32) -> Ball;
 
-    /// hi + lo within 2^-99 of the number, relatively, |lo| ≤ ulp(hi)/2, where a few operations on doubles give it; `None`
-    /// says nothing about the number.
+    /// hi + lo within 2^-99 of the number, relatively, |lo| ≤ ulp(hi)/2, where a few operations on doubles
+    /// give it; `None` says nothing about the number.
     fn two_doubles(&self) -> Option<(f64, f64)> {
         None
     }

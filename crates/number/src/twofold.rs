@@ -60,7 +60,8 @@ impl Twofold {
         self.plus(other.negative())
     }
 
-    /// a + b to within 2^-104 of itself, whatever cancels (Joldes, Muller, Popescu 2017, theorem 3.1: 3 u² + 13 u³).
+    /// a + b to within 2^-104 of itself, whatever cancels (Joldes, Muller, Popescu 2017, theorem 3.1: 3 u² +
+    /// 13 u³).
     #[inline(always)]
     pub fn accurate_sum(self, other: Twofold) -> Twofold {
         let (s, t) = (Twofold::sum(self.hi, other.hi), Twofold::sum(self.lo, other.lo));
@@ -159,7 +160,8 @@ impl Twofold {
     /// The precision that [`Twofold::near`] asks for.
     pub const ENCLOSURE_BITS: u32 = 160;
 
-    /// x to within 2^-103 relative, of either sign; `None` where the ball is wider than that, or x is 0 or far from 1.
+    /// x to within 2^-103 relative, of either sign; `None` where the ball is wider than that, or x is 0 or
+    /// far from 1.
     pub fn near(x: &Ball) -> Option<Twofold> {
         let near = x.mid_f64();
         if !(1.0 / LARGEST..=LARGEST).contains(&near.abs()) {
@@ -191,8 +193,8 @@ impl Twofold {
         Twofold { hi, lo: rest }
     }
 
-    /// The double nearest to the product of what two stand for, each within 2^-104 relative; `None` where that is not certain, or a
-    /// number far from 1.
+    /// The double nearest to the product of what two stand for, each within 2^-104 relative; `None` where
+    /// that is not certain, or a number far from 1.
     pub fn nearest_product(self, other: Twofold) -> Option<f64> {
         const RANGE: std::ops::Range<f64> = 1e-250..1e250;
         // Within 2^-101 + 2 2^-104 relative, and what the sums below round.

@@ -33,7 +33,8 @@ pub struct Tick {
 }
 
 impl Axis {
-    /// A linear axis over `[lo, hi]`. A range that is empty or not finite is widened until something can be drawn.
+    /// A linear axis over `[lo, hi]`. A range that is empty or not finite is widened until something can be
+    /// drawn.
     pub fn linear(label: &str, lo: f64, hi: f64) -> Self {
         // Beyond this the length of the range would overflow.
         let (lo, hi) = (if lo.is_finite() { lo.max(-1e307) } else { 0.0 }, hi.min(1e307));
@@ -42,7 +43,8 @@ impl Axis {
         Self::new(label, lo, hi, Scale::Linear)
     }
 
-    /// A logarithmic axis over `[lo, hi]`, both positive. What is not is replaced, so that something can be drawn.
+    /// A logarithmic axis over `[lo, hi]`, both positive. What is not is replaced, so that something can be
+    /// drawn.
     pub fn log(label: &str, lo: f64, hi: f64) -> Self {
         let hi = if hi.is_finite() && hi > f64::MIN_POSITIVE { hi } else { 1.0 };
         let lo = if lo > 0.0 && lo < hi / 1.001 { lo } else { hi / 10.0 };

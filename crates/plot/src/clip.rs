@@ -11,8 +11,8 @@ pub(crate) fn holds(rect: Rect, [x, y]: Point) -> bool {
     rect[0] <= x && x <= rect[2] && rect[1] <= y && y <= rect[3]
 }
 
-/// The part of the segment from `a` to `b` in the box (Liang and Barsky): the segment is a + t (b - a), and each side
-/// of the box bounds t from one side.
+/// The part of the segment from `a` to `b` in the box (Liang and Barsky): the segment is a + t (b - a), and
+/// each side of the box bounds t from one side.
 pub(crate) fn segment(rect: Rect, a: Point, b: Point) -> Option<(Point, Point)> {
     let (mut first, mut last) = (0.0f64, 1.0f64);
     for axis in 0..2 {

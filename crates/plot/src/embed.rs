@@ -1,4 +1,5 @@
-//! The letters of a drawing as fonts in its file: of each face the glyphs in use, and what letter each one means.
+//! The letters of a drawing as fonts in its file: of each face the glyphs in use, and what letter each one
+//! means.
 
 use std::collections::BTreeMap;
 use std::io::Write as _;

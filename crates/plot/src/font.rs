@@ -1,7 +1,7 @@
 //! The text face: Libertinus Serif (SIL Open Font License, see `fonts/`), built in.
 //!
-//! The letters in use go into SVG and PDF with their outlines, so that a figure looks the same in a browser, in a paper and
-//! as PNG, with no font installed. Lengths are in em.
+//! The letters in use go into SVG and PDF with their outlines, so that a figure looks the same in a browser,
+//! in a paper and as PNG, with no font installed. Lengths are in em.
 
 use std::sync::LazyLock;
 

@@ -10,7 +10,8 @@ const PITCH: f64 = 3.0;
 pub(crate) const WIDTH: f64 = 0.45;
 /// Pieces of a stroke that are no further apart than this are one, in points: coordinates are hundredths.
 const TOUCHING: f64 = 0.02;
-/// Shorter pieces are left out: on a lonely cell, as small as print takes, a stroke would be all that is seen.
+/// Shorter pieces are left out: on a lonely cell, as small as print takes, a stroke would be all that is
+/// seen.
 const SHORTEST: f64 = 0.9;
 
 impl Hatch {
@@ -60,7 +61,8 @@ impl Hatch {
     }
 }
 
-/// Where an outline crosses each stroke, along it, in order: it is inside from the first to the second, and so on.
+/// Where an outline crosses each stroke, along it, in order: it is inside from the first to the second, and
+/// so on.
 fn crossings(outline: &[[f64; 2]], way: [f64; 2], pitch: f64) -> BTreeMap<i64, Vec<f64>> {
     let turned = |[x, y]: [f64; 2]| [x * way[0] + y * way[1], (y * way[0] - x * way[1]) / pitch];
     let mut found: BTreeMap<i64, Vec<f64>> = BTreeMap::new();

@@ -52,8 +52,8 @@ fn rows<'a>(entries: Vec<Entry<'a>>, room: f64) -> Vec<Vec<Entry<'a>>> {
     rows
 }
 
-/// How far a legend above a frame so wide reaches to the left of it: over the numbers and names there, `left` wide, if one of its
-/// entries is longer than the frame.
+/// How far a legend above a frame so wide reaches to the left of it: over the numbers and names there, `left`
+/// wide, if one of its entries is longer than the frame.
 fn indent(entries: &[Entry], wide: f64, left: f64) -> f64 {
     if entries.iter().any(|entry| width(entry) > wide) { left } else { 0.0 }
 }

@@ -1,8 +1,8 @@
 //! Words with italics, subscripts and superscripts, measured and placed.
 //!
 //! The notation: `*h*_1` is an italic h with index 1, `10^{−3}` a power, `T_{1/2}` an index of more than one
-//! letter, and `h_1^2` has its power above its index; a backslash takes the meaning from the letter behind it. An open
-//! `*` or `{` ends with the text.
+//! letter, and `h_1^2` has its power above its index; a backslash takes the meaning from the letter behind
+//! it. An open `*` or `{` ends with the text.
 
 use super::font::Face;
 

@@ -177,8 +177,9 @@ impl From<Mark> for Layer {
 
 /// Marked cells of a regular grid, each in one of a few colours; made for hundreds of thousands of them.
 ///
-/// Cell (i, j) is centred at (x0 + i dx, y0 + j dy). Neighbours in one row or column that are pushed one after the
-/// other share a run, and a run is all that is kept. Where two colours meet, the edge is that of the later one.
+/// Cell (i, j) is centred at (x0 + i dx, y0 + j dy). Neighbours in one row or column that are pushed one
+/// after the other share a run, and a run is all that is kept. Where two colours meet, the edge is that of
+/// the later one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cells {
     pub(crate) origin: [f64; 2],

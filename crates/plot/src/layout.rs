@@ -39,8 +39,8 @@ pub(crate) fn sites(panels: &[Panel], columns: usize, width: f64, height: f64) -
     let (row, column) = (|i: usize| i / columns, |i: usize| i % columns);
     let (width, height) =
         (width - 2.0 * RIM - BESIDE * (columns - 1) as f64, height - 2.0 * RIM - BELOW * (rows - 1) as f64);
-    // Heights ask for a width where a legend stands above its frame, widths for a height where the numbers of an axis
-    // stand beside it. From a guess at the width, two rounds settle both.
+    // Heights ask for a width where a legend stands above its frame, widths for a height where the numbers of
+    // an axis stand beside it. From a guess at the width, two rounds settle both.
     let mut wide = width / columns as f64;
     let (mut high, mut vertical, mut horizontal) = (0.0, Vec::new(), Vec::new());
     for _ in 0..2 {
@@ -112,8 +112,8 @@ fn below(panel: &Panel) -> f64 {
 fn right(panel: &Panel, width: f64, height: f64) -> f64 {
     match &panel.bar {
         Some(bar) => key::bar_width(bar, height),
-        // The last number of the horizontal axis reaches over the frame, by half its width at most: over the rim, too, but not
-        // over the paper.
+        // The last number of the horizontal axis reaches over the frame, by half its width at most: over the
+        // rim, too, but not over the paper.
         None => (overhang(&panel.x, width) - RIM).max(7.0),
     }
 }

@@ -1,8 +1,8 @@
 //! Figures for papers: panels of layers, as SVG, PDF and PNG. Nothing here knows what is drawn.
 //!
-//! A figure is measured in millimetres of paper; lines and letters are in points and do not grow with it. Words are words
-//! in a built-in face that the file carries, so the same figure gives the same bytes wherever it is made, and every format
-//! draws the same primitives.
+//! A figure is measured in millimetres of paper; lines and letters are in points and do not grow with it.
+//! Words are words in a built-in face that the file carries, so the same figure gives the same bytes wherever
+//! it is made, and every format draws the same primitives.
 //!
 //! ```
 //! use kickdrift_plot::{Axis, Figure, Layer, Panel, Stroke};
@@ -121,7 +121,8 @@ impl Figure {
         Self::new(175.0, height_mm)
     }
 
-    /// A figure of one panel whose frame has this height in any width, for axes of rows; what stands around it comes on top.
+    /// A figure of one panel whose frame has this height in any width, for axes of rows; what stands around
+    /// it comes on top.
     pub fn of_rows(width_mm: f64, frame_mm: f64) -> Self {
         Figure { frame_mm: Some(frame_mm), ..Self::new(width_mm, frame_mm) }
     }
@@ -140,8 +141,8 @@ impl Figure {
         self
     }
 
-    /// Changes its width. Its height follows unless it is that of rows, but no row of panels falls below 45 mm
-    /// that was higher.
+    /// Changes its width. Its height follows unless it is that of rows, but no row of panels falls below 45
+    /// mm that was higher.
     #[must_use]
     pub fn wide(mut self, width_mm: f64) -> Self {
         let rows = self.panels.len().div_ceil(self.columns.max(1)).max(1) as f64;
@@ -151,8 +152,8 @@ impl Figure {
         self
     }
 
-    /// Puts a heading above all panels, in the notation of labels. It becomes the name, too, and takes the place of
-    /// the title of a single panel.
+    /// Puts a heading above all panels, in the notation of labels. It becomes the name, too, and takes the
+    /// place of the title of a single panel.
     #[must_use]
     pub fn headed(mut self, heading: &str) -> Self {
         self.heading = heading.into();
@@ -207,8 +208,8 @@ impl Figure {
         self
     }
 
-    /// Writes letters as text in SVG, too, with their font: in place where fonts in a document are read, as in browsers, and not where
-    /// they are ignored (librsvg, Inkscape, LibreOffice).
+    /// Writes letters as text in SVG, too, with their font: in place where fonts in a document are read, as
+    /// in browsers, and not where they are ignored (librsvg, Inkscape, LibreOffice).
     #[must_use]
     pub fn in_text(mut self) -> Self {
         self.letters = Letters::Text;
@@ -261,8 +262,8 @@ impl Figure {
         svg::document(&self.drawn())
     }
 
-    /// The figure as a PNG file on white, with `dpi` pixels an inch; `None` if `dpi` is not a positive number or makes more than
-    /// 2^28 pixels.
+    /// The figure as a PNG file on white, with `dpi` pixels an inch; `None` if `dpi` is not a positive number
+    /// or makes more than 2^28 pixels.
     pub fn png(&self, dpi: f64) -> Option<Vec<u8>> {
         png::raster(&self.drawn(), dpi)
     }

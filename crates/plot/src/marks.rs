@@ -97,9 +97,9 @@ fn put_outline(path: &mut Path, outline: &[[f64; 2]]) {
     }
 }
 
-/// Each colour over all cells of it and of later colours, in one outline: then nothing but the colour below can show where two
-/// cells meet, however the page is rasterized. Growth falls from the middle of a tongue to its edges, so that this is no more
-/// than a rectangle a colour and column either.
+/// Each colour over all cells of it and of later colours, in one outline: then nothing but the colour below
+/// can show where two cells meet, however the page is rasterized. Growth falls from the middle of a tongue to
+/// its edges, so that this is no more than a rectangle a colour and column either.
 fn cells(canvas: &mut Canvas, plane: &Plane, cells: &Cells, hatch: Option<Hatch>) {
     let single = |run: &Run| {
         let (run, wide) = (*run, run.across);
@@ -124,7 +124,8 @@ fn cells(canvas: &mut Canvas, plane: &Plane, cells: &Cells, hatch: Option<Hatch>
     }
 }
 
-/// Cells sorted by column and row as rectangles: runs of a column, and equal runs of neighbouring columns joined.
+/// Cells sorted by column and row as rectangles: runs of a column, and equal runs of neighbouring columns
+/// joined.
 fn rectangles(cells: impl Iterator<Item = (u32, u32)>) -> Vec<Run> {
     let (mut runs, mut done) = (Vec::<Run>::new(), Vec::new());
     for (i, j) in cells {

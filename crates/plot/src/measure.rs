@@ -1,5 +1,5 @@
-//! Measures that drawing and layout share: the sizes of letters, the ticks that fit an axis, the way from data to the page.
-//! Lengths are points.
+//! Measures that drawing and layout share: the sizes of letters, the ticks that fit an axis, the way from
+//! data to the page. Lengths are points.
 
 use super::axis::{Axis, Tick};
 use super::canvas::{Anchor, Set};

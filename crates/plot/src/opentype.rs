@@ -1,5 +1,6 @@
-//! Some glyphs of a face as a font file that browsers take: what is embedded in PDF lacks the table of letters (`cmap`), the
-//! name and the measures for screens (`OS/2`, `post`). Formats: ISO/IEC 14496-22 (OpenType).
+//! Some glyphs of a face as a font file that browsers take: what is embedded in PDF lacks the table of
+//! letters (`cmap`), the name and the measures for screens (`OS/2`, `post`). Formats: ISO/IEC 14496-22
+//! (OpenType).
 
 use std::collections::BTreeMap;
 
@@ -28,7 +29,8 @@ pub(crate) fn font(face: Face, numbers: &GlyphRemapper, letters: &BTreeMap<u16, 
     }))
 }
 
-/// Letters to glyphs, as Unicode (platform 3): those of 16 bits (encoding 1, format 4) and all (encoding 10, format 12).
+/// Letters to glyphs, as Unicode (platform 3): those of 16 bits (encoding 1, format 4) and all (encoding 10,
+/// format 12).
 fn map(letters: &BTreeMap<u32, u16>) -> Vec<u8> {
     let (small, all) = (segments(letters), groups(letters));
     let mut bytes = Vec::new();

@@ -17,13 +17,14 @@ pub const INK: Colour = Colour(0x1b, 0x1b, 0x1f);
 /// Lines that should stay in the background.
 pub const GREY: Colour = Colour(0x8f, 0x92, 0x99);
 
-/// Exponential growth, linear growth, closed tongues: apart in lightness, and for every kind of colour vision.
+/// Exponential growth, linear growth, closed tongues: apart in lightness, and for every kind of colour
+/// vision.
 pub const HYPERBOLIC: Colour = Colour(0x27, 0x3c, 0x75);
 pub const PARABOLIC: Colour = Colour(0xd9, 0x5f, 0x02);
 pub const COEXISTENCE: Colour = Colour(0x1b, 0xb0, 0x8a);
 
-/// The judgements of advice: safe, with caution, growing where it was sampled, unstable. From light to dark, so that they differ in
-/// grey print.
+/// The judgements of advice: safe, with caution, growing where it was sampled, unstable. From light to dark,
+/// so that they differ in grey print.
 pub const SAFE: Colour = Colour(0xcf, 0xec, 0xdf);
 pub const CAUTION: Colour = Colour(0xf3, 0xb4, 0x7a);
 pub const SAMPLED: Colour = Colour(0x8f, 0x8f, 0x9b);
@@ -34,7 +35,8 @@ impl Colour {
     #[must_use]
     pub fn opposite(self) -> Colour {
         let Colour(r, g, b) = self;
-        // About as light as it looks (ITU-R BT.601, on encoded values); no finer measure is needed to choose one of two.
+        // About as light as it looks (ITU-R BT.601, on encoded values); no finer measure is needed to choose
+        // one of two.
         let light = 0.299 * f64::from(r) + 0.587 * f64::from(g) + 0.114 * f64::from(b);
         if light > 140.0 { INK } else { WHITE }
     }
@@ -84,7 +86,8 @@ impl Gradient {
     }
 }
 
-/// The lightness, chroma and hue of each [`family`]: hue and lightness step differently, so that neighbours differ in both.
+/// The lightness, chroma and hue of each [`family`]: hue and lightness step differently, so that neighbours
+/// differ in both.
 pub const FAMILIES: [Lch; 8] = [
     [0.40, 0.17, 0.715],
     [0.68, 0.17, 0.13],
@@ -96,7 +99,8 @@ pub const FAMILIES: [Lch; 8] = [
     [0.62, 0.03, 0.75],
 ];
 
-/// Eight colours for families that have no order, distinct in lightness as well as in hue; they repeat after that.
+/// Eight colours for families that have no order, distinct in lightness as well as in hue; they repeat after
+/// that.
 pub fn family(index: usize) -> Colour {
     let [lightness, chroma, hue] = FAMILIES[index % FAMILIES.len()];
     from_lch(lightness, chroma, hue)
@@ -108,7 +112,8 @@ pub fn behind(index: usize) -> Colour {
     from_lch(0.62 + 0.15 * lightness, 0.6 * chroma, hue)
 }
 
-/// The sRGB colour of given OKLab lightness, chroma and hue; a chroma that no screen has is reduced to one it has.
+/// The sRGB colour of given OKLab lightness, chroma and hue; a chroma that no screen has is reduced to one it
+/// has.
 fn from_lch(lightness: f64, chroma: f64, hue: f64) -> Colour {
     let (sin, cos) = (hue * std::f64::consts::TAU).sin_cos();
     let at = |chroma: f64| linear(lightness, chroma * cos, chroma * sin);

@@ -45,9 +45,10 @@ impl ColourBar {
         self
     }
 
-    /// The range of a bar of rates of growth: up to the largest but one in a hundred, so that a few do not darken all others,
-    /// and down to the smallest but one in twenty or to the hundredth part: near the edges of tongues growth falls to zero.
-    /// Without a rate at all a range that has none: [`Axis::log`] replaces it.
+    /// The range of a bar of rates of growth: up to the largest but one in a hundred, so that a few do not
+    /// darken all others, and down to the smallest but one in twenty or to the hundredth part: near the edges
+    /// of tongues growth falls to zero. Without a rate at all a range that has none: [`Axis::log`] replaces
+    /// it.
     pub fn range_of(rates: impl Iterator<Item = f64>) -> (f64, f64) {
         let mut rates: Vec<f64> = rates.collect();
         rates.sort_unstable_by(f64::total_cmp);

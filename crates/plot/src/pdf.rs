@@ -1,4 +1,5 @@
-//! A drawing as a PDF of one page: the same lines as the SVG, and words as words, in the letters that they need.
+//! A drawing as a PDF of one page: the same lines as the SVG, and words as words, in the letters that they
+//! need.
 
 use std::collections::BTreeMap;
 
@@ -122,7 +123,8 @@ impl<'a> Drawing<'a> {
         }
     }
 
-    /// Letters as text, each in its place; the rim around them as outlines, or a search would find them twice.
+    /// Letters as text, each in its place; the rim around them as outlines, or a search would find them
+    /// twice.
     fn words(&mut self, words: &Words) {
         if words.set.halo {
             let rim = Pen { round_joins: true, ..Pen::new(WHITE, HALO) };

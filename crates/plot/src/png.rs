@@ -14,8 +14,8 @@ use super::palette::{Colour, WHITE};
 /// The most pixels of one image; at four bytes each this is 1 GiB.
 const MOST_PIXELS: f64 = (1u64 << 28) as f64;
 
-/// Rasterizes a drawing on white at `dpi` pixels an inch, and notes that resolution in the file; `None` if `dpi` is not a
-/// positive number or makes more than 2^28 pixels.
+/// Rasterizes a drawing on white at `dpi` pixels an inch, and notes that resolution in the file; `None` if
+/// `dpi` is not a positive number or makes more than 2^28 pixels.
 pub(crate) fn raster(canvas: &Canvas, dpi: f64) -> Option<Vec<u8>> {
     let scale = dpi / 72.0;
     let size = [canvas.width, canvas.height].map(|side| (side * scale).round().max(1.0));
@@ -102,8 +102,8 @@ impl Brush {
         path.rectangles().all(|[left, top, right, bottom]| right - left >= least && bottom - top >= least)
     }
 
-    /// The pixels whose centres lie in a rectangle: where two meet, each pixel is of one of them. Blending the edges of many
-    /// shades, one over another, would take ten times as long as all that is seen.
+    /// The pixels whose centres lie in a rectangle: where two meet, each pixel is of one of them. Blending
+    /// the edges of many shades, one over another, would take ten times as long as all that is seen.
     fn cells(&mut self, path: &Path, colour: Colour) {
         let (scale, wide, high) = (f64::from(self.page.sx), self.pixels.width(), self.pixels.height());
         let colour = opaque(colour);

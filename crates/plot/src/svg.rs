@@ -1,5 +1,5 @@
-//! A drawing as SVG, with as few letters as possible: path data is relative, computed in integers, so that nothing
-//! drifts.
+//! A drawing as SVG, with as few letters as possible: path data is relative, computed in integers, so that
+//! nothing drifts.
 
 use std::fmt::Write as _;
 

@@ -1,4 +1,5 @@
-//! The fast stiffness by the midpoint rule over the whole step, the slow one by kicks: Verlet with other masses.
+//! The fast stiffness by the midpoint rule over the whole step, the slow one by kicks: Verlet with other
+//! masses.
 //!
 //! Successive positions of the step have (theorem `twice` in proofs/ImplicitExplicitModes.v)
 //!
@@ -6,8 +7,9 @@
 //!     (M + h² F/4) (x₊ − 2 x + x₋) = −h² (F + S) x
 //! ```
 //!
-//! so **the step is Verlet's with masses M + h² F/4 and the stiffness F + S**, and every route of a system of one clock decides it exactly. With h² taken
-//! into the stiffness both are linear in h², which is all that the intervals of a step need.
+//! so **the step is Verlet's with masses M + h² F/4 and the stiffness F + S**, and every route of a system of
+//! one clock decides it exactly. With h² taken into the stiffness both are linear in h², which is all that
+//! the intervals of a step need.
 
 use num_traits::One;
 
@@ -25,10 +27,12 @@ pub struct ImplicitExplicit {
 }
 
 impl ImplicitExplicit {
-    /// From a system of two clocks without phases; the force of the shorter step is solved for over the longer one.
+    /// From a system of two clocks without phases; the force of the shorter step is solved for over the
+    /// longer one.
     ///
     /// # Errors
-    /// Other clocks; M + h² F/4 that is not positive definite: the fast stiffness is so negative that the rule has no solution.
+    /// Other clocks; M + h² F/4 that is not positive definite: the fast stiffness is so negative that the
+    /// rule has no solution.
     pub fn new(plain: System) -> Result<ImplicitExplicit> {
         let [_, slow] = two_clocks(&plain)?;
         let step = slow.step.clone();

@@ -1,14 +1,14 @@
 //! Many clocks, many degrees of freedom: M x'' + Σ K_k x = 0, each potential with a step of its own.
 //!
-//! The kick pattern is a palindrome, so the half period H = \[\[A, B\], \[C, D\]\], now in n x n blocks, decides. H is
-//! symplectic in positions and momenta, and with S = Bᵀ C
+//! The kick pattern is a palindrome, so the half period H = \[\[A, B\], \[C, D\]\], now in n x n blocks,
+//! decides. H is symplectic in positions and momenta, and with S = Bᵀ C
 //!
 //! ```text
 //!     Q + 1/Q = diag(2 + 4 S, 2 + 4 Sᵀ):     λ + 1/λ = 2 + 4 μ,   μ an eigenvalue of S
 //! ```
 //!
-//! so the multipliers come from an n x n matrix and half a period. Stable iff every μ is real and in [−1, 0] and Q is
-//! diagonalizable.
+//! so the multipliers come from an n x n matrix and half a period. Stable iff every μ is real and in [−1, 0]
+//! and Q is diagonalizable.
 //!
 //! | room | what |
 //! |---|---|
@@ -29,9 +29,10 @@
 //! | `friction` | O-steps between the kicks: spectral radius, the friction that masks a resonance |
 //! | `vary` | maps; the unstable intervals of one number |
 //!
-//! The cost for n degrees of freedom, whose potentials kick T/h_k times a period and hold e_k entries: n Σ (T/h_k) e_k
-//! for the half period, some n³ for the eigenvalues and their bound in doubles. Exact arithmetic grows with the length
-//! of its numbers, about n^4 T/h and n³ (T/h)² products of machine words, and states its cost before it begins.
+//! The cost for n degrees of freedom, whose potentials kick T/h_k times a period and hold e_k entries: n Σ
+//! (T/h_k) e_k for the half period, some n³ for the eigenvalues and their bound in doubles. Exact arithmetic
+//! grows with the length of its numbers, about n^4 T/h and n³ (T/h)² products of machine words, and states
+//! its cost before it begins.
 //!
 //! ```
 //! use kickdrift_systems::number::rational::ratio;

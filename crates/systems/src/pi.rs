@@ -1,8 +1,9 @@
 //! Stiffnesses of several degrees of freedom that involve π, decided at a rational ϖ in its place.
 //!
-//! Every entry at ϖ is within 2^-150 of itself of the true one, and the bounds' constants leave a hundredth of u = 2^-53 for what is of second
-//! order: what doubles prove at ϖ they prove of all stiffnesses that near, the true ones among them. Nothing else is asked at ϖ: exact
-//! arithmetic there would decide ties that the true stiffnesses need not have, and a part is not split along vectors that are invariant there.
+//! Every entry at ϖ is within 2^-150 of itself of the true one, and the bounds' constants leave a hundredth
+//! of u = 2^-53 for what is of second order: what doubles prove at ϖ they prove of all stiffnesses that near,
+//! the true ones among them. Nothing else is asked at ϖ: exact arithmetic there would decide ties that the
+//! true stiffnesses need not have, and a part is not split along vectors that are invariant there.
 
 use std::collections::BTreeMap;
 
@@ -53,7 +54,8 @@ pub struct PiPotential {
 /// ```
 ///
 /// # Errors
-/// As [`System::new`]; a power of π beyond ±64; a common null vector of all potentials at ϖ that none is of the true ones.
+/// As [`System::new`]; a power of π beyond ±64; a common null vector of all potentials at ϖ that none is of
+/// the true ones.
 pub fn beside_pi(mass: Symmetric, potentials: &[PiPotential]) -> Result<System> {
     for (k, pi_potential) in potentials.iter().enumerate() {
         let powers = pi_potential.stiffness.values().flat_map(|x| x.terms()).map(|(power, _)| *power);

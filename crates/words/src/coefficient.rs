@@ -16,7 +16,8 @@ const MAX_POWER: u32 = 1000;
 /// The most bits that the numerators and denominators of a coefficient may have together.
 const MAX_BITS: u64 = 4000;
 
-/// The text of a word and the place in it. An error is the place, counted in characters from 0, and what to do.
+/// The text of a word and the place in it. An error is the place, counted in characters from 0, and what to
+/// do.
 pub(super) struct Reader {
     pub characters: Vec<char>,
     pub at: usize,

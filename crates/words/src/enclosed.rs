@@ -1,9 +1,10 @@
 //! Words with exact flows, filters or friction, in balls.
 //!
-//! Of the step's matrix over its denominator q, with T its trace and E its determinant, the powers are bounded if |T| < q (1 + E) and E ≤ 1
-//! (Jury's conditions for two eigenvalues inside the unit circle; for E = 1 they are on it and differ), and unbounded if |T| > q (1 + E). Over an
-//! interval of steps q (1 + E) ∓ T is enclosed by its value in the middle and the balls of its derivative over the whole, so that the width of
-//! cells falls with the distance from an edge, and not with its square where the trace only touches ±2.
+//! Of the step's matrix over its denominator q, with T its trace and E its determinant, the powers are
+//! bounded if |T| < q (1 + E) and E ≤ 1 (Jury's conditions for two eigenvalues inside the unit circle; for
+//! E = 1 they are on it and differ), and unbounded if |T| > q (1 + E). Over an interval of steps q (1 + E) ∓
+//! T is enclosed by its value in the middle and the balls of its derivative over the whole, so that the width
+//! of cells falls with the distance from an edge, and not with its square where the trace only touches ±2.
 
 use std::cell::Cell;
 
@@ -35,7 +36,8 @@ pub struct Enclosed<'a> {
     friction: Ball,
 }
 
-/// Steps with one answer, each end enclosed. Between two neighbours of the same answer lies a place of which nothing is proven.
+/// Steps with one answer, each end enclosed. Between two neighbours of the same answer lies a place of which
+/// nothing is proven.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Piece {
     pub stable: bool,
@@ -196,7 +198,8 @@ impl<'a> Enclosed<'a> {
         stable(&over, [signs[0], signs[1]])
     }
 
-    /// The answer at one step h > 0. `kind` is `edge` where balls of 128 bits cannot decide, and `damped` where friction draws all to 0.
+    /// The answer at one step h > 0. `kind` is `edge` where balls of 128 bits cannot decide, and `damped`
+    /// where friction draws all to 0.
     pub fn at(&self, h: &Laurent) -> Option<At> {
         let product = self.product(h.enclosure(BITS))?;
         let q = &product.denominator.value;
@@ -236,7 +239,8 @@ impl<'a> Enclosed<'a> {
         Some(found)
     }
 
-    /// Every step of (lo, hi): pieces with one answer. `None` where there are more pieces than can be separated.
+    /// Every step of (lo, hi): pieces with one answer. `None` where there are more pieces than can be
+    /// separated.
     pub fn pieces(&self, lo: f64, hi: f64) -> Option<Vec<Piece>> {
         let mut left = MOST_CELLS;
         let verdict = |lo: f64, hi: f64| {
@@ -249,7 +253,8 @@ impl<'a> Enclosed<'a> {
     }
 }
 
-/// Whether a step is stable: both margins are positive. `None` where neither this nor a negative margin is proven.
+/// Whether a step is stable: both margins are positive. `None` where neither this nor a negative margin is
+/// proven.
 fn stable(product: &Product<Jet>, margins: [Option<Sign>; 2]) -> Option<bool> {
     // Letters O that sum to less than 0 feed energy in.
     match product.damping.value.compare(&Ball::one()) {
@@ -270,7 +275,8 @@ fn stable(product: &Product<Jet>, margins: [Option<Sign>; 2]) -> Option<bool> {
     }
 }
 
-/// Halves [lo, hi] until a verdict holds all over a cell, or it is narrower than 2^−44 of the whole, and joins what agrees.
+/// Halves [lo, hi] until a verdict holds all over a cell, or it is narrower than 2^−44 of the whole, and
+/// joins what agrees.
 pub(super) fn pieces(lo: f64, hi: f64, mut verdict: impl FnMut(f64, f64) -> Option<bool>) -> Vec<Piece> {
     // (where it begins, whether the steps up to the next one are stable)
     let mut cells: Vec<(f64, Option<bool>)> = Vec::new();

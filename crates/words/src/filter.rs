@@ -6,9 +6,10 @@ use num_traits::{One, Zero};
 
 use number::Rational;
 
-/// g(x) = cos^i(x/2) sinc^k(x/2), or 0, with x = h √Λ1 and sinc y = sin y / y. MOLLY's φ(F) S φ(F) is g = φ², a method of Gautschi's kind
-/// x₊ − 2 cos(x) x + x₋ = −h² ψ Λ2 φ x has g = ψ φ/sinc x (Hairer, Lubich, Wanner, Geometric Numerical Integration, XIII.2). With the equilibrium
-/// filter, 0, a mode that the fast force moves feels nothing of the slow one.
+/// g(x) = cos^i(x/2) sinc^k(x/2), or 0, with x = h √Λ1 and sinc y = sin y / y. MOLLY's φ(F) S φ(F) is g = φ²,
+/// a method of Gautschi's kind x₊ − 2 cos(x) x + x₋ = −h² ψ Λ2 φ x has g = ψ φ/sinc x (Hairer, Lubich,
+/// Wanner, Geometric Numerical Integration, XIII.2). With the equilibrium filter, 0, a mode that the fast
+/// force moves feels nothing of the slow one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Filter {
     pub cos: i32,

@@ -23,8 +23,9 @@ pub enum Integrator {
 pub enum Bounded {
     Stable,
     Unstable,
-    /// With one filtered kick beside one exact flow: nearer to an edge than thousands of bits resolve, and no theorem decides whether it is one; only
-    /// where h² Λ1 is neither rational nor (r π)² with a rational r. Other words with flows or filters: on an edge, or nearer than 128 bits resolve.
+    /// With one filtered kick beside one exact flow: nearer to an edge than thousands of bits resolve, and no
+    /// theorem decides whether it is one; only where h² Λ1 is neither rational nor (r π)² with a rational r.
+    /// Other words with flows or filters: on an edge, or nearer than 128 bits resolve.
     Edge,
 }
 

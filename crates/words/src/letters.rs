@@ -63,12 +63,14 @@ pub struct Place {
     pub mirrored: String,
 }
 
-/// The cost of a step. Kicks without a drift between them share one evaluation and one gradient, those at both ends of the step too.
+/// The cost of a step. Kicks without a drift between them share one evaluation and one gradient, those at
+/// both ends of the step too.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Cost {
     /// Evaluations of each force; the whole force is one where the word does not name two.
     pub evaluations: [u64; 2],
-    /// Kicks with more than one power of the force: each needs one more evaluation or a product with the Hessian.
+    /// Kicks with more than one power of the force: each needs one more evaluation or a product with the
+    /// Hessian.
     pub gradients: u64,
     /// Implicit midpoints: each solves one linear system.
     pub solves: u64,
@@ -195,7 +197,8 @@ impl Word {
         self.any(|letter| matches!(letter.force(), Some(Force::First | Force::Second)))
     }
 
-    /// Whether its entries are algebraic in h: it has neither exact flows nor filters. Friction is not counted: without it O does nothing.
+    /// Whether its entries are algebraic in h: it has neither exact flows nor filters. Friction is not
+    /// counted: without it O does nothing.
     pub fn is_algebraic(&self) -> bool {
         !self.any(|letter| match letter {
             Letter::Flow { .. } => true,
@@ -229,8 +232,9 @@ impl Word {
         all
     }
 
-    /// The letters with those that touch joined and those that do nothing left out: a drift, then the kicks at one place by
-    /// their forces, and so on. A kick by the whole force is one by each where the word names two.
+    /// The letters with those that touch joined and those that do nothing left out: a drift, then the kicks
+    /// at one place by their forces, and so on. A kick by the whole force is one by each where the word names
+    /// two.
     pub(super) fn joined(&self) -> Vec<Letter> {
         let named = self.names_forces();
         let mut all: Vec<Letter> = Vec::new();
@@ -248,8 +252,8 @@ impl Word {
         all
     }
 
-    /// Σ of the drifts, of the kicks of each force that the word names (midpoints and flows are both; a kick whose filter is 0 is none), and
-    /// of friction where there is some; consistent iff each is 1.
+    /// Σ of the drifts, of the kicks of each force that the word names (midpoints and flows are both; a kick
+    /// whose filter is 0 is none), and of friction where there is some; consistent iff each is 1.
     pub fn sums(&self) -> Vec<(&'static str, Radical)> {
         let names = if self.names_forces() { &["D", "K1", "K2"][..] } else { &["D", "K"] };
         let friction = self.has_friction().then_some("O");
@@ -283,8 +287,8 @@ impl Word {
         self.sums().iter().all(|(_, sum)| sum.is_one())
     }
 
-    /// The first place at which the word differs from itself read backwards; `None` for a palindrome, which is a method that is
-    /// symmetric in time.
+    /// The first place at which the word differs from itself read backwards; `None` for a palindrome, which
+    /// is a method that is symmetric in time.
     pub fn asymmetry(&self) -> Option<Place> {
         let all = self.joined();
         // Kicks at one place commute, and stand in one order whichever way they are read.
@@ -346,7 +350,8 @@ impl Known {
         known
     }
 
-    /// Evaluations of either force and gradients that a letter asks for beyond what is known, which is known from then on.
+    /// Evaluations of either force and gradients that a letter asks for beyond what is known, which is known
+    /// from then on.
     fn kicked(&mut self, letter: &Letter, named: bool) -> [u64; 3] {
         let (Letter::Kick { force, filter, powers }, mut new) = (letter, [0; 3]) else { return [0; 3] };
         if filter.zero {

@@ -1,6 +1,8 @@
-//! Words: integrators as their authors write them, x'' + (Λ1 + Λ2) x = 0 by kicks, drifts and implicit midpoints.
+//! Words: integrators as their authors write them, x'' + (Λ1 + Λ2) x = 0 by kicks, drifts and implicit
+//! midpoints.
 //!
-//! A word is read from left to right, in the order of time. In units of the step h, with F the force h² Λ that a letter names:
+//! A word is read from left to right, in the order of time. In units of the step h, with F the force h² Λ
+//! that a letter names:
 //!
 //! | letter | meaning |
 //! |---|---|
@@ -13,11 +15,12 @@
 //! | `O(c)` | friction alone over c h: v ← exp(−γ c h) v |
 //! | `n*( ... )` | the letters in parentheses n times |
 //!
-//! Coefficients are sums, products, quotients and powers of rationals and of the roots `sqrt(c)`, `c^(1/n)`; all of them
-//! are exact numbers of one field ℚ(c^(1/n)) ([`Radical`](number::Radical)). So the product of the letters has entries
-//! that are polynomials in s = h² Λ1 over this field, up to a common denominator that is positive, and everything here is
-//! decided exactly: order, edges of stability, verdicts. Doubles appear only as outward rounded enclosures. Exact flows, filters and friction are no
-//! polynomials; words that have them are proven stable or unstable in balls ([`Shape`], [`Enclosed`]), their order by power series.
+//! Coefficients are sums, products, quotients and powers of rationals and of the roots `sqrt(c)`, `c^(1/n)`;
+//! all of them are exact numbers of one field ℚ(c^(1/n)) ([`Radical`](number::Radical)). So the product of
+//! the letters has entries that are polynomials in s = h² Λ1 over this field, up to a common denominator that
+//! is positive, and everything here is decided exactly: order, edges of stability, verdicts. Doubles appear
+//! only as outward rounded enclosures. Exact flows, filters and friction are no polynomials; words that have
+//! them are proven stable or unstable in balls ([`Shape`], [`Enclosed`]), their order by power series.
 //!
 //! ```
 //! use kickdrift_words::{Forces, Stability, Word};

@@ -11,20 +11,23 @@ type InRho = Polynomial<Radical>;
 
 /// How a word differs from the exact flow of x'' + (Λ1 + Λ2) x = 0, all coefficients exact.
 ///
-/// Order p: every entry of the propagator errs by O(h^(p+1)). That is the order on linear problems; on others it may be lower.
+/// Order p: every entry of the propagator errs by O(h^(p+1)). That is the order on linear problems; on others
+/// it may be lower.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Order {
     /// p; 0 where the word is not consistent.
     pub order: u64,
-    /// The order when coefficients below 2^-30 count as 0: those of published decimals, which have 10 digits and more, leave
-    /// such errors where exact ones would leave none.
+    /// The order when coefficients below 2^-30 count as 0: those of published decimals, which have 10 digits
+    /// and more, leave such errors where exact ones would leave none.
     pub nominal: u64,
-    /// The coefficients of (√Λ1 h)^(p+1) in the errors of the entries A, B, C, D in the time unit 1/√Λ1, polynomials in ρ where the
-    /// word names two forces: 0 where an entry errs less.
+    /// The coefficients of (√Λ1 h)^(p+1) in the errors of the entries A, B, C, D in the time unit 1/√Λ1,
+    /// polynomials in ρ where the word names two forces: 0 where an entry errs less.
     pub error: [InRho; 4],
-    /// (k, c): the effective frequency is ω (1 + c (ω h)^k + ...). For consistent words of one force; `None` also where it is exact.
+    /// (k, c): the effective frequency is ω (1 + c (ω h)^k + ...). For consistent words of one force; `None`
+    /// also where it is exact.
     pub frequency: Option<(u64, Radical)>,
-    /// (k, c): the effective impedance √(−C/B) is ω (1 + c (ω h)^k + ...). As `frequency`, and for A = D only.
+    /// (k, c): the effective impedance √(−C/B) is ω (1 + c (ω h)^k + ...). As `frequency`, and for A = D
+    /// only.
     pub impedance: Option<(u64, Radical)>,
 }
 
@@ -60,7 +63,8 @@ impl Word {
         let embed = |c: &Radical| Polynomial::constant(InRho::constant(c.clone()));
         let product = self.product(&Forces { of: [s.clone(), s.scale(&rho)], embed });
         let below = product.denominator.coefficients();
-        // The coefficient of s^k in an entry's numerator less the denominator times the flow: to first order that of the error.
+        // The coefficient of s^k in an entry's numerator less the denominator times the flow: to first order
+        // that of the error.
         let error = |numerator: &Polynomial<InRho>, k: usize, offset: i64| {
             let flow = |sum, j: usize| &sum - &(&below[j] * &exact(k - j, offset, named));
             (0..below.len().min(k + 1)).fold(numerator.coefficient(k), flow)
@@ -74,7 +78,8 @@ impl Word {
                 if twice % 2 == 0 { error(entry, (twice / 2) as usize, offset) } else { InRho::zero() }
             })
         };
-        // No rational function of s is the exact flow, so both are found; of series the first terms are known.
+        // No rational function of s is the exact flow, so both are found; of series the first terms are
+        // known.
         let most = if self.is_algebraic() { u64::MAX } else { MOST_ORDER + 1 };
         let first = |counts: &dyn Fn(&InRho) -> bool| {
             (1..most).find(|&power| errors(power).iter().any(counts)).unwrap_or(most)

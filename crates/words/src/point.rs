@@ -6,7 +6,8 @@ use number::{Ball, ExactSign, Laurent, Polynomial, Radical, Real, Ring, Sign};
 /// The propagator of one step at s = h² Λ1.
 #[derive(Clone, Debug)]
 pub struct At {
-    /// `elliptic`, `hyperbolic`, `parabolic` or `coexistence`, decided; of words in balls also `damped`, and `edge` where they cannot decide it.
+    /// `elliptic`, `hyperbolic`, `parabolic` or `coexistence`, decided; of words in balls also `damped`, and
+    /// `edge` where they cannot decide it.
     pub kind: &'static str,
     /// 1 where the trace is at least 2, −1 where it is at most −2, else 0.
     pub side: i8,
@@ -31,8 +32,8 @@ const BITS: u32 = 96;
 
 type Poly = Polynomial<Radical>;
 
-/// The sign of f(s): exact in ℚ(c^(1/n)) for a rational s. Any other s of ℚ\[π, 1/π\] is transcendental over that field, so that
-/// f(s) is not 0 unless f is, and balls decide.
+/// The sign of f(s): exact in ℚ(c^(1/n)) for a rational s. Any other s of ℚ\[π, 1/π\] is transcendental over
+/// that field, so that f(s) is not 0 unless f is, and balls decide.
 fn sign(f: &Poly, s: &Laurent) -> Sign {
     match s.as_rational() {
         Some(s) => f.eval(&Radical::from_rational(&s)).sign(),

@@ -15,8 +15,8 @@ pub struct Forces<S> {
     pub embed: fn(&Radical) -> S,
 }
 
-/// A product of letters in the coordinates (x, h v): the matrix divided by the denominator. The matrix's determinant is the
-/// square of the denominator times the damping; the denominator is 1 without midpoints.
+/// A product of letters in the coordinates (x, h v): the matrix divided by the denominator. The matrix's
+/// determinant is the square of the denominator times the damping; the denominator is 1 without midpoints.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Product<S> {
     pub matrix: Matrix2<S>,
@@ -67,7 +67,8 @@ fn series<S: Ring>(all: &[S], force: &S) -> S {
     all.iter().rev().fold(S::zero(), |sum, f| S::product(&sum, force) + f.clone())
 }
 
-/// Exact where the word is algebraic; flows and filters by the first terms of their series in F. Friction is none.
+/// Exact where the word is algebraic; flows and filters by the first terms of their series in F. Friction is
+/// none.
 impl<S: Ring> Setting<S> for Forces<S> {
     fn force(&self, force: Force) -> S {
         match force {
@@ -185,13 +186,14 @@ impl Word {
         Product::items(self.items(), setting)
     }
 
-    /// The product with entries in ℚ(c^(1/n))\[s\]: exact where the word [is algebraic](Word::is_algebraic), else up to s^12.
+    /// The product with entries in ℚ(c^(1/n))\[s\]: exact where the word [is algebraic](Word::is_algebraic),
+    /// else up to s^12.
     pub fn polynomials(&self, forces: &Forces<Polynomial<Radical>>) -> Polynomials {
         self.product(forces)
     }
 
-    /// Kicks and midpoints when nothing is abbreviated, each counted by its powers of the force: the degree of the entries in s, and a
-    /// measure of what they cost.
+    /// Kicks and midpoints when nothing is abbreviated, each counted by its powers of the force: the degree
+    /// of the entries in s, and a measure of what they cost.
     pub fn degree(&self) -> u64 {
         fn of(items: &[Item]) -> u64 {
             let one = |item: &Item| match item {

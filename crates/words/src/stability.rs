@@ -1,8 +1,8 @@
 //! Where a word is stable: every interval of s = h² Λ1, its ends exact algebraic numbers.
 //!
-//! With trace T and denominator q the powers of the propagator are bounded where |T| < 2 |q|, and at a zero of T ∓ 2 q iff the
-//! propagator is ±I there (B = C = 0). The zeros are isolated by Sturm chains over ℚ(c^(1/n)) and separated; between
-//! them the sign of T² − 4 q² is that at one rational point.
+//! With trace T and denominator q the powers of the propagator are bounded where |T| < 2 |q|, and at a zero
+//! of T ∓ 2 q iff the propagator is ±I there (B = C = 0). The zeros are isolated by Sturm chains over
+//! ℚ(c^(1/n)) and separated; between them the sign of T² − 4 q² is that at one rational point.
 
 use num_bigint::BigInt;
 use num_traits::{One, Signed, Zero};
@@ -13,7 +13,8 @@ use number::{Ball, ExactSign, Polynomial, Radical, Rational, Ring, Sign, rationa
 
 type Poly = Polynomial<Radical>;
 
-/// The relative width to which edges are refined: beyond the 53 bits of doubles, so that their enclosures are neighbours.
+/// The relative width to which edges are refined: beyond the 53 bits of doubles, so that their enclosures are
+/// neighbours.
 const BITS: u32 = 70;
 
 /// An end of a stable interval: a simple zero of a squarefree polynomial in s.
@@ -101,7 +102,8 @@ struct Zeros {
     all: Vec<(Rational, Rational)>,
 }
 
-/// The zeros s > 0 of f ≠ 0: over ℚ by Descartes' rule, which has no remainders that grow, else by Sturm's chain.
+/// The zeros s > 0 of f ≠ 0: over ℚ by Descartes' rule, which has no remainders that grow, else by Sturm's
+/// chain.
 fn zeros(f: &Poly) -> Zeros {
     let at_zero = f.coefficients().iter().take_while(|c| c.is_zero()).count();
     let f = Polynomial::new(f.coefficients()[at_zero..].to_vec());
@@ -182,7 +184,8 @@ impl Stability {
             let all = Interval { lower: None, upper: None, stable: identity, includes: [false; 2] };
             return Stability { intervals: vec![all] };
         }
-        // In integers, where they are rational: signs are found faster so, and a positive factor does not change them.
+        // In integers, where they are rational: signs are found faster so, and a positive factor does not
+        // change them.
         let sides = sides
             .map(|(side, f)| (side, f.rational().map_or(f, |f| f.primitive().map(Radical::from_rational))));
         let mut edges: Vec<Edge> = Vec::new();
@@ -210,13 +213,14 @@ impl Stability {
         Stability { intervals: joined(edges, inside) }
     }
 
-    /// The end of the stable interval that begins at 0; `None` where there is no such interval, or it has no end.
+    /// The end of the stable interval that begins at 0; `None` where there is no such interval, or it has no
+    /// end.
     pub fn first_edge(&self) -> Option<&Edge> {
         self.intervals.first().filter(|first| first.stable)?.upper.as_ref()
     }
 
-    /// The first edge when unstable intervals below 2^-30 of their size do not count: published decimals open such intervals
-    /// where exact coefficients have a touching of ±2.
+    /// The first edge when unstable intervals below 2^-30 of their size do not count: published decimals open
+    /// such intervals where exact coefficients have a touching of ±2.
     pub fn nominal_edge(&self) -> Option<&Edge> {
         let narrow = |gap: &Interval| {
             let (Some(lower), Some(upper)) = (&gap.lower, &gap.upper) else { return false };
@@ -238,7 +242,8 @@ impl Stability {
     }
 }
 
-/// Refines edges until their intervals are apart, and sorts them; they are different numbers, as the two polynomials have no common zero.
+/// Refines edges until their intervals are apart, and sorts them; they are different numbers, as the two
+/// polynomials have no common zero.
 fn apart(edges: &mut [Edge]) {
     loop {
         edges.sort_by(|a, b| a.ends.cmp(&b.ends));

@@ -1,15 +1,16 @@
 //! Trigonometric integrators: the fast force by its exact flow, the slow one by filtered kicks.
 //!
-//! With w = √Λ1, y = h w/2, c = cos y, s = sin y and ρ = Λ2/Λ1 the trace of a step is Tr = 2 cos h w − h² Λ2 g with
-//! g = c^i (s/y)^k (Hairer, Lubich, Wanner, Geometric Numerical Integration, XIII.2), so that
+//! With w = √Λ1, y = h w/2, c = cos y, s = sin y and ρ = Λ2/Λ1 the trace of a step is Tr = 2 cos h w − h² Λ2
+//! g with g = c^i (s/y)^k (Hairer, Lubich, Wanner, Geometric Numerical Integration, XIII.2), so that
 //!
 //! ```text
 //!     (2 + Tr)/4 = c² − ρ y² c^i (s/y)^k,        (2 − Tr)/4 = s² + ρ y² c^i (s/y)^k.
 //! ```
 //!
-//! A step is unstable where one of them is negative. Common factors c² and s² change no sign; they are 0 only where the filters are, and
-//! the propagator is ±I there. Balls over intervals of y prove the signs everywhere but at the edges; theorems on transcendental numbers decide
-//! whether a step is an edge, see `at_edge`.
+//! A step is unstable where one of them is negative. Common factors c² and s² change no sign; they are 0 only
+//! where the filters are, and the propagator is ±I there. Balls over intervals of y prove the signs
+//! everywhere but at the edges; theorems on transcendental numbers decide whether a step is an edge, see
+//! `at_edge`.
 //!
 //! ```
 //! use kickdrift_words::number::{Laurent, rational::ratio};
@@ -68,12 +69,14 @@ impl Trigonometric {
         }
     }
 
-    /// Whether only its two-step form is published, Gautschi's and that of Hairer and Lubich; else kicks stand around an exact flow.
+    /// Whether only its two-step form is published, Gautschi's and that of Hairer and Lubich; else kicks
+    /// stand around an exact flow.
     pub fn is_two_step(self) -> bool {
         matches!(self, Trigonometric::Gautschi | Trigonometric::HairerLubich)
     }
 
-    /// (i, k) of the filter c^i (s/y)^k of positions and forces alike: its square is g, beside the c s/y of an exact flow.
+    /// (i, k) of the filter c^i (s/y)^k of positions and forces alike: its square is g, beside the c s/y of
+    /// an exact flow.
     pub fn filter(self) -> (u32, u32) {
         let (i, k) = self.powers();
         let count = u32::from(!self.is_two_step());
@@ -96,12 +99,15 @@ impl Trigonometric {
         self.shape().unstable(fast, slow, most)
     }
 
-    /// The end of the steps at which **any number of coupled modes** is stable, with 0 ≤ F ≤ Λ1 and 0 ≤ S ≤ Λ2: proven stable below its lower end.
+    /// The end of the steps at which **any number of coupled modes** is stable, with 0 ≤ F ≤ Λ1 and 0 ≤ S ≤
+    /// Λ2: proven stable below its lower end.
     ///
-    /// There P and R of proofs/REGION.md, section 8, are definite as long as h w < π and ρ y² c^(i−1) (s/y)^k < c for every w² ≤ Λ1. Of this,
-    /// (s/y)^k c^(i−1)/c times h² Λ2/4 is the left side over the right one. Its logarithm has the derivative Σ a_n (4^n − 1 − k) y^(2n−1) for
-    /// i = 1, all a_n > 0: it increases for k ≤ 3, and for k = 5 decreases first and then increases. So the ends of 0 ≤ w² ≤ Λ1 decide: at w = 0
-    /// it is h² Λ2 < 4, at w² = Λ1 the first edge. For i = 3 it is at most h² Λ2/4, and h w < π. `None` for what is no filtered impulse.
+    /// There P and R of proofs/REGION.md, section 8, are definite as long as h w < π and ρ y² c^(i−1)
+    /// (s/y)^k < c for every w² ≤ Λ1. Of this, (s/y)^k c^(i−1)/c times h² Λ2/4 is the left side over the
+    /// right one. Its logarithm has the derivative Σ a_n (4^n − 1 − k) y^(2n−1) for i = 1, all a_n > 0: it
+    /// increases for k ≤ 3, and for k = 5 decreases first and then increases. So the ends of 0 ≤ w² ≤ Λ1
+    /// decide: at w = 0 it is h² Λ2 < 4, at w² = Λ1 the first edge. For i = 3 it is at most h² Λ2/4, and h
+    /// w < π. `None` for what is no filtered impulse.
     pub fn coupled_edge(self, fast: &Laurent, slow: &Laurent) -> Option<(f64, f64)> {
         let frequency = half_frequency(fast, BITS).scale2(1);
         let turn = Ball::pi(BITS).div(&frequency, BITS)?.to_f64_enclosure();
@@ -123,7 +129,8 @@ impl Trigonometric {
     }
 }
 
-/// The trace 2 cos h w − h² Λ2 g with g = c^i (s/y)^k, and with g = 0: of one filtered slow kick beside one exact fast flow.
+/// The trace 2 cos h w − h² Λ2 g with g = c^i (s/y)^k, and with g = 0: of one filtered slow kick beside one
+/// exact fast flow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shape {
     pub cos: u32,
@@ -133,8 +140,9 @@ pub struct Shape {
 }
 
 impl Shape {
-    /// The trace of a word that has, once its ends are joined, one slow kick and one fast flow, each over the whole step; `None` for all others,
-    /// and where g has a pole. A kick and a flow have that trace in whatever order and shares they stand around each other.
+    /// The trace of a word that has, once its ends are joined, one slow kick and one fast flow, each over the
+    /// whole step; `None` for all others, and where g has a pole. A kick and a flow have that trace in
+    /// whatever order and shares they stand around each other.
     pub fn of(word: &Word) -> Option<Shape> {
         let mut letters: Vec<Letter> = word.joined();
         letters.retain(|letter| !matches!(letter, Letter::Friction(_)));
@@ -160,7 +168,8 @@ impl Shape {
         Some(Shape { cos: power(filter.cos)?, sinc: power(filter.sinc)?, felt: !filter.zero })
     }
 
-    /// The signs of 2 + Tr and 2 − Tr, without factors that are squares, for every y of a ball; `None` where they are undecided.
+    /// The signs of 2 + Tr and 2 − Tr, without factors that are squares, for every y of a ball; `None` where
+    /// they are undecided.
     fn signs(self, y: &Ball, rho: &Ball, bits: u32) -> [Option<Sign>; 2] {
         if !self.felt {
             // 4 cos² y and 4 sin² y: ±I where they are 0.
@@ -184,7 +193,8 @@ impl Shape {
         [below.sign(), above.sign()]
     }
 
-    /// Whether every step of an interval of y is stable or every one unstable; `None` where that is undecided.
+    /// Whether every step of an interval of y is stable or every one unstable; `None` where that is
+    /// undecided.
     fn verdict(self, y: &Ball, rho: &Ball, bits: u32) -> Option<bool> {
         match self.signs(y, rho, bits) {
             [Some(Sign::Positive), Some(Sign::Positive)] => Some(true),
@@ -193,7 +203,8 @@ impl Shape {
         }
     }
 
-    /// Whether the step with s = h² Λ1 is stable, ρ > 0; `None` at s = 0, and where neither 8192 bits nor a theorem decide.
+    /// Whether the step with s = h² Λ1 is stable, ρ > 0; `None` at s = 0, and where neither 8192 bits nor a
+    /// theorem decide.
     pub fn stable_at(self, s: &Laurent, rho: &Rational) -> Option<bool> {
         if s.is_zero() {
             return None;
@@ -207,11 +218,14 @@ impl Shape {
 
     /// Whether an edge is stable; `None` where s is no edge, or where it is not known whether it is.
     ///
-    /// For h w = r π, s = r² π²: where r is a whole number s or c is 0, the flow is ±I, and the step is ±I if the filter c^(i−1) (s/y)^(k−1) of the
-    /// kick is 0 there, and else a kick, under which a displacement grows with every step. Where it is none, and k is not 2, c² and s² are algebraic and not 0, what is added to them is a
-    /// power of π times an algebraic number, and π is transcendental: no sum is 0. For k = 2 it is only where cos h w is a rational number, which at
-    /// rational r is 0, ±1/2 or ±1 (Niven). A rational s > 0 is no edge at all: the exponentials of different algebraic numbers are independent
-    /// over the algebraic numbers (Lindemann, Weierstrass), so c² and what is added to it, other sums of them, have no common value.
+    /// For h w = r π, s = r² π²: where r is a whole number s or c is 0, the flow is ±I, and the step is ±I if
+    /// the filter c^(i−1) (s/y)^(k−1) of the kick is 0 there, and else a kick, under which a displacement
+    /// grows with every step. Where it is none, and k is not 2, c² and s² are algebraic and not 0, what is
+    /// added to them is a power of π times an algebraic number, and π is transcendental: no sum is 0. For k =
+    /// 2 it is only where cos h w is a rational number, which at rational r is 0, ±1/2 or ±1 (Niven). A
+    /// rational s > 0 is no edge at all: the exponentials of different algebraic numbers are independent over
+    /// the algebraic numbers (Lindemann, Weierstrass), so c² and what is added to it, other sums of them,
+    /// have no common value.
     fn at_edge(self, s: &Laurent, rho: &Rational) -> Option<bool> {
         let r = turns(s)?;
         if r.is_integer() {
@@ -228,23 +242,25 @@ impl Shape {
         (cosine(&r) == Some(edge)).then_some(false)
     }
 
-    /// Every step h of (lo, hi), 0 ≤ lo: pieces with one answer, their ends enclosed. Outside the enclosures every step is proven stable or unstable.
-    /// Intervals thinner than 2^−44 of the range are not distinguished from edges that touch.
+    /// Every step h of (lo, hi), 0 ≤ lo: pieces with one answer, their ends enclosed. Outside the enclosures
+    /// every step is proven stable or unstable. Intervals thinner than 2^−44 of the range are not
+    /// distinguished from edges that touch.
     pub fn pieces(self, fast: &Laurent, slow: &Laurent, lo: f64, hi: f64) -> Vec<Piece> {
         let (half, rho) = (half_frequency(fast, BITS), over(slow, fast));
         let at = |h: f64| half.mul(&Ball::from_rational(&from_f64_exact(h).unwrap_or_default(), BITS), BITS);
         pieces(lo, hi, |lo, hi| self.verdict(&at(lo).union(&at(hi), BITS), &rho, BITS))
     }
 
-    /// The unstable intervals of the step h that begin below `most` > 0, both ends of each enclosed; an end beyond `most` is not looked for, but
-    /// given as `most`.
+    /// The unstable intervals of the step h that begin below `most` > 0, both ends of each enclosed; an end
+    /// beyond `most` is not looked for, but given as `most`.
     pub fn unstable(self, fast: &Laurent, slow: &Laurent, most: f64) -> Vec<[(f64, f64); 2]> {
         let all = self.pieces(fast, slow, 0.0, most).into_iter();
         all.filter(|piece| !piece.stable).map(|piece| [piece.lower, piece.upper]).collect()
     }
 
-    /// Whether no step at all is unstable, of one mode: proven for i, k ≥ 2 where 0 < ρ < 1, since then ρ y² c^(i−2) (s/y)^k ≤ ρ s² < 1 and
-    /// ρ |c^i (s/y)^(k−2)| < 1. So it is for MOLLY's long average and the methods of Hairer and Lubich, and of Grimm and Hochbruck.
+    /// Whether no step at all is unstable, of one mode: proven for i, k ≥ 2 where 0 < ρ < 1, since then ρ y²
+    /// c^(i−2) (s/y)^k ≤ ρ s² < 1 and ρ |c^i (s/y)^(k−2)| < 1. So it is for MOLLY's long average and the
+    /// methods of Hairer and Lubich, and of Grimm and Hochbruck.
     pub fn is_free(self, rho: &Rational) -> bool {
         !self.felt || self.cos >= 2 && self.sinc >= 2 && rho.is_positive() && *rho < Rational::one()
     }

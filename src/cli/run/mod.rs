@@ -1,4 +1,5 @@
-//! `kickdrift run`: the products that a scene wants, nothing else; a grid is decided once, however many products show it.
+//! `kickdrift run`: the products that a scene wants, nothing else; a grid is decided once, however many
+//! products show it.
 
 mod work;
 

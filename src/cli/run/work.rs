@@ -39,7 +39,8 @@ pub struct Work<'a> {
     figures: Made<Figure>,
 }
 
-/// Every pair of the grid decided: the counts, and the pairs that are not plainly stable, in the order of h1, then h2.
+/// Every pair of the grid decided: the counts, and the pairs that are not plainly stable, in the order of h1,
+/// then h2.
 struct Verdicts {
     map: Map,
     grid: Grid,

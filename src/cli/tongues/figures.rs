@@ -15,7 +15,8 @@ use number::{Laurent, Ratio, Rational, rational};
 const SAMPLES: u32 = 120;
 /// Beyond this p + q labels cover a diagram, and tongues of a trace are thinner than lines.
 const MOST_SUM: u64 = 40;
-/// Tongues within this of the angle, in units of π, are measured: on a logarithmic axis |S_a| hardly changes there.
+/// Tongues within this of the angle, in units of π, are measured: on a logarithmic axis |S_a| hardly changes
+/// there.
 const HALF_WINDOW: (i64, i64) = (1, 50);
 
 /// Draws the tongues of each ratio for 0 ≤ ρ ≤ `rho`.

@@ -39,12 +39,14 @@ pub struct Args {
     rho: Option<Rational>,
     #[command(flatten)]
     asked: Asked,
-    /// Columns by the names that csv has, or groups [default: all; with --max-sum all but growth; in LaTeX edges].
+    /// Columns by the names that csv has, or groups [default: all; with --max-sum all but growth; in LaTeX
+    /// edges].
     ///
     /// Groups: edges, exact, growth (takes longest), predicted, first-order.
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     columns: Option<Vec<String>>,
-    /// Count and compare instead of listing: all tongues of all ratios that begin below s = 4 (needs --max-sum).
+    /// Count and compare instead of listing: all tongues of all ratios that begin below s = 4
+    /// (needs --max-sum).
     #[arg(long)]
     survey: bool,
     /// How many of the thinnest tongues a survey lists.
@@ -56,7 +58,8 @@ pub struct Args {
     /// What the colours of an atlas stand for [default: family].
     #[arg(long, value_name = "WHAT")]
     colour: Option<Colour>,
-    /// The fast clock's angle of --figure strength, a rational multiple of pi between 0 and pi [default: pi/2].
+    /// The fast clock's angle of --figure strength, a rational multiple of pi between 0 and pi [default:
+    /// pi/2].
     #[arg(long, value_name = "THETA", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
     theta: Option<Laurent>,
     /// Also write a Coq proof of the edges of the tongue chosen by --ratio, --rho and --m.
@@ -89,9 +92,11 @@ enum Drawn {
     Strength,
     /// Measured widths of all tongues against |S_a|, family by family.
     Widths,
-    /// The tongues of one or several ratios: s across, rho from 0 to the one given, closings and resonances marked.
+    /// The tongues of one or several ratios: s across, rho from 0 to the one given, closings and resonances
+    /// marked.
     Diagram,
-    /// Tr Q of one ratio through its tongues, and through the one of --m [default: the widest], with half a period's entries.
+    /// Tr Q of one ratio through its tongues, and through the one of --m [default: the widest], with half a
+    /// period's entries.
     Trace,
 }
 

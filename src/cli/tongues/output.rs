@@ -39,7 +39,8 @@ impl Stream {
         Ok(Stream { tongues, ratios, asked, columns: None })
     }
 
-    /// That so many rows may be computed and written, where no window and no label says that they are fewer: p + q - 1 of p/q.
+    /// That so many rows may be computed and written, where no window and no label says that they are fewer:
+    /// p + q - 1 of p/q.
     pub fn allow(&self, common: &Common) -> Result<()> {
         let asked = &self.asked;
         if asked.window != StepWindow::default() || asked.selection != Selection::default() {
@@ -80,7 +81,8 @@ pub fn write(question: &Stream, common: &Common, format: Format) -> Result<()> {
     Ok(())
 }
 
-/// Computes the tongues and writes them to a sink, row by row where they may be many: what stands out in them.
+/// Computes the tongues and writes them to a sink, row by row where they may be many: what stands out in
+/// them.
 pub fn put(question: &Stream, common: &Common, format: Format, sink: &mut dyn Write) -> Result<TongueTally> {
     match format {
         Format::Json => json(question, common, sink),

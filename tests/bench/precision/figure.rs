@@ -26,7 +26,8 @@ fn line(method: Method, points: Vec<[f64; 2]>) -> Layer {
     layer.marked(SHAPES[place % SHAPES.len()], 3.4).labelled(method.name())
 }
 
-/// Left: time against error of the trace as periods grow. Right: wrong verdicts near an edge. From the document that is kept.
+/// Left: time against error of the trace as periods grow. Right: wrong verdicts near an edge. From the
+/// document that is kept.
 pub fn precision(document: &Value) -> Figure {
     let rows = |name: &str| document[name].as_array().expect("rows").iter();
     let number = |value: &Value| value.as_f64().expect("a number");

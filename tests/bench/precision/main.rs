@@ -1,8 +1,9 @@
 //! Run time against error, of the trace and of the verdict: `cargo bench --bench precision [-- DIRECTORY]`.
 //!
 //! Prints tables and writes precision.json and precision.svg (trace and verdict by every method) and
-//! neighbours.svg (a naive verdict beside the certified one, double by double) into DIRECTORY, target/precision
-//! unless given; with --redraw the figures alone, from the precision.json that is there. Times are minima over repetitions; only those of one run compare.
+//! neighbours.svg (a naive verdict beside the certified one, double by double) into DIRECTORY,
+//! target/precision unless given; with --redraw the figures alone, from the precision.json that is there.
+//! Times are minima over repetitions; only those of one run compare.
 
 #[path = "../common.rs"]
 mod common;

@@ -47,8 +47,8 @@ pub fn edges() -> Vec<Row> {
     rows
 }
 
-/// Stable chains, all multipliers on the unit circle: how far off it the dense way puts them, and the radius of
-/// the proven discs.
+/// Stable chains, all multipliers on the unit circle: how far off it the dense way puts them, and the radius
+/// of the proven discs.
 pub fn systems() -> Vec<Row> {
     let mut rows = Vec::new();
     let steps = [ratio(1, 4), ratio(3, 10), ratio(7, 20)];

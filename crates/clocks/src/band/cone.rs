@@ -1,4 +1,5 @@
-//! A cone of directions that two return maps take into its interior (proofs/BANDS.md, `band_growth` in proofs/Returns.v).
+//! A cone of directions that two return maps take into its interior (proofs/BANDS.md, `band_growth` in
+//! proofs/Returns.v).
 
 use super::UP;
 use super::family::{Family, Matrix};
@@ -10,7 +11,8 @@ pub struct Cone {
     pub second: [f64; 2],
 }
 
-/// The vectors (x, y) along the attracting and the repelling direction of a hyperbolic matrix of determinant 1.
+/// The vectors (x, y) along the attracting and the repelling direction of a hyperbolic matrix of
+/// determinant 1.
 fn directions([a, b, c, d]: Matrix) -> Option<[[f64; 2]; 2]> {
     let trace = a + d;
     let discriminant = trace * trace - 4.0;
@@ -31,8 +33,8 @@ fn unit([x, y]: [f64; 2]) -> [f64; 2] {
 /// Places between two directions that are tried for a boundary.
 const PLACES: u32 = 8;
 
-/// The direction between two others, less than a half turn apart, that both functions take inwards most safely: `turn` is 1 where
-/// inwards is counterclockwise.
+/// The direction between two others, less than a half turn apart, that both functions take inwards most
+/// safely: `turn` is 1 where inwards is counterclockwise.
 fn boundary(maps: [&Family; 2], turn: f64, v: [f64; 2], w: [f64; 2]) -> [f64; 2] {
     let (v, w) = (unit(v), unit(w));
     let unsure = maps.map(|map| map.error + map.moved() + 1e-6);
@@ -56,8 +58,9 @@ fn boundary(maps: [&Family; 2], turn: f64, v: [f64; 2], w: [f64; 2]) -> [f64; 2]
 }
 
 impl Cone {
-    /// A cone that may serve both functions: between the attracting and the repelling directions of their values at the
-    /// ends and in the middle of their intervals. `None` where some value is not hyperbolic, or where the directions interlace.
+    /// A cone that may serve both functions: between the attracting and the repelling directions of their
+    /// values at the ends and in the middle of their intervals. `None` where some value is not hyperbolic, or
+    /// where the directions interlace.
     pub fn candidate(maps: [&Family; 2]) -> Option<Cone> {
         let mut all = [[[0.0; 2]; 2]; 6];
         for (n, t) in [0.0, -1.0, 1.0].into_iter().enumerate() {
@@ -65,8 +68,8 @@ impl Cone {
                 all[2 * n + k] = directions(map.at(t))?;
             }
         }
-        // In the frame of the first attracting direction attracting lines have slopes y/x, and the others x/y: the largest of these
-        // follows it first, the least one comes before it last.
+        // In the frame of the first attracting direction attracting lines have slopes y/x, and the others
+        // x/y: the largest of these follows it first, the least one comes before it last.
         let [e, f] = unit(all[0][0]);
         let framed = |[x, y]: [f64; 2]| [e * x + f * y, e * y - f * x];
         let (mut least, mut most, mut after, mut before) = (0.0f64, 0.0f64, f64::NEG_INFINITY, f64::INFINITY);
@@ -88,7 +91,8 @@ impl Cone {
         Some(Cone { first, second })
     }
 
-    /// Whether the function has entries of one sign, none of them zero, in the coordinates of the cone: for all offsets and all ratios.
+    /// Whether the function has entries of one sign, none of them zero, in the coordinates of the cone: for
+    /// all offsets and all ratios.
     pub fn serves(&self, map: &Family) -> bool {
         let ([p, r], [q, s]) = (self.first, self.second);
         let determinant = p * s - q * r;

@@ -1,4 +1,5 @@
-//! About where a tongue of one ratio begins and ends, in doubles: where the search looks rests on it, and no proof.
+//! About where a tongue of one ratio begins and ends, in doubles: where the search looks rests on it, and no
+//! proof.
 
 use super::sector::Ratio;
 use number::vector::instructions::{Instructions, Task};
@@ -24,8 +25,8 @@ struct Places {
 impl Task for Places {
     type Output = [f64; LANES];
 
-    /// The even and the odd solution over the half period, and the quarter turns of the even one: a kick and a drift cross one axis each
-    /// at most.
+    /// The even and the odd solution over the half period, and the quarter turns of the even one: a kick and
+    /// a drift cross one axis each at most.
     #[inline(always)]
     fn run(self) -> [f64; LANES] {
         let Places { stiffness, ratio: (p, q), steps } = self;
@@ -144,7 +145,8 @@ mod tests {
 
     #[test]
     fn edges_are_where_the_paper_has_them() {
-        // One clock twice, at equal steps: one force of stiffness 4, stable up to h1 = 1, and no tongue before.
+        // One clock twice, at equal steps: one force of stiffness 4, stable up to h1 = 1, and no tongue
+        // before.
         let (lo, hi) = edges([2.0, 2.0], (1, 1), 1, (0.1, 0.9), 3.0);
         assert!((lo - 1.0).abs() < 1e-2 && hi > 2.9, "{lo}, {hi}");
         // h2 = 2 h1, both of stiffness s/h1²: D = 1 − 2 s, A = 1 − 3 s + s² over the half period (by hand).

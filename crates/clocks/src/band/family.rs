@@ -32,8 +32,8 @@ const MOST: [usize; ORDERS] = [32, 20, 14];
 const LEAST: f64 = 1e-8;
 const LEAST_SHARES: [f64; 2] = [3e-4, 3e-3];
 
-/// An entry of a coefficient passes through fewer than 115 roundings on its way through a product or to a part, 2^-53 each; in the
-/// norm of Frobenius twice that (proofs/BANDS.md).
+/// An entry of a coefficient passes through fewer than 115 roundings on its way through a product or to a
+/// part, 2^-53 each; in the norm of Frobenius twice that (proofs/BANDS.md).
 const ROUNDING: f64 = 3e-14;
 
 #[derive(Clone, Debug)]
@@ -192,7 +192,8 @@ impl Family {
     }
 }
 
-/// Σ j (j − 1) ⋯ (j − k + 1) |.| r^(j − 1) over the powers j ≥ 1: a bound on the k-th derivative, k ≥ 1, where |t| ≤ r and r ≥ 1.
+/// Σ j (j − 1) ⋯ (j − k + 1) |.| r^(j − 1) over the powers j ≥ 1: a bound on the k-th derivative, k ≥ 1,
+/// where |t| ≤ r and r ≥ 1.
 #[inline(always)]
 fn derivative(norms: &[f64], k: usize, r: f64) -> f64 {
     let (mut sum, mut power) = (0.0, 1.0);
@@ -292,7 +293,8 @@ impl Part<'_> {
         }
     }
 
-    /// Adds the derivative of this rank by t', times `by` and the powers of t' in `turns`; a bound on what has no place.
+    /// Adds the derivative of this rank by t', times `by` and the powers of t' in `turns`; a bound on what
+    /// has no place.
     #[inline(always)]
     fn add(sums: &mut [Matrix], terms: &[Matrix], rank: usize, by: f64, turns: &[f64]) -> f64 {
         let mut left_out = 0.0;
@@ -360,7 +362,8 @@ impl Task for Part<'_> {
             + rest(1, 1) * 2.0 * share.bent() * unit
             + rest(1, 2) * 0.5 * move_by * move_by
             + rest(2, 1) * move_by;
-        // Where the center of the box is none of those u that count, t may leave [−1, 1] there, and powers of it grow.
+        // Where the center of the box is none of those u that count, t may leave [−1, 1] there, and powers of
+        // it grow.
         let beyond = (alpha.abs() + beta.abs()).max(1.0);
         let outside = (0..MOST[0]).fold(1.0, |power, _| power * beyond);
         let both = |order: usize, k: usize| {

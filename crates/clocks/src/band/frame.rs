@@ -1,7 +1,8 @@
 //! Steps in the units of their base, and one kick of the other clock in a frame that turns (proofs/BANDS.md).
 //!
-//! In Floquet coordinates of the base a kick at the offset y behind it is 1 + 2α J ξξᵀ, ξ a point of a chord of the unit circle. In
-//! the frame that turns by ψ y, ψ = θ − πa, one kick and the way to it become, with t = 2 y − 1, but for a sign
+//! In Floquet coordinates of the base a kick at the offset y behind it is 1 + 2α J ξξᵀ, ξ a point of a chord
+//! of the unit circle. In the frame that turns by ψ y, ψ = θ − πa, one kick and the way to it become, with
+//! t = 2 y − 1, but for a sign
 //!
 //! ```text
 //!     M(t) = (1 + α (|Z| J + J S(Z))) R(τψ),    Z = (C + i S t)² e^{−iψt},    S(Z) = [[Re Z, Im Z], [Im Z, −Re Z]],
@@ -21,7 +22,8 @@ const TERMS: usize = 30;
 const TAIL: f64 = 1e-9;
 const MOST_TAIL: f64 = 1e-3;
 
-/// The clock that the other one is followed by: √Λ/2 of its own stiffness, Λ'/(2 √Λ) with that of the other one.
+/// The clock that the other one is followed by: √Λ/2 of its own stiffness, Λ'/(2 √Λ) with that of the other
+/// one.
 #[derive(Clone, Copy, Debug)]
 pub struct Base {
     pub root: Taylor,
@@ -55,7 +57,8 @@ struct Turning {
 }
 
 impl Frame {
-    /// Of the base's step, the other one, and the other one over the base's. `None` where the base's step may be zero.
+    /// Of the base's step, the other one, and the other one over the base's. `None` where the base's step may
+    /// be zero.
     pub fn new(taylor: &Taylor, other: &Taylor, tau: &Taylor, base: &Base) -> Option<Frame> {
         let (sine, pull) = (taylor.times(&base.root), other.times(&base.weight));
         let turning = Turning::new(&sine, &pull, tau, &other.times(&base.root));
@@ -68,13 +71,14 @@ impl Frame {
         if rest > 0.0 { self.pull.center.abs() / rest.sqrt() } else { f64::INFINITY }
     }
 
-    /// One kick in the frame of family a. `None` where the base may be beyond its limit, or ψ is too large for its terms.
+    /// One kick in the frame of family a. `None` where the base may be beyond its limit, or ψ is too large
+    /// for its terms.
     pub fn kick(&self, a: i64) -> Option<Family> {
         self.turning.as_ref()?.kick(a)
     }
 
-    /// A kick at y = (1 + t)/2, pulled back to the base's, and a step of the base, in coordinates (x, v/κ) that no angle enters: also
-    /// for a base beyond its own limit. `None` where nothing moves.
+    /// A kick at y = (1 + t)/2, pulled back to the base's, and a step of the base, in coordinates (x, v/κ)
+    /// that no angle enters: also for a base beyond its own limit. `None` where nothing moves.
     pub fn plain(&self) -> Option<[Family; 2]> {
         let s = self.sine.times(&self.sine).scale2(2);
         let k = self.sine.times(&self.pull).scale2(2);

@@ -1,12 +1,13 @@
 //! Bands: steps at which every ratio h2/h1, rational or not, is unstable (proofs/BANDS.md).
 //!
-//! Between two kicks of the other clock the state moves by a matrix that depends on one offset alone, and the offset moves by an
-//! exchange of two intervals. Euclid's algorithm on their lengths leads from level to level; each has two return maps. Where both of
-//! one level, for all offsets and all ratios of a range, take one cone of directions into its interior, products of them grow in
-//! whatever order they come: every ratio of the range is unstable.
+//! Between two kicks of the other clock the state moves by a matrix that depends on one offset alone, and the
+//! offset moves by an exchange of two intervals. Euclid's algorithm on their lengths leads from level to
+//! level; each has two return maps. Where both of one level, for all offsets and all ratios of a range, take
+//! one cone of directions into its interior, products of them grow in whatever order they come: every ratio
+//! of the range is unstable.
 //!
-//! Larger steps turn further. So where two first steps are in one tongue, for all ratios of a range, all steps between them are: a **sector**
-//! is proven by its two sides, however wide it is.
+//! Larger steps turn further. So where two first steps are in one tongue, for all ratios of a range, all
+//! steps between them are: a **sector** is proven by its two sides, however wide it is.
 //!
 //! ```text
 //!     tongue, range of ratios -> about where its edges are -> a side: Taylor models in the ratio -> one kick in a turning frame

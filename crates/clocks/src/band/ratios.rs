@@ -1,4 +1,5 @@
-//! The ratios about one of them that are unstable, at a step of the first clock: the cone of one step and a range of ratios.
+//! The ratios about one of them that are unstable, at a step of the first clock: the cone of one step and a
+//! range of ratios.
 
 use num_traits::ToPrimitive;
 
@@ -25,11 +26,11 @@ type Way = (usize, Option<i64>);
 /// Ratios from this one on are not looked at: in doubles they would not be exact multiples of 1/[`UNIT`].
 const LARGEST: i64 = 1 << 30;
 
-/// A range of ratios h2/h1 about `ratio` in which **every** one is unstable, rational or not, at the step h1 and with the stiffnesses Λ1 and Λ2
-/// (proofs/BANDS.md).
+/// A range of ratios h2/h1 about `ratio` in which **every** one is unstable, rational or not, at the step h1
+/// and with the stiffnesses Λ1 and Λ2 (proofs/BANDS.md).
 ///
-/// Its ends lo < hi are multiples of 10⁻⁶ with lo ≤ `ratio` ≤ hi. Ratios beyond them may be unstable, too. `None` where nothing is proven beside
-/// the ratio.
+/// Its ends lo < hi are multiples of 10⁻⁶ with lo ≤ `ratio` ≤ hi. Ratios beyond them may be unstable, too.
+/// `None` where nothing is proven beside the ratio.
 ///
 /// ```
 /// use kickdrift_clocks::band::unstable_ratios;

@@ -1,4 +1,5 @@
-//! A window of steps, searched tongue by tongue: for ranges of ratios, between which first steps each is proven.
+//! A window of steps, searched tongue by tongue: for ranges of ratios, between which first steps each is
+//! proven.
 
 use std::collections::BTreeMap;
 
@@ -22,8 +23,8 @@ const DIGITS: i32 = 14;
 /// Ratios that are looked at: from 2^-this to 2^this.
 const LARGEST: u32 = 12;
 
-/// Where tongues of different curves are to be told apart, both numbers of a ratio are this large at least. Elsewhere those of the curves (0, b)
-/// or (a, 0) are looked for.
+/// Where tongues of different curves are to be told apart, both numbers of a ratio are this large at least.
+/// Elsewhere those of the curves (0, b) or (a, 0) are looked for.
 const LEAST_KICKS: u64 = 10;
 
 /// Where in a range tongues are looked for, as shares of it: far from simple ratios.
@@ -32,14 +33,15 @@ const RAYS: [[f64; 2]; 3] = [[0.05, 0.06], [0.38, 0.39], [0.93, 0.94]];
 /// Smaller shares of the window are left out.
 const LEAST: f64 = 1e-12;
 
-/// A range is thought to be too wide to prove anything where the tongue's share of h1, times the half turns of its simplest ratios, is below
-/// this: one in twenty is proven there.
+/// A range is thought to be too wide to prove anything where the tongue's share of h1, times the half turns
+/// of its simplest ratios, is below this: one in twenty is proven there.
 const RESOLVED: f64 = 0.15;
 
 /// Where a range of ratios is cut, as shares of it.
 const MIDDLE: [f64; 2] = [0.3, 0.7];
 
-/// Ranges that are narrower than this share of the ratio are not cut: doubles separate their ends, and no more.
+/// Ranges that are narrower than this share of the ratio are not cut: doubles separate their ends, and no
+/// more.
 const NARROW: f64 = 1e-11;
 
 /// The ratios of a window differ by more than this share.
@@ -48,7 +50,8 @@ const CLOSE: f64 = 1e-8;
 /// More than the roundings of a side of the window.
 const ROOM: f64 = 4.0 * f64::EPSILON;
 
-/// Times that the line between what is proven and the tongue's edge is moved: by this share first, by halves then.
+/// Times that the line between what is proven and the tongue's edge is moved: by this share first, by halves
+/// then.
 const MOVES: usize = 2;
 const FIRST: f64 = 0.6;
 
@@ -109,8 +112,9 @@ struct Queue {
 
 impl Window {
     /// # Errors
-    /// A range that is empty or begins below zero; a stiffness that is not positive, as the turns of both have to grow with the steps; ratios of
-    /// the window that are hardly different: their periods have millions of kicks; ratios beyond 2^±12 alone.
+    /// A range that is empty or begins below zero; a stiffness that is not positive, as the turns of both
+    /// have to grow with the steps; ratios of the window that are hardly different: their periods have
+    /// millions of kicks; ratios beyond 2^±12 alone.
     pub fn new(lambdas: [Laurent; 2], ranges: [(Laurent, Laurent); 2]) -> Result<Window> {
         for ((lo, hi), field) in ranges.iter().zip(["h1-range", "h2-range"]) {
             if lo.sign() == Sign::Negative || (hi - lo).sign() != Sign::Positive {
@@ -173,9 +177,9 @@ impl Window {
             })
     }
 
-    /// Halves ranges of ratios of all tongues that cross the window until so many were tried, or sectors of a share of the window are
-    /// certified. Ranges with the largest areas left come first. `see` is called with the number of ranges tried since its last call. The
-    /// result is the same on any number of threads.
+    /// Halves ranges of ratios of all tongues that cross the window until so many were tried, or sectors of a
+    /// share of the window are certified. Ranges with the largest areas left come first. `see` is called with
+    /// the number of ranges tried since its last call. The result is the same on any number of threads.
     ///
     /// # Errors
     /// Where the work was stopped.
@@ -293,7 +297,8 @@ impl Window {
         let all = (to - from) * (inside(edges[0], places[0]) + inside(edges[1], places[1]));
         let turns = label(first).min(label(middle)).min(label(last));
         let resolved = turns as f64 * (edges[0].1 - edges[0].0) / edges[0].1;
-        // Lines along the edges, within the window. Its sides of constant h2 are hyperbolas, above their tangents and below their chords.
+        // Lines along the edges, within the window. Its sides of constant h2 are hyperbolas, above their
+        // tangents and below their chords.
         let [t, u] = places.map(|place| (value(place) - from) / (to - from));
         let along = |a: f64, b: f64| {
             let slope = (b - a) / (u - t);
@@ -434,7 +439,8 @@ fn mixed(a: Line, b: Line, share: f64) -> Line {
     [0, 1].map(|k| a[k] + (share * (b[k] - a[k]) as f64) as i64)
 }
 
-/// The curve (a, b) with a p + b q = m whose a is nearest to 0, or whose b is where the ratio is below 1: those of the widest tongues.
+/// The curve (a, b) with a p + b q = m whose a is nearest to 0, or whose b is where the ratio is below 1:
+/// those of the widest tongues.
 fn family(m: i64, (p, q): Ratio) -> Option<[i64; 2]> {
     let is_simple = p.min(q) < LEAST_KICKS;
     let (p, q) = (p as i64, q as i64);

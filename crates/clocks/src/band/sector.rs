@@ -1,4 +1,5 @@
-//! Sectors of a tongue: between two first steps, for all ratios of a range (proofs/BANDS.md, "Between two steps").
+//! Sectors of a tongue: between two first steps, for all ratios of a range (proofs/BANDS.md, "Between two
+//! steps").
 
 use super::frame::{Base, Frame};
 use super::taylor::Taylor;
@@ -17,15 +18,18 @@ pub type Line = [i64; 2];
 /// Frames are tried for families |a| ≤ this.
 const FAMILIES: i64 = 8;
 
-/// Beyond this distortion the coordinates that no angle enters are tried, too: where kicks are strong, turning frames are not near 1.
+/// Beyond this distortion the coordinates that no angle enters are tried, too: where kicks are strong,
+/// turning frames are not near 1.
 const STRONG: f64 = 0.3;
 
 /// Bits of areas.
 const BITS: u32 = 128;
 
-/// All (h1, h2) with from ≤ h2/h1 ≤ to and lower ≤ h1 ≤ upper, both affine in h2/h1: every ratio there is unstable, rational or not.
+/// All (h1, h2) with from ≤ h2/h1 ≤ to and lower ≤ h1 ≤ upper, both affine in h2/h1: every ratio there is
+/// unstable, rational or not.
 ///
-/// It is a part of the tongue of the paper's curve (a, b): the growing solution of a rational ratio p/q makes a p + b q half turns a period.
+/// It is a part of the tongue of the paper's curve (a, b): the growing solution of a rational ratio p/q makes
+/// a p + b q half turns a period.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sector {
     /// a and b.
@@ -49,8 +53,8 @@ impl Sector {
         })
     }
 
-    /// Its area in the plane of steps, (to − from) ((c² + c d + d²) − (a² + a b + b²))/6 with a, b on the lower side and c, d on the upper
-    /// one: enclosed.
+    /// Its area in the plane of steps, (to − from) ((c² + c d + d²) − (a² + a b + b²))/6 with a, b on the
+    /// lower side and c, d on the upper one: enclosed.
     pub fn area(&self) -> Ball {
         // Below 3 · 10^36.
         let of = |[a, b]: Line| {
@@ -118,16 +122,17 @@ impl Prover {
         Prover { lambdas, bases, decimals, unit: rational::to_f64(&step(1, decimals)) }
     }
 
-    /// A way in which every ratio on a line is unstable, by a cone that is the same, or moves continuously, for all of them: so the tongue is
-    /// the same, too. `known` is the only way that is tried, where there is one.
+    /// A way in which every ratio on a line is unstable, by a cone that is the same, or moves continuously,
+    /// for all of them: so the tongue is the same, too. `known` is the only way that is tried, where there is
+    /// one.
     pub fn prove(&self, family: [i64; 2], ratios: [Ratio; 2], line: Line, known: Option<Way>) -> Option<Way> {
         if !self.unit.is_normal() {
             return None;
         }
         let [(p, q), (r, s)] = ratios.map(|(p, q)| (p as i64, q as i64));
         let [from, to] = ratios.map(value);
-        // A quotient is within U of its double, a whole number below 2^53 times the unit within 2 U, their mean and half their difference
-        // within 3 U each.
+        // A quotient is within U of its double, a whole number below 2^53 times the unit within 2 U, their
+        // mean and half their difference within 3 U each.
         let affine = |[first, last]: [f64; 2]| {
             let off = 8.0 * U * first.abs().max(last.abs());
             Taylor::constant(0.5 * (first + last), off).with_slope(0.5 * (last - first))

@@ -159,7 +159,8 @@ impl Taylor {
         let steepest = (1.0 + 8.0 * U) / ((1.0 - most) * (1.0 + most)).sqrt();
         let square = steepest * steepest;
         let fifth = square * square * steepest * UP;
-        // g = arcsin x/x has a series with positive coefficients, and x g''' = arcsin''' x − 3 g'' with g'' ≥ 1/3.
+        // g = arcsin x/x has a series with positive coefficients, and x g''' = arcsin''' x − 3 g'' with g'' ≥
+        // 1/3.
         let first = (c * slope - angle) / (c * c);
         let second = (c * cube - 2.0 * first) / c;
         let third = (1.0 + 2.0 * most * most) * fifth * UP;

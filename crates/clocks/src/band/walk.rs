@@ -1,4 +1,5 @@
-//! Euclid's algorithm on a range of ratios: both return maps of each level, until a common cone proves all of it unstable.
+//! Euclid's algorithm on a range of ratios: both return maps of each level, until a common cone proves all of
+//! it unstable.
 
 use super::UP;
 use super::cone::Cone;
@@ -47,7 +48,8 @@ impl Length {
         (self.1 as f64).abs() * tau.reach() * UP
     }
 
-    /// r = short/long, of this length and a shorter one. Their determinant D is ±1, so r(τ) − r(τ₀) = D (τ − τ₀)/(long(τ) long(τ₀)).
+    /// r = short/long, of this length and a shorter one. Their determinant D is ±1, so r(τ) − r(τ₀) = D (τ −
+    /// τ₀)/(long(τ) long(τ₀)).
     fn share(self, short: Length, tau: &Taylor) -> Option<Taylor> {
         let [(length, long_off), (rest, rest_off)] = [self, short].map(|length| length.at(tau.center));
         let moved = self.reach(tau);
@@ -85,8 +87,9 @@ struct Level {
 }
 
 impl Frame {
-    /// Whether a common cone of one level proves every ratio other/base of the range unstable: in the frame of family a, or, where none is
-    /// given, in coordinates that no angle enters. So many times the path may fork, where ratios of both kinds are left.
+    /// Whether a common cone of one level proves every ratio other/base of the range unstable: in the frame
+    /// of family a, or, where none is given, in coordinates that no angle enters. So many times the path may
+    /// fork, where ratios of both kinds are left.
     pub fn proves(&self, family: Option<i64>, range: Range, forks: usize) -> bool {
         self.try_levels(family, range, forks).is_some()
     }
@@ -122,7 +125,8 @@ impl Frame {
         Some(())
     }
 
-    /// Kicks that arrive at f..1, a share 1 − f of all offsets, and at 0..f, n or n + 1 steps after the one before.
+    /// Kicks that arrive at f..1, a share 1 − f of all offsets, and at 0..f, n or n + 1 steps after the one
+    /// before.
     fn first(&self, (kick, step): &(Family, Option<Family>), n: i64) -> Option<[Family; 2]> {
         let share = Taylor::constant(n as f64 + 1.0, 0.0).minus(&self.tau);
         let [last, before] = [Cut::Last, Cut::Before].map(|cut| kick.part(cut, &share));

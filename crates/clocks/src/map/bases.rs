@@ -80,8 +80,9 @@ impl<'a> Bases<'a> {
             .mul(&Ball::from_integer(&BigInt::from(u128::from(multiple) * u128::from(multiple))), BITS)
     }
 
-    /// The pair (i, j) on the clock that has more kicks, or on the other one; `None` where neither serves. `first`
-    /// and `second` are asked for the column's or the row's base; `gcd` is that of the two steps in their common unit.
+    /// The pair (i, j) on the clock that has more kicks, or on the other one; `None` where neither serves.
+    /// `first` and `second` are asked for the column's or the row's base; `gcd` is that of the two steps in
+    /// their common unit.
     #[inline(always)]
     pub fn pair<'b>(
         &self,
@@ -101,15 +102,15 @@ impl<'a> Bases<'a> {
     }
 }
 
-/// ⌊p/q⌋ for p below 2^50, by the faster division of doubles: where p/q is no integer it is 1/q below the next one at
-/// least, more than p/q 2^-53, so that rounding does not reach that.
+/// ⌊p/q⌋ for p below 2^50, by the faster division of doubles: where p/q is no integer it is 1/q below the
+/// next one at least, more than p/q 2^-53, so that rounding does not reach that.
 #[inline(always)]
 pub(super) fn quotient(p: u64, q: u64) -> u64 {
     (p as i64 as f64 / q as i64 as f64) as i64 as u64
 }
 
-/// A pair on one of its bases: the other clock's kicks, of this strength, strike every p base steps over q, whose greatest common
-/// divisor is `common`.
+/// A pair on one of its bases: the other clock's kicks, of this strength, strike every p base steps over q,
+/// whose greatest common divisor is `common`.
 pub(super) struct OnBase<'b> {
     base: &'b Base,
     kick: f64,

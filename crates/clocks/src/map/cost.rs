@@ -14,9 +14,10 @@ const TIMES_A_PAIR: u64 = 10_000;
 const SAMPLE: u64 = 1 << 16;
 
 impl Grid {
-    /// How many kicks the verdicts compose, Σ (min(p, q)/2 + 1), with as much as a long period's return maps cost at most: exact for grids of up to 2^16 pairs, else from as many
-    /// of them, drawn the same way each time. min(p, q) varies by about as much as its mean, so the estimate is off by
-    /// 0.4 %, one standard deviation.
+    /// How many kicks the verdicts compose, Σ (min(p, q)/2 + 1), with as much as a long period's return maps
+    /// cost at most: exact for grids of up to 2^16 pairs, else from as many of them, drawn the same way each
+    /// time. min(p, q) varies by about as much as its mean, so the estimate is off by 0.4 %, one standard
+    /// deviation.
     pub fn kicks(&self) -> f64 {
         let pairs = self.pairs();
         let kicks = |ratio: Ratio| (ratio.p().min(ratio.q()) / 2 + 1).min(MOST_TOGETHER) as f64;

@@ -9,7 +9,8 @@ use number::{ExactSign, Laurent, Ratio, Rational, Ring, Sign};
 /// The most columns or rows: their products are then exact in doubles.
 const LARGEST_MULTIPLIER: u64 = 1 << 26;
 
-/// Every step h1 = i d1 in a closed range (a *column*) with every step h2 = j d2 in another (a *row*), i, j ≥ 1.
+/// Every step h1 = i d1 in a closed range (a *column*) with every step h2 = j d2 in another (a *row*), i,
+/// j ≥ 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grid {
     lambda1: Laurent,

@@ -17,8 +17,8 @@ use number::error::Result;
 use number::vector::instructions::Instructions;
 
 impl Work<'_> {
-    /// A second run over the pairs in tongues, a third over those of which it gives too little, then kick by kick in doubles and
-    /// in two doubles, and more bits for the rest.
+    /// A second run over the pairs in tongues, a third over those of which it gives too little, then kick by
+    /// kick in doubles and in two doubles, and more bits for the rest.
     pub(super) fn grow(&self, band: &mut Band, products: Products) -> Result<()> {
         let verdict = |n: usize| Verdict::ALL[usize::from(band.verdicts[n])];
         let hyperbolic = |&n: &u32| verdict(n as usize).kind() == Kind::Hyperbolic;
@@ -65,13 +65,15 @@ impl Work<'_> {
     }
 }
 
-/// Updates between two looks: few suffice for most pairs, looks at every one cost twice as much and suffice for more.
+/// Updates between two looks: few suffice for most pairs, looks at every one cost twice as much and suffice
+/// for more.
 const BLOCKS: [u64; 2] = [4, 1];
 
 /// Growth that the filter knows less well than this, relatively, is computed with more bits.
 const PRECISION: f64 = 1e-6;
 
-/// The ends of a run in doubles, for a pair that has no base, or in two doubles. `None` for long periods, which have return maps.
+/// The ends of a run in doubles, for a pair that has no base, or in two doubles. `None` for long periods,
+/// which have return maps.
 fn kick_by_kick<T>(clocks: &TwoClocks<Laurent>, mut found: impl FnMut(Ends) -> Option<T>) -> Option<T> {
     if returns::is_worth(clocks.ratio(), 53) {
         return None;

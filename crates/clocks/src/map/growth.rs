@@ -7,16 +7,16 @@
 //!     z = min(|AD|, |BC|) = sinh²(ln μ / 2),        ln μ = ln z + 2 ln(1 + √(1 + 1/z)).        (2)
 //! ```
 //!
-//! ρ = (B/D)(C/A) or its reciprocal depends on the *directions* of the two orbits alone, which the filter knows far
-//! better than their lengths: (1) is good up to the edge of a tongue. Where growth is strong, ρ is next to 1 and (2) is
-//! better, since d ln μ ≤ dz/z. Both bounds are at hand, and the smaller one is taken.
+//! ρ = (B/D)(C/A) or its reciprocal depends on the *directions* of the two orbits alone, which the filter
+//! knows far better than their lengths: (1) is good up to the edge of a tongue. Where growth is strong, ρ is
+//! next to 1 and (2) is better, since d ln μ ≤ dz/z. Both bounds are at hand, and the smaller one is taken.
 
 use super::enclosure::Enclosure;
 use crate::orbit::filter::{End, Ends};
 use number::U;
 
-/// Relative errors of factors are added up as long as their sum R is at most this: then products and quotients of
-/// them are off by less than 1.01 R.
+/// Relative errors of factors are added up as long as their sum R is at most this: then products and
+/// quotients of them are off by less than 1.01 R.
 const LARGEST_ERROR_SUM: f64 = 1.0 / 300.0;
 
 /// Covers terms of second order.
@@ -46,7 +46,8 @@ fn components(end: &End) -> [f64; 2] {
     [end.x, end.v].map(|component| slack / component.abs() + end.rounding)
 }
 
-/// By (1), from ρ computed with three roundings out of components with the relative errors that add up to `error`.
+/// By (1), from ρ computed with three roundings out of components with the relative errors that add up to
+/// `error`.
 fn by_direction(rho: f64, error: f64) -> Option<Enclosure> {
     let r = rho.sqrt();
     // ρ is off by this; 6u for the roundings of ρ and of its root. NaN fails.
@@ -85,8 +86,8 @@ fn scaled(x: f64, exponent: i64) -> f64 {
 
 /// ln(x 2^exponent) for a normal x > 0, within 16u relatively.
 ///
-/// x = m 2^k with m in [√½, √2] and y = (m − 1)/(m + 1): m − 1 is exact, so y is within 2u, 2 artanh y within 6u, and
-/// k ln 2, which is at least twice as large unless k = 0, within 2u.
+/// x = m 2^k with m in [√½, √2] and y = (m − 1)/(m + 1): m − 1 is exact, so y is within 2u, 2 artanh y within
+/// 6u, and k ln 2, which is at least twice as large unless k = 0, within 2u.
 fn ln(x: f64, exponent: i64) -> f64 {
     const ONE: u64 = 0x3ff0_0000_0000_0000;
     let bits = x.to_bits();

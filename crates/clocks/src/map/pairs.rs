@@ -1,5 +1,5 @@
-//! Many pairs made of few quantities: each quantity is read once, so that a pair costs no exact arithmetic as long as doubles
-//! decide it.
+//! Many pairs made of few quantities: each quantity is read once, so that a pair costs no exact arithmetic as
+//! long as doubles decide it.
 
 use std::ops::Range;
 
@@ -110,7 +110,8 @@ impl Pairs {
         self.picked[0].len()
     }
 
-    /// Hands these pairs on in doubles, in their order and with their numbers, without those that doubles do not serve.
+    /// Hands these pairs on in doubles, in their order and with their numbers, without those that doubles do
+    /// not serve.
     pub(super) fn strengths(&self, part: Range<usize>, mut each: impl FnMut(usize, Strengths)) {
         let (instructions, end) = (Instructions::best(), part.end);
         for first in part.step_by(LANES) {
@@ -142,8 +143,8 @@ impl Known {
     }
 }
 
-/// Λ1, Λ2, h1, h2 of as many pairs as run side by side, to be combined without a branch; `each` is shown those of the first `count` that
-/// doubles serve, by number.
+/// Λ1, Λ2, h1, h2 of as many pairs as run side by side, to be combined without a branch; `each` is shown
+/// those of the first `count` that doubles serve, by number.
 struct Combine<'a, F> {
     known: &'a [[&'a Known; 4]; LANES],
     count: usize,
@@ -169,8 +170,8 @@ impl<F: FnMut(usize, Strengths)> Task for Combine<'_, F> {
             }
             serves[i] = steps[0].2 == steps[1].2;
         }
-        // Each step is in lowest terms already: two short common divisors instead of a long one. (Products beyond 2^53 are rounded, and do
-        // not serve; nor does what comes of a quantity that is not known.)
+        // Each step is in lowest terms already: two short common divisors instead of a long one. (Products
+        // beyond 2^53 are rounded, and do not serve; nor does what comes of a quantity that is not known.)
         let (over, under) = (gcd(&above), gcd(&below));
         let p: [f64; LANES] = each(|i| (above[1][i] / over[i]) * (below[0][i] / under[i]));
         let q: [f64; LANES] = each(|i| (above[0][i] / over[i]) * (below[1][i] / under[i]));
@@ -196,8 +197,8 @@ impl<F: FnMut(usize, Strengths)> Task for Combine<'_, F> {
     }
 }
 
-/// The greatest common divisors of whole numbers below 2^32, by Euclid with the remainders that are least in size: a quotient rounded to
-/// the wrong neighbour, as near a half, leaves half of b all the same, exactly.
+/// The greatest common divisors of whole numbers below 2^32, by Euclid with the remainders that are least in
+/// size: a quotient rounded to the wrong neighbour, as near a half, leaves half of b all the same, exactly.
 #[inline(always)]
 fn gcd([a, b]: &[[f64; LANES]; 2]) -> [f64; LANES] {
     let (mut a, mut b) = (*a, *b);

@@ -36,7 +36,8 @@ impl Growing {
         self.label.map(|m| dominant_family(ratio, m))
     }
 
-    /// The growth rate per unit time: ln μ / T, T = p h1 the synchronization period, within 4u (u = 2^-53) relatively.
+    /// The growth rate per unit time: ln μ / T, T = p h1 the synchronization period, within 4u (u = 2^-53)
+    /// relatively.
     pub fn rate(&self, period: f64) -> Option<Enclosure> {
         Some(self.ln_multiplier?.over(period))
     }

@@ -13,7 +13,8 @@ pub struct Resources<'a> {
     pub threads: usize,
     /// `kicks` bounds those of a single pair; a map as a whole may compose 10^4 times as many.
     pub limits: Limits,
-    /// The work ends with an error of the kind `Stopped` soon after this is set: it is looked at between any two groups of pairs.
+    /// The work ends with an error of the kind `Stopped` soon after this is set: it is looked at between any
+    /// two groups of pairs.
     pub stopped: Option<&'a AtomicBool>,
     /// Counts the pairs of a list that are decided.
     pub done: Option<&'a AtomicUsize>,

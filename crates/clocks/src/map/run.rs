@@ -79,8 +79,8 @@ impl<'a> Map<'a> {
     /// Computes the bands and hands them on in order with their numbers: the same bands whatever the threads.
     ///
     /// # Errors
-    /// A budget error, before the work begins where the map as a whole exceeds it; `Stopped`; an I/O error where a band
-    /// cannot be stored; or what `see` returns: then the map ends there.
+    /// A budget error, before the work begins where the map as a whole exceeds it; `Stopped`; an I/O error
+    /// where a band cannot be stored; or what `see` returns: then the map ends there.
     pub fn for_each_band(&self, mut see: impl FnMut(u64, Band) -> Result<()>) -> Result<Counters> {
         self.allow()?;
         let Map { grid, products, shard, resources, store } = self;
@@ -118,8 +118,8 @@ impl<'a> Map<'a> {
         Ok(counters)
     }
 
-    /// The verdicts, column by column, in each by increasing row: that of (i, j) in a grid of r rows, counted from the
-    /// first ones, is at i r + j.
+    /// The verdicts, column by column, in each by increasing row: that of (i, j) in a grid of r rows, counted
+    /// from the first ones, is at i r + j.
     ///
     /// # Errors
     /// As [`Map::for_each_band`].
@@ -130,7 +130,8 @@ impl<'a> Map<'a> {
         Ok(verdicts)
     }
 
-    /// Writes all verdicts into a slice, one for each pair; `progress` is called with the number of pairs done.
+    /// Writes all verdicts into a slice, one for each pair; `progress` is called with the number of pairs
+    /// done.
     ///
     /// # Errors
     /// As [`Map::for_each_band`], and where the slice has another length.
@@ -178,8 +179,8 @@ pub fn merge(
     Ok(counters)
 }
 
-/// The unstable pairs by the same kernel without its certificate: wrong where rounding says so, and of no use but
-/// to see what certification costs.
+/// The unstable pairs by the same kernel without its certificate: wrong where rounding says so, and of no use
+/// but to see what certification costs.
 #[doc(hidden)]
 pub fn uncertified_unstable(grid: &Grid, threads: usize) -> Result<u64> {
     let (bases, resources) = (Bases::new(grid), Resources { threads, ..Resources::default() });

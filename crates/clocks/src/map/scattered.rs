@@ -11,17 +11,17 @@ use crate::verdict::{Decision, Tier, Verdict};
 use number::error::Result;
 use number::parallel::try_map;
 
-/// Pairs that are sorted by their strengths and their numbers of updates together: enough for each to find company, few enough for
-/// the processor's caches.
+/// Pairs that are sorted by their strengths and their numbers of updates together: enough for each to find
+/// company, few enough for the processor's caches.
 const TOGETHER: usize = 1 << 15;
 
 impl Pairs {
-    /// The verdicts in the order of the pairs: those of [`decide_steps`](crate::verdict::decide_steps), with pairs of about the same number of updates run side
-    /// by side.
+    /// The verdicts in the order of the pairs: those of [`decide_steps`](crate::verdict::decide_steps), with
+    /// pairs of about the same number of updates run side by side.
     ///
     /// # Errors
-    /// A pair whose steps have an irrational ratio, a budget error where one would compose more kicks than the limits allow,
-    /// and `Stopped`.
+    /// A pair whose steps have an irrational ratio, a budget error where one would compose more kicks than
+    /// the limits allow, and `Stopped`.
     pub fn verdicts(&self, resources: &Resources) -> Result<Vec<Decision>> {
         let count = self.count();
         let parts: Vec<Range<usize>> =
@@ -52,8 +52,9 @@ impl Unsorted {
         self.pairs.push(pair);
     }
 
-    /// Those together that suit each other: of like strength first, where there are so many that their numbers of updates are alike all
-    /// the same, for a look costs three updates; then of like numbers of updates, then of like strength.
+    /// Those together that suit each other: of like strength first, where there are so many that their
+    /// numbers of updates are alike all the same, for a look costs three updates; then of like numbers of
+    /// updates, then of like strength.
     fn sorted(&self) -> Vec<Placed> {
         let longest = 1 + self.ranks.iter().map(|&(_, updates)| updates).max().unwrap_or(0);
         let kinds = (self.pairs.len() as u32 / (2 * longest)).clamp(1, Strengths::CLASSES);

@@ -1,13 +1,14 @@
-//! Parts of a map on disk: one file a band, written whole or not at all, so that work can stop at any moment, go
-//! on later, be shared out, and be joined to the bytes of a single run.
+//! Parts of a map on disk: one file a band, written whole or not at all, so that work can stop at any moment,
+//! go on later, be shared out, and be joined to the bytes of a single run.
 //!
 //! ```text
 //!     file = "kickdrift band 3\n" question "\n" payload check
 //! ```
 //!
-//! The question names the band by its number and its columns, its grid and products, all exactly; the payload is the band in little-endian
-//! fields; the check is a 64-bit FNV hash of all before it, which finds damage and proves no origin. A file that does not match in every byte
-//! of that, or whose fields no band of this question can have, is not there.
+//! The question names the band by its number and its columns, its grid and products, all exactly; the payload
+//! is the band in little-endian fields; the check is a 64-bit FNV hash of all before it, which finds damage
+//! and proves no origin. A file that does not match in every byte of that, or whose fields no band of this
+//! question can have, is not there.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -95,12 +96,13 @@ impl Store {
     }
 }
 
-/// Whether a band of this grid can hold these values when these products are asked for: who forges a valid check may write a wrong verdict, but
-/// none that means nothing.
+/// Whether a band of this grid can hold these values when these products are asked for: who forges a valid
+/// check may write a wrong verdict, but none that means nothing.
 fn is_possible(band: &Band, grid: &Grid, products: Products) -> bool {
     let pairs = band.verdicts.len() as u64;
     let Counters { pairs: counted, kicks, kicks_again, escalated } = band.counters;
-    // Every kick that is composed is one of a pair that runs beside others, in places that are empty where there are no others.
+    // Every kick that is composed is one of a pair that runs beside others, in places that are empty where
+    // there are no others.
     let most_kicks = u128::from(pairs) * u128::from(MOST_TOGETHER) * LANES as u128;
     let counts = counted == pairs
         && escalated <= pairs
@@ -119,7 +121,8 @@ fn grows_where_it_says(band: &Band, grid: &Grid, products: Products) -> bool {
     let is_label = |n: usize, m: u64| {
         let (i, j) = band.multipliers(grid, n);
         let ratio = grid.ratio(i, j);
-        // Half turns: at most one a kick, and an even number where the growing motion comes back with its sign.
+        // Half turns: at most one a kick, and an even number where the growing motion comes back with its
+        // sign.
         products.label && m <= ratio.p() + ratio.q() + 1 && m.is_multiple_of(2) == (verdict(n).side() > 0)
     };
     let is_growth = |ln: &Enclosure| products.growth && 0.0 <= ln.lo && ln.lo <= ln.hi && ln.hi.is_finite();

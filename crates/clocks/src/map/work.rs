@@ -1,4 +1,5 @@
-//! A band at work: its pairs sorted by their number of updates, run side by side, the rest sent up the ladder.
+//! A band at work: its pairs sorted by their number of updates, run side by side, the rest sent up the
+//! ladder.
 
 use std::cell::OnceCell;
 
@@ -16,12 +17,13 @@ use number::vector::instructions::{Instructions, Task};
 /// Pairs that run side by side: four AVX-512 registers hide each other's latency.
 pub(super) const LANES: usize = 32;
 
-/// Longer pairs are left to the ladder, whose return maps cost less than so many updates in a group (tests/bench/README.md).
+/// Longer pairs are left to the ladder, whose return maps cost less than so many updates in a group
+/// (tests/bench/README.md).
 pub(super) const MOST_TOGETHER: u64 = 1 << 15;
 
-/// Decides the pairs at these positions in groups, `decide` returning those that the groups' bound does not certify, and these
-/// again where there are enough: long ones, for which a look at every update is the sharpest bound, and still many times
-/// faster than one by one. Returns what is left.
+/// Decides the pairs at these positions in groups, `decide` returning those that the groups' bound does not
+/// certify, and these again where there are enough: long ones, for which a look at every update is the
+/// sharpest bound, and still many times faster than one by one. Returns what is left.
 pub(super) fn in_groups<P>(
     order: &[P],
     mut decide: impl FnMut(Group<LANES>, &[P]) -> Result<Vec<P>>,
@@ -45,7 +47,8 @@ pub(super) struct Work<'a> {
     order: Vec<u32>,
 }
 
-/// Bytes of a pair at work: its divisor, key, place among the sorted and among the undecided, the two while they are sorted, verdict, tier.
+/// Bytes of a pair at work: its divisor, key, place among the sorted and among the undecided, the two while
+/// they are sorted, verdict, tier.
 const BYTES_A_PAIR: u128 = 4 + 4 + 4 + 4 + 12 + 1 + 1;
 
 /// Bytes of a row that is the base of pairs in one band: in a band of one column it makes three turns.
@@ -128,7 +131,8 @@ impl<'a> Work<'a> {
         Ok(band)
     }
 
-    /// The verdicts of the pairs at these positions as far as the groups certify them, and the kicks that it took.
+    /// The verdicts of the pairs at these positions as far as the groups certify them, and the kicks that it
+    /// took.
     fn decide_in(&self, mut group: Group<LANES>, order: &[u32], verdicts: &mut [u8]) -> Result<u64> {
         self.side_by_side(order, MOST_TOGETHER, |pairs, positions| {
             let found = group.verdicts(pairs);
@@ -147,8 +151,9 @@ impl<'a> Work<'a> {
         Ok(unstable)
     }
 
-    /// Hands the pairs at the given positions, which are in the order of their updates, on in groups that run side by side, without
-    /// those that have no base or more than `most` updates, and counts the kicks that the groups say they compose.
+    /// Hands the pairs at the given positions, which are in the order of their updates, on in groups that run
+    /// side by side, without those that have no base or more than `most` updates, and counts the kicks that
+    /// the groups say they compose.
     pub(super) fn side_by_side(
         &self,
         order: &[u32],
@@ -225,7 +230,8 @@ impl<'a> Work<'a> {
     }
 }
 
-/// Appends ⌊min(p, q)/2⌋ of a column's pairs: its step, the number of the first row and their unit, and the greatest common divisors.
+/// Appends ⌊min(p, q)/2⌋ of a column's pairs: its step, the number of the first row and their unit, and the
+/// greatest common divisors.
 struct Updates<'a> {
     column: f64,
     rows: (f64, f64),

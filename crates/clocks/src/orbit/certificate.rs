@@ -1,8 +1,8 @@
 //! The proof behind a run of the filter: the theorem of [`super::bound`] with the kernel's constants.
 //!
-//! proofs/FILTER.md derives every constant, and gives examples that the tests compare with; in short, with u = 2^-53
-//! and g in the coordinates of [`super::floquet`], where a kick has the norm κ ≤ |β|/2 + √(1 + β²/4) and a turn
-//! the norm 1,
+//! proofs/FILTER.md derives every constant, and gives examples that the tests compare with; in short, with
+//! u = 2^-53 and g in the coordinates of [`super::floquet`], where a kick has the norm κ ≤ |β|/2 + √(1 +
+//! β²/4) and a turn the norm 1,
 //!
 //! ```text
 //!     |r_k| ≤ u (κ (28 + 11 tan(θ/2)) + 6.1 |β|) |g_(k-1)| + u (1 + tan(θ/2)) |g_k|
@@ -26,7 +26,8 @@ const LAST_SLOPE: f64 = 1.0;
 const FORM: f64 = 7.0;
 const FORM_SLOPE: f64 = 5.0;
 
-/// Covers terms of second order, the rounding of sums of 10^13 terms at most, and of the constants themselves.
+/// Covers terms of second order, the rounding of sums of 10^13 terms at most, and of the constants
+/// themselves.
 const SECOND_ORDER: f64 = 1.01;
 
 /// The most updates between two looks at |g| in a group.
@@ -67,8 +68,8 @@ pub struct Certificate {
 }
 
 impl Certificate {
-    /// For all pairs that are no harder, in blocks of `most` updates at most; `None` where the theorem's conditions
-    /// cannot be met.
+    /// For all pairs that are no harder, in blocks of `most` updates at most; `None` where the theorem's
+    /// conditions cannot be met.
     fn new(Hardest { beta, slope, steps }: Hardest, most: u64) -> Option<Certificate> {
         // 1 + 64u covers the roundings of β and of this line.
         let beta = beta * (1.0 + 64.0 * U);
@@ -83,8 +84,8 @@ impl Certificate {
         while block < most && grown * growth <= BLOCK_GROWTH {
             (block, grown) = (block + 1, grown * growth);
         }
-        // Every step is within block/2 of a look, and at most `block` steps share one: with the inequality of the
-        // means Σ |r_j| |g_j| ≤ u (before + after) block growth^(2 ⌊block/2⌋) squares.
+        // Every step is within block/2 of a look, and at most `block` steps share one: with the inequality of
+        // the means Σ |r_j| |g_j| ≤ u (before + after) block growth^(2 ⌊block/2⌋) squares.
         let away = (0..2 * (block / 2)).fold(1.0, |power, _| power * growth);
         let b = SECOND_ORDER * U * (before + after) * block as f64 * away;
         // Between two looks |g|² is smaller than at the nearer one by `away` at most.
@@ -129,7 +130,8 @@ impl Certificates {
         Certificates { most: 1, made: Vec::new() }
     }
 
-    /// For groups: certificates for slightly harder pairs serve many groups. They do not depend on the groups before.
+    /// For groups: certificates for slightly harder pairs serve many groups. They do not depend on the groups
+    /// before.
     pub fn of_groups() -> Self {
         Certificates { most: BLOCK, made: vec![None; REMEMBERED] }
     }
@@ -162,7 +164,8 @@ impl Certificates {
 mod tests {
     use super::*;
 
-    /// An error u (plain + slope tan(θ/2)) relative to |g|, as sections 3 and 5 of proofs/FILTER.md add it up.
+    /// An error u (plain + slope tan(θ/2)) relative to |g|, as sections 3 and 5 of proofs/FILTER.md add it
+    /// up.
     #[derive(Clone, Copy)]
     struct Error {
         plain: f64,
@@ -181,7 +184,8 @@ mod tests {
     /// √2, from above: ν_t.
     const NU: f64 = 1.4143;
 
-    /// No constant is smaller than what the roundings add up to, nor larger than the next one with its digits.
+    /// No constant is smaller than what the roundings add up to, nor larger than the next one with its
+    /// digits.
     #[test]
     fn the_constants_are_the_sums_of_the_roundings() {
         // Section 2, in units of u, relative: tan(θ/2), k, B; absolute: T_k (over tan(θ/2)), t and S.
@@ -205,7 +209,8 @@ mod tests {
         // e4 rounds im' and meets the shear from X' to re.
         least(LAST, 1.0, 1.0);
         least(LAST_SLOPE, 1.0, 1.0);
-        // re = X + T im with T_k rounded once more, im = B w; cos and sin of the last turn, and the two products of each.
+        // re = X + T im with T_k rounded once more, im = B w; cos and sin of the last turn, and the two
+        // products of each.
         let form = sum(&[error(1.0, place + 1.0), error(1.0, 0.0), error(2.0, 0.0), error(2.0 * NU, 0.0)]);
         least(FORM, form.plain, 1.0);
         least(FORM_SLOPE, form.slope, 1.0);

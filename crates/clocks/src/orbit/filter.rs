@@ -1,7 +1,7 @@
 //! The first tier: the half period in Floquet coordinates and doubles, with a proven error bound.
 //!
-//! Pairs run one by one or in groups; [`super::kernel`] does the updates, [`super::certificate`] knows what the
-//! result proves.
+//! Pairs run one by one or in groups; [`super::kernel`] does the updates, [`super::certificate`] knows what
+//! the result proves.
 
 use super::certificate::{Certificate, Certificates, Hardest};
 use super::floquet::{Floquet, Pair};
@@ -12,8 +12,8 @@ use number::vector::each;
 use number::vector::instructions::{Instructions, Task};
 use number::{Sign, U};
 
-/// Where the even and the odd solution stand at T/2, with proven bounds: in Floquet coordinates from here, kick by kick from
-/// [`super::plain`].
+/// Where the even and the odd solution stand at T/2, with proven bounds: in Floquet coordinates from here,
+/// kick by kick from [`super::plain`].
 #[derive(Clone, Copy, Debug)]
 pub struct Ends {
     pub even: End,
@@ -22,8 +22,8 @@ pub struct Ends {
     pub quarters: i64,
 }
 
-/// One solution at T/2 in the coordinates of the run: the exact vector is 2^exponent a ((x, v) + t J(x, v)/|(x, v)|²)
-/// with |t| ≤ across and |a − 1| ≤ stretch/(1 − stretch).
+/// One solution at T/2 in the coordinates of the run: the exact vector is 2^exponent a ((x, v) + t J(x,
+/// v)/|(x, v)|²) with |t| ≤ across and |a − 1| ≤ stretch/(1 − stretch).
 #[derive(Clone, Copy, Debug)]
 pub struct End {
     /// A or B, in the scale that leaves the products AD and BC as they are.
@@ -98,8 +98,8 @@ pub fn run(floquet: &Floquet) -> Option<Ends> {
 /// The filter could not decide.
 pub const UNDECIDED: u8 = u8::MAX;
 
-/// At most L pairs, 1, 16 or 32, that run side by side. One certificate serves all: that of the strongest kick, the steepest
-/// slope and the most updates.
+/// At most L pairs, 1, 16 or 32, that run side by side. One certificate serves all: that of the strongest
+/// kick, the steepest slope and the most updates.
 pub struct Group<const L: usize> {
     instructions: Instructions,
     lanes: Lanes<L>,
@@ -159,7 +159,8 @@ impl<const L: usize> Group<L> {
             .map_or([UNDECIDED; L], |certificate| self.instructions.perform(Verdicts(self, &certificate)))
     }
 
-    /// All updates of the pairs, with the certificate for their strongest kick, steepest slope and most updates.
+    /// All updates of the pairs, with the certificate for their strongest kick, steepest slope and most
+    /// updates.
     fn run<W: Watch, P: InLanes>(&mut self, pairs: &[P]) -> Option<Certificate> {
         let (hardest, kicks) = self.instructions.perform(Start(pairs, &mut self.lanes, &mut self.left));
         self.kicks = kicks;
@@ -214,8 +215,8 @@ impl<const L: usize> Task for Verdicts<'_, L> {
     }
 }
 
-/// The signs of x and v at T/2: 0 where they are not certain, everywhere where a condition of the theorem failed
-/// on the way. (NaN fails.)
+/// The signs of x and v at T/2: 0 where they are not certain, everywhere where a condition of the theorem
+/// failed on the way. (NaN fails.)
 #[inline(always)]
 fn signs<const L: usize>(
     certificate: &Certificate,
@@ -319,7 +320,8 @@ mod tests {
         prop::collection::vec(pair, 1..40).prop_map(|pairs| pairs.into_iter().flatten().collect())
     }
 
-    /// All that groups of `L` lanes report on at most as many pairs, as text: doubles by their shortest exact name.
+    /// All that groups of `L` lanes report on at most as many pairs, as text: doubles by their shortest exact
+    /// name.
     fn written<const L: usize>(instructions: Instructions, pairs: &[Pair]) -> String {
         let (mut group, mut text) = (Group::<L>::new(instructions), String::new());
         for pairs in pairs.chunks(L) {

@@ -8,16 +8,17 @@
 //! ```
 //!
 //! straight between kicks. A kick of strength k of the other clock adds i β x P̄ to g, β = k / sin θ (theorem
-//! `foreign_ticks` in proofs/). With g = re + i·im and B = β cos²(θ/2) = k / (2 tan(θ/2)) that is three shears,
+//! `foreign_ticks` in proofs/). With g = re + i·im and B = β cos²(θ/2) = k / (2 tan(θ/2)) that is three
+//! shears,
 //!
 //! ```text
 //!     re ← re - T im,      im ← im + B re,      re ← re + T im,
 //! ```
 //!
 //! and so is a turn by α: re ← re − tan(α/2) im, im ← im + sin(α) re, re ← re − tan(α/2) im. A shear of re
-//! follows a shear of re, so from kick to kick four remain: the base between two kicks acts as one kick between
-//! two drifts. Turns by nθ are reduced by half turns to |α| ≤ π/2; the signs lost are those of a whole
-//! orbit, and no product of signs depends on them.
+//! follows a shear of re, so from kick to kick four remain: the base between two kicks acts as one kick
+//! between two drifts. Turns by nθ are reduced by half turns to |α| ≤ π/2; the signs lost are those of a
+//! whole orbit, and no product of signs depends on them.
 
 use std::f64::consts::FRAC_PI_2;
 use std::ops::RangeInclusive;
@@ -28,8 +29,8 @@ use number::{Ball, Real, Sign, Twofold};
 /// Bits of the strengths; the constants are made of two doubles each and end as one.
 const BITS: u32 = 192;
 
-/// The constants of the updates that depend on the base clock alone. Every double has a relative error of at most 2u,
-/// u = 2^-53, unless its comment says otherwise.
+/// The constants of the updates that depend on the base clock alone. Every double has a relative error of at
+/// most 2u, u = 2^-53, unless its comment says otherwise.
 #[derive(Clone, Debug)]
 pub struct Base {
     /// tan(θ/2).
@@ -58,8 +59,8 @@ pub struct Turn {
 
 impl Base {
     /// The base whose kick has the strength s in its own unit of time, with the turns by nθ for n in
-    /// `first..=last`; `None` outside 0 < s < 4, its Verlet limit, and where a constant leaves the comfortable
-    /// range of doubles.
+    /// `first..=last`; `None` outside 0 < s < 4, its Verlet limit, and where a constant leaves the
+    /// comfortable range of doubles.
     pub fn new(s: &Ball, first: u64, last: u64) -> Option<Base> {
         let rest = below_four(s);
         if s.sign() != Some(Sign::Positive) || rest.sign() != Some(Sign::Positive) {
@@ -71,11 +72,11 @@ impl Base {
         Base::of(half, start, first..=last)
     }
 
-    /// Computes the base many times faster, from s in two doubles, within 2^-99. Also `None` so near 4 that 4 − s has lost digits, and
-    /// for long turns.
+    /// Computes the base many times faster, from s in two doubles, within 2^-99. Also `None` so near 4 that 4
+    /// − s has lost digits, and for long turns.
     ///
-    /// 4 − s is within 2^-97 and at least 2^-20, so its root is within 2^-88, a half of that and e^{iθ/2} within 2^-88, and
-    /// e^{inθ/2} within n 2^-87: for n below 2^28 less than 2^-59.
+    /// 4 − s is within 2^-97 and at least 2^-20, so its root is within 2^-88, a half of that and e^{iθ/2}
+    /// within 2^-88, and e^{inθ/2} within n 2^-87: for n below 2^28 less than 2^-59.
     fn quick((hi, lo): (f64, f64), first: u64, last: u64) -> Option<Base> {
         if !(TINY..=NEAR_LIMIT).contains(&hi) || last >= LONGEST_QUICK {
             return None;
@@ -183,8 +184,8 @@ impl Phase {
     }
 }
 
-/// a b + c d to within 22 u² < 2^-101, for |a b| + |c d| ≤ 1 + u: the leading products' sum is known exactly, and what is added to it,
-/// within 4 u, is rounded eight times and leaves out two products of u² at most.
+/// a b + c d to within 22 u² < 2^-101, for |a b| + |c d| ≤ 1 + u: the leading products' sum is known exactly,
+/// and what is added to it, within 4 u, is rounded eight times and leaves out two products of u² at most.
 #[inline(always)]
 fn sum_of_products([a, b]: [Twofold; 2], [c, d]: [Twofold; 2]) -> Twofold {
     let (first, second) = (a.hi * b.hi, c.hi * d.hi);
@@ -212,8 +213,9 @@ const LONGEST: u64 = 1 << 40;
 
 /// The turns by nθ for n in the range, from the first one on.
 ///
-/// e^{iθ/2} is within 2^-99, and a product costs 2^-100: e^{inθ/2} is within n 2^-98, or within 2^-97 and 2^-98 for each
-/// entry after the first. A table has far fewer than 2^40 entries, so this is below 2^-57, less than 0.18u.
+/// e^{iθ/2} is within 2^-99, and a product costs 2^-100: e^{inθ/2} is within n 2^-98, or within 2^-97 and
+/// 2^-98 for each entry after the first. A table has far fewer than 2^40 entries, so this is below 2^-57,
+/// less than 0.18u.
 fn turns(half: Phase, start: Phase, theta: f64, range: RangeInclusive<u64>) -> Vec<Turn> {
     let mut now = start;
     let turn = |n: u64| {
@@ -238,8 +240,9 @@ impl Turn {
 
 /// tan(α/2) and sin α from e^{iα/2}, α reduced by half turns.
 ///
-/// Components within 0.18u and one rounding: sin α = 2 sin cos is within 2u · |2 sin cos| + 2 · 0.18u · √2 + u ≤ 3.6u. tan(α/2) is
-/// sin/cos where that is at most 1: then cos ≥ 0.7, each of both is within 1.26u relatively beside 0.26u: 3.6u in all.
+/// Components within 0.18u and one rounding: sin α = 2 sin cos is within 2u · |2 sin cos| + 2 · 0.18u · √2 +
+/// u ≤ 3.6u. tan(α/2) is sin/cos where that is at most 1: then cos ≥ 0.7, each of both is within 1.26u
+/// relatively beside 0.26u: 3.6u in all.
 #[inline(always)]
 pub(super) fn shears([cos, sin]: [f64; 2]) -> (f64, f64) {
     let odd = sin.abs() > cos.abs();
@@ -266,8 +269,8 @@ pub struct Pair<'a> {
 }
 
 impl Pair<'_> {
-    /// The n of the turn by nθ/2 that is left after the last update, if any: at T/2 the base has turned by pθ/2, of
-    /// which θ/2 is in P and ⌊⌊q/2⌋ p/q⌋ θ is in the updates.
+    /// The n of the turn by nθ/2 that is left after the last update, if any: at T/2 the base has turned by
+    /// pθ/2, of which θ/2 is in P and ⌊⌊q/2⌋ p/q⌋ θ is in the updates.
     #[inline]
     pub fn left(&self) -> Option<u64> {
         match (self.q_even, self.updates) {

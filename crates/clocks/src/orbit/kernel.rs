@@ -1,16 +1,16 @@
 //! The kernel: half periods of L pairs side by side, four shears an update.
 //!
-//! In the coordinates of [`super::floquet`] with w = im/B, the state (re, w) after a kick, and t, S the shears of
-//! the turn that the carry of ⌊kp/q⌋ selects, an update is
+//! In the coordinates of [`super::floquet`] with w = im/B, the state (re, w) after a kick, and t, S the
+//! shears of the turn that the carry of ⌊kp/q⌋ selects, an update is
 //!
 //! ```text
 //!     re += B (T - t) w,    w += (S/B) re,    re -= B (t + T') w,    w += re
 //! ```
 //!
-//! 8 operations for both solutions, all but the last two fused, and 7 shared ones: a comparison, three choices, a sum,
-//! and two fused operations. Every operation is rounded once, as IEEE 754 says, the fused ones on every machine: in
-//! hardware where there is some, else in software (some 50 times slower). So results are equal bit for bit, whatever
-//! the vectors.
+//! 8 operations for both solutions, all but the last two fused, and 7 shared ones: a comparison, three
+//! choices, a sum, and two fused operations. Every operation is rounded once, as IEEE 754 says, the fused
+//! ones on every machine: in hardware where there is some, else in software (some 50 times slower). So
+//! results are equal bit for bit, whatever the vectors.
 //!
 //! At the end of each block of updates |g|² = (re + B T w)² + (B w)² is added up and compared with the sum so
 //! far; the certificate of [`super::filter`] needs no more.
@@ -25,8 +25,8 @@ use number::vector::{Vector, double_of, each, largest, sum};
 /// Above this squared norm an orbit is scaled down.
 const LARGE: f64 = power_of_two(300);
 
-/// An orbit is scaled down at every fourth look at most. Between two looks |g|² grows by 2^12, or in a single step by
-/// κ² ≤ 2^82 (the certificate wants κ < 2^41), so that no square overflows: 300 + 4·82 < 1000.
+/// An orbit is scaled down at every fourth look at most. Between two looks |g|² grows by 2^12, or in a single
+/// step by κ² ≤ 2^82 (the certificate wants κ < 2^41), so that no square overflows: 300 + 4·82 < 1000.
 const SCALING: u64 = 4;
 
 const fn power_of_two(n: i64) -> f64 {
@@ -71,9 +71,9 @@ pub struct Lanes<const L: usize> {
     /// ⌊q/2⌋, and the share of a kick that the last one is.
     updates: [f64; L],
     last_kick: [f64; L],
-    /// Integers in the bits of doubles: by the first and by the second shear of re, how often the even solution
-    /// crossed the w axis, and how often of these the first shear's coefficient and that of −w in the second one was
-    /// negative.
+    /// Integers in the bits of doubles: by the first and by the second shear of re, how often the even
+    /// solution crossed the w axis, and how often of these the first shear's coefficient and that of −w in
+    /// the second one was negative.
     crossings: [[f64; L]; 4],
     /// The limit of `worst`.
     pub worst: f64,
@@ -298,8 +298,8 @@ impl<W: Watch, const L: usize> Kernel for Together<'_, W, L> {
         if L == V::WIDTH {
             return self.strands::<V, 1>(0);
         }
-        // Two vectors on their way hide most of each other's latency, and leave registers for what they need; where there are
-        // twice as many registers, four.
+        // Two vectors on their way hide most of each other's latency, and leave registers for what they need;
+        // where there are twice as many registers, four.
         if V::WIDTH == 8 && L.is_multiple_of(4 * V::WIDTH) {
             for at in (0..L).step_by(4 * V::WIDTH) {
                 self.strands::<V, 4>(at);
@@ -359,8 +359,8 @@ impl<W: Watch, const L: usize> Together<'_, W, L> {
 
 /// So many whole updates.
 ///
-/// Where registers do not hold what four courses need, it is read from memory, at its own place: the compiler would copy it first, for
-/// each block anew, and not to whole cache lines.
+/// Where registers do not hold what four courses need, it is read from memory, at its own place: the compiler
+/// would copy it first, for each block anew, and not to whole cache lines.
 #[inline(always)]
 fn blocks<V: Vector, W: Watch, const N: usize>(
     mut states: [State<V>; N],
@@ -379,7 +379,8 @@ fn blocks<V: Vector, W: Watch, const N: usize>(
 
 /// Pairs that can be put into lanes.
 pub trait InLanes: Sized {
-    /// The start of the kernel, lanes to spare holding the last pair, and the cosine and sine of the base's last turn.
+    /// The start of the kernel, lanes to spare holding the last pair, and the cosine and sine of the base's
+    /// last turn.
     fn constants<const L: usize>(pairs: &[Self]) -> (Constants<L>, [[f64; L]; 2]);
 }
 
@@ -478,8 +479,8 @@ impl<const L: usize> Lanes<L> {
 
     /// After the half kick at t = 0.
     ///
-    /// Even start (1, (sin θ + B)/2), odd start (0, −1), in (re, im) and in the scales cos(θ/2) and 1/cos(θ/2),
-    /// which are |g| before the half kick; products of the two solutions have the right scale.
+    /// Even start (1, (sin θ + B)/2), odd start (0, −1), in (re, im) and in the scales cos(θ/2) and
+    /// 1/cos(θ/2), which are |g| before the half kick; products of the two solutions have the right scale.
     #[inline(always)]
     pub fn start(&mut self, constants: Constants<L>) {
         let scale: [f64; L] = each(|i| constants.kick[i] / (2.0 * constants.slope[i]));

@@ -1,15 +1,16 @@
 //! Long runs of one clock's steps: a power of one step's matrix, by squaring, in balls.
 //!
-//! Between two kicks of the slower clock the faster one, the *base*, strikes n times, and its step (drift, then kick) is one
-//! matrix M of determinant 1. So n steps cost some 2 log₂ n products of matrices instead of n kicks. Each squaring widens the
-//! balls by a few units, which a few more bits make good.
+//! Between two kicks of the slower clock the faster one, the *base*, strikes n times, and its step (drift,
+//! then kick) is one matrix M of determinant 1. So n steps cost some 2 log₂ n products of matrices instead of
+//! n kicks. Each squaring widens the balls by a few units, which a few more bits make good.
 //!
-//! The sign changes of x over m steps, from x₀ to x_m, follow from the two signs: with s the base's strength in its own unit
-//! of time and cos θ = 1 − s/2,
+//! The sign changes of x over m steps, from x₀ to x_m, follow from the two signs: with s the base's strength
+//! in its own unit of time and cos θ = 1 − s/2,
 //!
-//! * 0 < s < 4: x_j = R cos(φ + jθ), which crosses 0 ⌊mθ/π⌋ times or once more; its parity is that of the two signs;
-//! * s ≥ 4: (−1)^j x_j is a sum of two exponentials of one base, or linear, and changes its sign once at most: m changes or
-//!   m − 1, by the same parity.
+//! * 0 < s < 4: x_j = R cos(φ + jθ), which crosses 0 ⌊mθ/π⌋ times or once more; its parity is that of the two
+//!   signs;
+//! * s ≥ 4: (−1)^j x_j is a sum of two exponentials of one base, or linear, and changes its sign once at
+//!   most: m changes or m − 1, by the same parity.
 
 use num_bigint::BigInt;
 use num_integer::Integer;
@@ -21,7 +22,8 @@ use crate::propagator::TwoClocks;
 use crate::schedule::{KickDrift, Schedule};
 use number::{Ball, Ratio, Rational, Real, Sign};
 
-/// From so many base steps between two kicks of the other clock on, powers are cheaper than kicks whatever the bits.
+/// From so many base steps between two kicks of the other clock on, powers are cheaper than kicks whatever
+/// the bits.
 const LONG_RUN: u64 = 1000;
 
 /// x is near 0 at one strike, hardly at two in a row, never at three.
@@ -118,8 +120,8 @@ impl<'a> Leaps<'a> {
         orbit.end()
     }
 
-    /// `steps` steps: a few one by one until x has a certain sign, then all at once but for the last few, before which x is near
-    /// 0 again.
+    /// `steps` steps: a few one by one until x has a certain sign, then all at once but for the last few,
+    /// before which x is near 0 again.
     fn leap(&mut self, orbit: &mut BallOrbit, steps: u64) {
         let mut left = steps;
         for _ in 0..NEAR_ZERO.min(steps) {

@@ -1,21 +1,22 @@
-//! Kick by kick in doubles, with the same theorem: for pairs that have no Floquet coordinates, because both clocks
-//! are beyond their own Verlet limits or pull the wrong way. And in two doubles a number, for growth so weak that doubles
-//! cannot distinguish it from none.
+//! Kick by kick in doubles, with the same theorem: for pairs that have no Floquet coordinates, because both
+//! clocks are beyond their own Verlet limits or pull the wrong way. And in two doubles a number, for growth
+//! so weak that doubles cannot distinguish it from none.
 //!
 //! State (x, y), y = w v with w a power of two that makes kicks and drifts about equally strong: x ← x + a y,
-//! y ← y − b x, shears of norm κ(a) = |a|/2 + √(1 + a²/4) ≥ √(1 + a²). With a and b known to 2u and a shear that rounds by
-//! u |x'| (fused, u = 2^-53), or by u |(x, y)| κ/10 at most (two doubles, u = 2^-98),
+//! y ← y − b x, shears of norm κ(a) = |a|/2 + √(1 + a²/4) ≥ √(1 + a²). With a and b known to 2u and a shear
+//! that rounds by u |x'| (fused, u = 2^-53), or by u |(x, y)| κ/10 at most (two doubles, u = 2^-98),
 //!
 //! ```text
 //!     |r| ≤ u |x'| + 2u |a| |y| (1 + u) ≤ 3.1 u κ |(x, y)|,        ε = 3.1 u κ,
 //! ```
 //!
-//! and the theorem of [`super::bound`] applies with |r_k| |û_k| ≤ ε g |û_k|²: b_k = ε g Σ_{j≤k} |û_j|². The sum has n terms
-//! and the theorem's condition allows far fewer than 2^40, so a hundredth more covers its roundings. Both solutions
-//! run at once, and nothing that the next shear needs waits for the bound. The same doubles on every machine: each operation
-//! is rounded as IEEE 754 says.
+//! and the theorem of [`super::bound`] applies with |r_k| |û_k| ≤ ε g |û_k|²: b_k = ε g Σ_{j≤k} |û_j|². The
+//! sum has n terms and the theorem's condition allows far fewer than 2^40, so a hundredth more covers its
+//! roundings. Both solutions run at once, and nothing that the next shear needs waits for the bound. The same
+//! doubles on every machine: each operation is rounded as IEEE 754 says.
 //!
-//! Drifts turn (x, y) clockwise across x = 0 and kicks never cross it, so the sign changes of x are the half turns.
+//! Drifts turn (x, y) clockwise across x = 0 and kicks never cross it, so the sign changes of x are the half
+//! turns.
 
 use super::bound::StepBound;
 use super::filter::{End, Ends};
@@ -34,8 +35,8 @@ const LONGEST: f64 = 1e180;
 /// A power of two whose square brings a length from beyond [`LONGEST`] back.
 const SHRINK: i32 = 127;
 
-/// The half period as far as doubles decide it; `None` where the theorem's conditions cannot be met, or a strength is no
-/// comfortable double.
+/// The half period as far as doubles decide it; `None` where the theorem's conditions cannot be met, or a
+/// strength is no comfortable double.
 pub fn run<S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule) -> Option<Ends> {
     run_in::<f64, S>(clocks, schedule)
 }
@@ -48,7 +49,8 @@ pub fn sharp<S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule) -> Option<Ends
 fn run_in<N: Number, S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule) -> Option<Ends> {
     let steps = Steps::<N>::new(clocks, schedule)?;
     let (even, odd, half_turns) = Instructions::best().perform_alone(Run(&steps, schedule));
-    // After N half turns of x's sign the angle is within a quarter of N half turns, beyond it where x and v differ in sign.
+    // After N half turns of x's sign the angle is within a quarter of N half turns, beyond it where x and v
+    // differ in sign.
     let (x, y) = (even.x.near(), even.y.near());
     let quarters = 2 * half_turns - i64::from(x.is_sign_negative() == y.is_sign_negative());
     Some(Ends { even: even.end(&steps)?, odd: odd.end(&steps)?, quarters })
@@ -308,7 +310,8 @@ mod tests {
             }
         }
 
-        /// In doubles and in two: A, B, C, D lie where the bounds say, B and C up to the scale that BC does not have.
+        /// In doubles and in two: A, B, C, D lie where the bounds say, B and C up to the scale that BC does
+        /// not have.
         #[test]
         fn the_exact_end_lies_within_the_bound(
             p in 1u64..40, q in 1u64..40, s in -9000i64..9000, k in -9000i64..9000,

@@ -41,8 +41,8 @@ pub fn kicks(ratio: Ratio) -> u64 {
     if leap::is_worth(ratio) { leap::kicks(ratio) } else { ratio.kicks() / 2 }
 }
 
-/// As [`run`]; long runs of one clock's kicks by [`leap`]. Beyond 1000 bits, where its bound may leave strengths of 10^90 and
-/// more no room however many bits there are, as [`run_balls`] where it must.
+/// As [`run`]; long runs of one clock's kicks by [`leap`]. Beyond 1000 bits, where its bound may leave
+/// strengths of 10^90 and more no room however many bits there are, as [`run_balls`] where it must.
 pub fn run_at_any<S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule, bits: u32) -> Option<Ends> {
     if leap::is_worth(clocks.ratio()) {
         return Some(leap::run(clocks, schedule, bits));
@@ -126,8 +126,8 @@ struct Orbit<'a> {
     angle: f64,
     worst: f64,
     nodes: Nodes,
-    /// Whether it hears that the work was stopped, its kick times so far, and whether it was at one of them: then nothing is
-    /// done any more.
+    /// Whether it hears that the work was stopped, its kick times so far, and whether it was at one of them:
+    /// then nothing is done any more.
     hears: bool,
     arrivals: u32,
     stopped: bool,

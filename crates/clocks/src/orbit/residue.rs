@@ -1,8 +1,8 @@
 //! A cheap proof that no entry of the half period vanishes: its residue does not.
 //!
-//! Over Q\[π\] an entry is a polynomial in π with rational coefficients, and zero iff all coefficients are. Send
-//! π to some residue g modulo a prime p that divides no denominator: a ring homomorphism. Where the image is not
-//! 0, the entry is not 0. The converse fails with a chance of about degree/p.
+//! Over Q\[π\] an entry is a polynomial in π with rational coefficients, and zero iff all coefficients are.
+//! Send π to some residue g modulo a prime p that divides no denominator: a ring homomorphism. Where the
+//! image is not 0, the entry is not 0. The converse fails with a chance of about degree/p.
 
 use num_bigint::BigInt;
 

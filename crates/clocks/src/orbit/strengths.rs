@@ -1,7 +1,7 @@
 //! The constants of many pairs at a time, from the strengths of their kicks in doubles.
 //!
-//! The coordinates are those of [`super::floquet`]; the base's are made of two doubles each, lane by lane without a branch, so
-//! that they cost a pair less than its updates do.
+//! The coordinates are those of [`super::floquet`]; the base's are made of two doubles each, lane by lane
+//! without a branch, so that they cost a pair less than its updates do.
 
 use super::floquet::{LARGEST_MODULUS, LONGEST_QUICK, NEAR_LIMIT, Phase, TINY, shears, within_range};
 use super::kernel::{Constants, InLanes};
@@ -21,8 +21,8 @@ pub struct Strengths {
 }
 
 impl Strengths {
-    /// Whether doubles serve it: not near the base's Verlet limit or beyond it, where 4 − s has lost digits, nor far from ordinary
-    /// numbers.
+    /// Whether doubles serve it: not near the base's Verlet limit or beyond it, where 4 − s has lost digits,
+    /// nor far from ordinary numbers.
     #[inline(always)]
     pub fn serves(&self) -> bool {
         let Strengths { s: Twofold { hi: s, .. }, kick, p, q } = *self;
@@ -49,8 +49,8 @@ impl Strengths {
     /// How many classes there are.
     pub const CLASSES: u32 = 8;
 
-    /// How strong a foreign kick is, in powers of four of β² = (k / sin θ)², 0 (below 2^-9) to 7 (from 2^3 on), as near as doubles get:
-    /// a group looks at |g| as often as its strongest pair wants.
+    /// How strong a foreign kick is, in powers of four of β² = (k / sin θ)², 0 (below 2^-9) to 7 (from 2^3
+    /// on), as near as doubles get: a group looks at |g| as often as its strongest pair wants.
     #[inline(always)]
     pub fn class(&self) -> u32 {
         let (above, below) = (4.0 * self.kick * self.kick, self.s.hi * (4.0 - self.s.hi));
@@ -73,8 +73,8 @@ pub struct Placed {
     pub place: u32,
 }
 
-/// e^{iα} in each lane, its components in two doubles each: re, im. (In loops: closures as long as these are not made part of what is
-/// compiled for an instruction set.)
+/// e^{iα} in each lane, its components in two doubles each: re, im. (In loops: closures as long as these are
+/// not made part of what is compiled for an instruction set.)
 #[derive(Clone, Copy)]
 struct Phases<const L: usize>([[[f64; L]; 2]; 2]);
 
@@ -120,8 +120,8 @@ impl<const L: usize> Phases<L> {
         self
     }
 
-    /// Each to the power n, a whole number in a double: squared for each of the places of the largest n but its first, and times
-    /// itself where its own has a one there.
+    /// Each to the power n, a whole number in a double: squared for each of the places of the largest n but
+    /// its first, and times itself where its own has a one there.
     #[inline(always)]
     fn power(&self, n: &[f64; L]) -> Self {
         let places = 64 - (largest(n) as u64).leading_zeros();
@@ -173,7 +173,8 @@ impl InLanes for Placed {
             (s[0][i], s[1][i]) = (pair.s.hi, pair.s.lo);
         }
         let odd: [[f64; L]; 2] = [each(|i| parity(p[i])), each(|i| parity(q[i]))];
-        // Doubles divide whole numbers below 2^50 as integers: where p/q is none it is 1/q below the next one at least.
+        // Doubles divide whole numbers below 2^50 as integers: where p/q is none it is 1/q below the next one
+        // at least.
         let whole: [f64; L] = each(|i| (p[i] / q[i]).floor());
         let rest = each(|i| (-whole[i]).mul_add(q[i], p[i]));
         let (mut half, mut back) = (Phases([[[0.0; L]; 2]; 2]), Phases([[[0.0; L]; 2]; 2]));
@@ -192,7 +193,8 @@ impl InLanes for Placed {
             let half = half.at(i);
             (slope[i], sin[i]) = (half.tan().hi, half.sin_of_twice().hi);
         }
-        // The last turn is by nθ/2: of q = 1 with n = ⌊p/q⌋ − 1, else with the integer of p's parity in (p/q, p/q + 2) less one.
+        // The last turn is by nθ/2: of q = 1 with n = ⌊p/q⌋ − 1, else with the integer of p's parity in (p/q,
+        // p/q + 2) less one.
         let above: [f64; L] = each(|i| parity(whole[i] + 1.0));
         let component = |n: usize| -> [f64; L] {
             each(|i| {

@@ -1,7 +1,8 @@
 //! How far the even solution turns over the half period.
 //!
-//! The kernel's shears move it through the plane, never across the axis they keep, so counting the axes crossed
-//! counts its quarter turns: those of the exact solution, whose angle to the computed one stays small all the way.
+//! The kernel's shears move it through the plane, never across the axis they keep, so counting the axes
+//! crossed counts its quarter turns: those of the exact solution, whose angle to the computed one stays small
+//! all the way.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -19,7 +20,8 @@ pub fn at_end(pair: &Pair, counted: i64, [re, im]: [f64; 2], [cos, sin]: [f64; 2
     let half_turns = (pair.updates as f64 - carries as f64) * without + carries as f64 * with;
     let turn =
         before + 2.0 * FRAC_PI_2 * half_turns + pair.left().unwrap_or(0) as f64 * pair.base.theta / 2.0;
-    // The end's own direction knows the quarter; the sum, which of the whole turns. Odd half turns reverse it.
+    // The end's own direction knows the quarter; the sum, which of the whole turns. Odd half turns reverse
+    // it.
     let sign = if half_turns.rem_euclid(2.0) == 1.0 { -1.0 } else { 1.0 };
     let (x, y) = (sign * (re * cos - im * sin), sign * (re * sin + im * cos));
     let quarter = match (x < 0.0, y < 0.0) {

@@ -166,7 +166,8 @@ impl<S: Real> TwoClocks<S> {
     }
 }
 
-/// Two clocks whose period may hold any number of kicks, as that of two steps that are doubles does: 2^100 and more.
+/// Two clocks whose period may hold any number of kicks, as that of two steps that are doubles does: 2^100
+/// and more.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LongClocks<S> {
     ratio: Rational,

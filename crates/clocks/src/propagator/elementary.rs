@@ -9,7 +9,8 @@ pub fn kick<S: Ring>(strength: S) -> Matrix2<S> {
     Matrix2::new(S::one(), S::zero(), -strength, S::one())
 }
 
-/// D(t) = [[1, t], [0, 1]]: the position advances by t v. Determinant 1 (theorem `det_propagator` in proofs/).
+/// D(t) = [[1, t], [0, 1]]: the position advances by t v. Determinant 1 (theorem `det_propagator` in
+/// proofs/).
 pub fn drift<S: Ring>(time: S) -> Matrix2<S> {
     Matrix2::new(S::one(), time, S::zero(), S::one())
 }

@@ -1,7 +1,7 @@
 //! The propagator over the synchronization period, and over its half, which determines it.
 //!
-//! The kick pattern is a palindrome. With H = \[\[A, B\], \[C, D\]\] the propagator from 0 to T/2 (half of each
-//! kick at both ends) and H' = \[\[D, B\], \[C, A\]\] its time reversal, Q = H' H, and AD − BC = 1 gives
+//! The kick pattern is a palindrome. With H = \[\[A, B\], \[C, D\]\] the propagator from 0 to T/2 (half of
+//! each kick at both ends) and H' = \[\[D, B\], \[C, A\]\] its time reversal, Q = H' H, and AD − BC = 1 gives
 //!
 //! ```text
 //!     Tr Q = 2 (AD + BC),     Tr Q - 2 = 4 BC,     Tr Q + 2 = 4 AD

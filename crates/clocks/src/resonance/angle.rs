@@ -44,8 +44,8 @@ impl<S: Real> Angle<S> {
         self.theta(bits + 8).div(&Ball::pi(bits + 16), bits + 8).expect("pi > 0")
     }
 
-    /// The nearest resonance of a ratio with numerator p; its distance is exact where a double can hold it and
-    /// θ/π is rational, so exactly 0 on a resonance.
+    /// The nearest resonance of a ratio with numerator p; its distance is exact where a double can hold it
+    /// and θ/π is rational, so exactly 0 on a resonance.
     ///
     /// p θ/π is half an odd integer only if θ/π is rational, and then (unless s is one of the cyclotomic
     /// values) s = 2, p odd: the smaller m is taken.
@@ -70,8 +70,8 @@ impl<S: Real> Angle<S> {
 }
 
 impl<S: Real> Angle<S> {
-    /// Whether q h2 lies within `tolerance` half periods of an integer multiple of T½: |p θ/π − m| ≤ tolerance
-    /// for some m ≥ 1.
+    /// Whether q h2 lies within `tolerance` half periods of an integer multiple of T½: |p θ/π − m| ≤
+    /// tolerance for some m ≥ 1.
     ///
     /// Decided: θ/π is rational only where 2 cos θ is an algebraic integer. For rational s that leaves
     /// s = 1, 2, 3, and no transcendental s at all; elsewhere more bits always decide.

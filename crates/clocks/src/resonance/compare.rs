@@ -1,8 +1,9 @@
 //! The trace condition against the resonance predictions, pair by pair.
 //!
 //! Two questions are asked of every pair. Does the tan criterion say what the trace says? (It must, for every
-//! q: both are exact, each by arithmetic of its own.) And does the rule of thumb "unstable whenever q h2 is near an integer multiple of T½" say
-//! so, "near" meaning |p θ/π − m| ≤ tolerance for some m ≥ 1? (It need not.)
+//! q: both are exact, each by arithmetic of its own.) And does the rule of thumb "unstable whenever q h2 is
+//! near an integer multiple of T½" say so, "near" meaning |p θ/π − m| ≤ tolerance for some m ≥ 1? (It need
+//! not.)
 //!
 //! ```
 //! use kickdrift_clocks::number::rational::ratio;
@@ -64,7 +65,8 @@ pub struct Comparison {
     /// Rests on kicks and drifts one by one, in multiple precision or exactly (the refine and exact tiers).
     pub trace: Decision,
     /// Rests on turns of the fast clock by θ with the slow kicks between them, in balls or exactly
-    /// ([`tan::criterion`]): the two sides share the numbers and the table of signs, and no arithmetic beyond.
+    /// ([`tan::criterion`]): the two sides share the numbers and the table of signs, and no arithmetic
+    /// beyond.
     pub tan: Verdict,
     /// The nearest resonance; `None` beyond the fast clock's Verlet limit s = 4, where there is no θ.
     pub nearest: Option<Nearest>,
@@ -99,8 +101,9 @@ pub fn compare<S: Decidable>(
     Ok(Comparison { trace, tan, nearest, outcome })
 }
 
-/// That pairs which compose so many kicks together are within the limits: each pair's half period kick by kick, or what return maps of a
-/// longer one cost, and the tan criterion's turns. The `ratios` are those of some of the pairs.
+/// That pairs which compose so many kicks together are within the limits: each pair's half period kick by
+/// kick, or what return maps of a longer one cost, and the tan criterion's turns. The `ratios` are those of
+/// some of the pairs.
 ///
 /// # Errors
 /// A budget error in kicks.

@@ -34,8 +34,8 @@ pub struct Curve {
     pub pieces: Vec<Vec<CurvePoint>>,
 }
 
-/// A point of a curve: h1 a double, h2 and θ/π the doubles nearest to the exact values there, so that θ/π = a + b h1/h2 up to
-/// 2^-53 (|a| + 2).
+/// A point of a curve: h1 a double, h2 and θ/π the doubles nearest to the exact values there, so that θ/π =
+/// a + b h1/h2 up to 2^-53 (|a| + 2).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CurvePoint {
     pub h1: f64,
@@ -43,8 +43,8 @@ pub struct CurvePoint {
     pub theta_over_pi: f64,
 }
 
-/// Working precisions of a point, up to the first that leaves no doubt which doubles are the nearest: beside the fast clock's limit the
-/// arcsine loses half of them.
+/// Working precisions of a point, up to the first that leaves no doubt which doubles are the nearest: beside
+/// the fast clock's limit the arcsine loses half of them.
 const BITS: [u32; 3] = [96, 192, 384];
 
 /// The most points of all curves together: some gigabytes of rows.
@@ -53,14 +53,16 @@ pub(super) const MOST_POINTS: usize = 20_000_000;
 /// Steps begin here: below, h2 would leave the doubles of full precision.
 const LEAST: f64 = f64::from_bits(64 << 52);
 
-/// The curve (a, b) in the window, with some `samples` points evenly spaced in θ over its pieces there, their ends among them. Empty where it
-/// does not pass through the window: for 0 < θ/π < 1 that includes all curves with a = 0, b ≤ 0, with a ≥ 1, b ≥ 0, and with a ≤ −1, b ≤ 0.
+/// The curve (a, b) in the window, with some `samples` points evenly spaced in θ over its pieces there, their
+/// ends among them. Empty where it does not pass through the window: for 0 < θ/π < 1 that includes all curves
+/// with a = 0, b ≤ 0, with a ≥ 1, b ≥ 0, and with a ≤ −1, b ≤ 0.
 ///
-/// No curve through the window is missing, however small that is. Along h1, h2 = b h1/(θ/π − a) rises where a ≥ 1, falls where a = 0, and
-/// where a ≤ −1 rises until g = (π/2) cos(θ/2) (θ/π − a) − sin(θ/2) falls through 0, and falls from there: on each of these branches the part
-/// in the window is one interval, whose ends are found by bisection over the doubles h1. Rounding is monotone and the window's ends are doubles,
-/// so an exact h2 in the window is also in it when rounded. Where the curve passes the window between two neighbouring doubles, the
-/// lower one of them is its point there.
+/// No curve through the window is missing, however small that is. Along h1, h2 = b h1/(θ/π − a) rises where
+/// a ≥ 1, falls where a = 0, and where a ≤ −1 rises until g = (π/2) cos(θ/2) (θ/π − a) − sin(θ/2) falls
+/// through 0, and falls from there: on each of these branches the part in the window is one interval, whose
+/// ends are found by bisection over the doubles h1. Rounding is monotone and the window's ends are doubles,
+/// so an exact h2 in the window is also in it when rounded. Where the curve passes the window between two
+/// neighbouring doubles, the lower one of them is its point there.
 ///
 /// # Errors
 /// Where L1 ≤ 0, or fewer than 2 samples are asked for, or too many.
@@ -116,7 +118,8 @@ impl Path {
         (h2 > 0.0 && h2.is_finite()).then_some(CurvePoint { h1, h2, theta_over_pi })
     }
 
-    /// Whether h2 rises with h1, for a ≤ −1: the sign of g. Where 96 bits leave it open, the curve is level to far below a double.
+    /// Whether h2 rises with h1, for a ≤ −1: the sign of g. Where 96 bits leave it open, the curve is level
+    /// to far below a double.
     fn rises(&self, h1: f64) -> bool {
         let bits = BITS[0];
         let sign = || {

@@ -23,8 +23,8 @@ pub fn families(ratio: Ratio, m: u64) -> (i64, i64) {
 /// π (r r'³ − r' r³) = (r³ + r'³) sin θ, where r ≠ r' makes π algebraic and r = r' makes sin θ zero.
 ///
 /// Tongues m ≥ p have no resonance below the fast clock's Verlet limit; they are labelled as at θ = π, where
-/// ties go to the smaller |a|. Where a negative slow stiffness outweighs the fast one the solution grows without
-/// turning: m = 0, the trivial family (0, 0).
+/// ties go to the smaller |a|. Where a negative slow stiffness outweighs the fast one the solution grows
+/// without turning: m = 0, the trivial family (0, 0).
 pub fn dominant_family(ratio: Ratio, m: u64) -> (i64, i64) {
     let (a0, b0) = families(ratio, m);
     if m == 0 {
@@ -49,7 +49,8 @@ impl<S: Decidable> Answer<S> {
     }
 }
 
-/// Whether |S_a| > |S_b| at θ = m π/p: in doubles where they are clearly apart, else in as many bits as needed.
+/// Whether |S_a| > |S_b| at θ = m π/p: in doubles where they are clearly apart, else in as many bits as
+/// needed.
 fn stronger(a: i64, b: i64, p: u64, m: u64) -> bool {
     let theta = std::f64::consts::PI * m as f64 / p as f64;
     let (x, y) = (strength(a, theta).abs(), strength(b, theta).abs());

@@ -1,4 +1,5 @@
-//! The tongue of a resonance to first order in L2, enclosed; the file `strength` says how the law comes about.
+//! The tongue of a resonance to first order in L2, enclosed; the file `strength` says how the law comes
+//! about.
 
 use num_bigint::BigInt;
 
@@ -19,7 +20,8 @@ pub struct FirstOrder {
 /// The numbers of the law: the closed form of S cancels some log2 p³ bits.
 type Number = Enclosed<256>;
 
-/// The first-order tongue of h2/h1 = p/q about p θ = m π, for L2 = rho L1, 0 < m < p; the law's own error is O(rho²).
+/// The first-order tongue of h2/h1 = p/q about p θ = m π, for L2 = rho L1, 0 < m < p; the law's own error is
+/// O(rho²).
 pub fn first_order(ratio: Ratio, m: u64, rho: &Rational) -> Option<FirstOrder> {
     let p = ratio.p();
     if m == 0 || m >= p {
@@ -43,10 +45,11 @@ const BITS: u32 = 256;
 
 /// S0 and |S| over the q slow kicks of one period, p θ = m π, in closed form.
 ///
-/// With r = k p mod q, σ = r/q and m = a p + b q the phases e^{2 i n θ} are e^{-2π i b r/p}, a geometric series in r. P(σ)² is quadratic
-/// in u = σ − 1/2, P = e^{iθ/2} (c + 2 i s u), c, s = cos, sin (θ/2), and the kick at r = 0 may stand half at either end. So S is
-/// (c² C + s² C″/q² + 2 s c C′/q)/q up to its sign, C = sin θ cot A with A = π b/p being Σ cos 2A(r − q/2), halved at both ends, and C′,
-/// C″ its derivatives in A; at q A = −θ + a π these are
+/// With r = k p mod q, σ = r/q and m = a p + b q the phases e^{2 i n θ} are e^{-2π i b r/p}, a geometric
+/// series in r. P(σ)² is quadratic in u = σ − 1/2, P = e^{iθ/2} (c + 2 i s u), c, s = cos, sin (θ/2), and the
+/// kick at r = 0 may stand half at either end. So S is (c² C + s² C″/q² + 2 s c C′/q)/q up to its sign, C =
+/// sin θ cot A with A = π b/p being Σ cos 2A(r − q/2), halved at both ends, and C′, C″ its derivatives in A;
+/// at q A = −θ + a π these are
 ///
 /// ```text
 ///     C' = sin θ/sin² A - q cos θ cot A,     C'' = 2 sin θ cot A/sin² A - 2 q cos θ/sin² A - q² sin θ cot A.

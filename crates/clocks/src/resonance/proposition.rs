@@ -1,15 +1,15 @@
 //! The paper's Proposition, exactly and with witnesses.
 //!
-//! Let θ = h1 π/T½. A pair of steps is *resonant* (eq. (9)) if h2/h1 = p/q in lowest terms and q h2 = m T½ for
-//! an integer m, that is p θ = m π. It lies on the curve (a, b) (eq. (10)) if
+//! Let θ = h1 π/T½. A pair of steps is *resonant* (eq. (9)) if h2/h1 = p/q in lowest terms and q h2 = m T½
+//! for an integer m, that is p θ = m π. It lies on the curve (a, b) (eq. (10)) if
 //!
 //! ```text
 //!     h2 = b T½ h1/(h1 - a T½),     that is     1/T½ = a/h1 + b/h2.
 //! ```
 //!
 //! **Proposition.** A pair with h2/h1 = p/q is resonant iff it lies on a curve (a, b) with b ≠ 0; then
-//! m = a p + b q. (Theorem `proposition` in proofs/. The paper takes any Bézout pair a p + b q = 1; for p = 1 that
-//! may have b = 0, and eq. (10) reads 0/0. Bézout pairs are not unique: one with b ≠ 0 always exists.)
+//! m = a p + b q. (Theorem `proposition` in proofs/. The paper takes any Bézout pair a p + b q = 1; for p = 1
+//! that may have b = 0, and eq. (10) reads 0/0. Bézout pairs are not unique: one with b ≠ 0 always exists.)
 //!
 //! At a resonant point s = 4 sin²(m π/2p) = 2 − 2 cos(m π/p) is an element of the cyclotomic field
 //! Q(2 cos(π/p)), where p θ = m π is the exact equation T_p(1 − s/2) = (−1)^m, T_p the Chebyshev polynomial.
@@ -37,7 +37,8 @@ pub struct Witness {
     pub b: i64,
 }
 
-/// The curve (a, b) with b ≠ 0 and the smallest |a| through the resonant point (p, q, m), 0 < m < p where θ < π.
+/// The curve (a, b) with b ≠ 0 and the smallest |a| through the resonant point (p, q, m), 0 < m < p where θ <
+/// π.
 pub fn witness(ratio: Ratio, m: u64) -> Witness {
     let (a0, b0) = families(ratio, m);
     let (p, q) = (ratio.p() as i64, ratio.q() as i64);
@@ -74,8 +75,8 @@ pub fn point_on_curve(a: i64, b: i64, t: &Rational) -> Option<Rational> {
     (!denominator.is_zero()).then(|| Rational::from_integer(b.into()) * t / denominator)
 }
 
-/// The converse: a pair with h2/h1 = p/q on the curve (a, b) has T½/h1 = p/(a p + b q), so it is resonant with
-/// m = a p + b q. `None` where m ≤ 0: no step h1 > 0 has such a T½.
+/// The converse: a pair with h2/h1 = p/q on the curve (a, b) has T½/h1 = p/(a p + b q), so it is resonant
+/// with m = a p + b q. `None` where m ≤ 0: no step h1 > 0 has such a T½.
 ///
 /// With b ≠ 0 and x = h1/T½, eq. (10) reads p/q (x − a) = b.
 pub fn resonance_on_curve(ratio: Ratio, a: i64, b: i64) -> Option<u64> {
@@ -90,7 +91,8 @@ fn field(p: u64) -> CyclotomicField {
     CyclotomicField::new(u32::try_from(p).expect("a p whose field fits in memory"))
 }
 
-/// Whether T_p(1 − s/2) = (−1)^m at s = 2 − 2 cos(m π/p), by V_p(x) = 2 T_p(x/2), V_{k+1} = x V_k − V_{k−1}, x = 2 cos(m π/p).
+/// Whether T_p(1 − s/2) = (−1)^m at s = 2 − 2 cos(m π/p), by V_p(x) = 2 T_p(x/2), V_{k+1} = x V_k − V_{k−1},
+/// x = 2 cos(m π/p).
 fn closes_in(field: &CyclotomicField, p: u64, m: u64) -> bool {
     let x = field.two_cos(m as i64);
     let two = <Cyclotomic as Ring>::from_rational(&fraction(2, 1));

@@ -7,8 +7,8 @@
 //!     S0 = mean |P(sigma_k)|²,   S = mean P(sigma_k)² e^{2 i n_k th}   over the q slow kicks, k p/q = n_k + sigma_k,
 //! ```
 //!
-//! P(σ) = 1 − σ + σ e^{iθ} being the fast clock's solution between two of its kicks. A phase δ off the middle lets the
-//! amplitude grow by √((q α |S|)² − δ²) per period, so by q α |S| in the middle. On a fixed family
+//! P(σ) = 1 − σ + σ e^{iθ} being the fast clock's solution between two of its kicks. A phase δ off the middle
+//! lets the amplitude grow by √((q α |S|)² − δ²) per period, so by q α |S| in the middle. On a fixed family
 //! (a, b), as q grows, S0 → 1 − s/6 and |S| → |S_a(θ)|,
 //!
 //! ```text

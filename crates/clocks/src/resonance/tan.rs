@@ -1,7 +1,8 @@
 //! The tan criterion: the paper's for r-RESPA (q = 1), and its form for every q.
 //!
 //! Let φ = p θ/2 = π q h2/T_eff. The paper: with q = 1 the pair is unstable iff tan φ > 1/alpha > 0 or
-//! 0 > tan φ > −alpha. For every q the half period in Floquet coordinates gives four forms linear in t = tan φ,
+//! 0 > tan φ > −alpha. For every q the half period in Floquet coordinates gives four forms linear in t = tan
+//! φ,
 //!
 //! ```text
 //!     A ∝ cE + cO t,  C ∝ cO - cE t    (even start),      B, D likewise    (odd start),
@@ -10,9 +11,9 @@
 //! so the pair is unstable iff t lies between the critical values −cE/cO of A and D (Tr < −2) or between the
 //! values cO/cE of B and C (Tr > 2). (Theorems `tan_criterion_q1`, `tan_criterion` in proofs/.)
 //!
-//! None of this composes a kick of the fast clock, and nothing is asked of the verdict's ladder: it is a route of its
-//! own. Angles drop out of the form: C_n = cos nθ and S_n = sin nθ/ sin θ are polynomials in s (Chebyshev's), which
-//! the addition theorems give for any n at once,
+//! None of this composes a kick of the fast clock, and nothing is asked of the verdict's ladder: it is a
+//! route of its own. Angles drop out of the form: C_n = cos nθ and S_n = sin nθ/ sin θ are polynomials in s
+//! (Chebyshev's), which the addition theorems give for any n at once,
 //!
 //! ```text
 //!     C_{m+n} = C_m C_n - sin²θ S_m S_n,   S_{m+n} = S_m C_n + C_m S_n,   sin²θ = s - s²/4,
@@ -24,8 +25,8 @@
 //!     E = (1-σ) C_n + σ C_{n+1},  O = (1-σ) S_n + σ S_{n+1},   x = cE E + d O,   cE += k x O,  d -= k x E.
 //! ```
 //!
-//! The four signs are first enclosed, in balls of 128 bits and more; what stays undecided there, the edges above
-//! all, is computed exactly.
+//! The four signs are first enclosed, in balls of 128 bits and more; what stays undecided there, the edges
+//! above all, is computed exactly.
 
 use std::cmp::Ordering;
 
@@ -40,8 +41,9 @@ use number::{Ball, Enclosed, ExactSign, Rational, Real, Ring};
 /// A budget error where only exact arithmetic would decide, and it costs more than the limits allow.
 pub fn criterion<S: Decidable>(clocks: &TwoClocks<S>, limits: &Limits) -> Result<Verdict> {
     let kicks = clocks.q();
-    // A kick and the turn before it lose some two bits in balls, so long periods are worth more of them. For s > 4 the turns grow
-    // like e^(γ n), cosh γ = s/2 − 1, and each of q/2 kicks at n up to p/2 loses 2 γ n/ln 2 of them.
+    // A kick and the turn before it lose some two bits in balls, so long periods are worth more of them. For
+    // s > 4 the turns grow like e^(γ n), cosh γ = s/2 − 1, and each of q/2 kicks at n up to p/2 loses 2 γ
+    // n/ln 2 of them.
     let grows =
         clocks.fast().enclosure(64).compare(&Ball::from_integer(&4.into())) == Some(Ordering::Greater);
     let pays = |bits: u64| grows && kicks.saturating_mul(bits) < MOST_BITS;

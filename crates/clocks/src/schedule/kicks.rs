@@ -23,8 +23,8 @@ pub struct Kicks<K> {
 }
 
 impl<K> Kicks<K> {
-    /// For two clocks: the strengths of the fast clock, of the slow one and of both together, which `parts` makes the
-    /// whole and the halved kick of.
+    /// For two clocks: the strengths of the fast clock, of the slow one and of both together, which `parts`
+    /// makes the whole and the halved kick of.
     pub fn of_two_clocks<T>(strengths: [T; 3], parts: impl Fn(T) -> [K; 2]) -> Self {
         Kicks { strengths: strengths.map(parts).into(), by_set: true }
     }

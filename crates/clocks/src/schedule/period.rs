@@ -14,8 +14,8 @@ pub struct Schedule(Clocks);
 
 impl Schedule {
     /// The paper's pair, h2/h1 = p/q, phases 0: the steps are to each other as q to p
-    /// and the period is T = q h2 = p h1. One tick is h1/q = h2/p, or half of it where p and q are both odd; the unit
-    /// of time is h1.
+    /// and the period is T = q h2 = p h1. One tick is h1/q = h2/p, or half of it where p and q are both odd;
+    /// the unit of time is h1.
     ///
     /// # Errors
     /// Where the period reaches 2^62 ticks.

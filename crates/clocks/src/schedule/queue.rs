@@ -5,7 +5,8 @@ use std::collections::BinaryHeap;
 
 use super::clocks::Clock;
 
-/// The strikes to come as (time, clock) pairs: the earliest first, at equal times the clock of the smaller index.
+/// The strikes to come as (time, clock) pairs: the earliest first, at equal times the clock of the smaller
+/// index.
 #[derive(Clone, Debug)]
 pub struct Queue {
     order: Order,

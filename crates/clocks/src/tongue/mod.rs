@@ -1,8 +1,8 @@
 //! Every tongue of a ratio, exactly: a grid can miss a thin tongue, this cannot.
 //!
-//! For fixed h2/h1 = p/q and ρ = L2/L1 ≥ 0 the unstable set in s = h1² L1 is a finite list of intervals. Their edges are
-//! the zeros of the half period's entries A, B, C, D, and those are the eigenvalues of four vibrating strings (the
-//! `string` module). So nothing is searched on a grid:
+//! For fixed h2/h1 = p/q and ρ = L2/L1 ≥ 0 the unstable set in s = h1² L1 is a finite list of intervals.
+//! Their edges are the zeros of the half period's entries A, B, C, D, and those are the eigenvalues of four
+//! vibrating strings (the `string` module). So nothing is searched on a grid:
 //!
 //! ```text
 //!     counts -> brackets -> modes, Rayleigh quotients -> edges -> tongues -> rows, survey, closings

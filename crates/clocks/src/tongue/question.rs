@@ -137,8 +137,8 @@ impl Listing {
         Ok(Listing { ratios, stiffness, window, selection, request })
     }
 
-    /// Hands on the tongues in the order of the ratios and of m: in parts, computed in parallel. Ratios are counted for
-    /// who watches, and of one ratio alone the tongues.
+    /// Hands on the tongues in the order of the ratios and of m: in parts, computed in parallel. Ratios are
+    /// counted for who watches, and of one ratio alone the tongues.
     ///
     /// # Errors
     /// Where a schedule is too long, and those of `see`.

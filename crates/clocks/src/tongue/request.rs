@@ -1,4 +1,5 @@
-//! A tongue with all that is asked for: its edges in h1 and h2 where L1 is known, by as many digits as are wanted.
+//! A tongue with all that is asked for: its edges in h1 and h2 where L1 is known, by as many digits as are
+//! wanted.
 
 use super::edge::{Edge, Enclosure};
 use super::gap::Gap;

@@ -79,7 +79,8 @@ pub struct Selection {
 /// Where at least one in so many tongues of a range is wanted, all of it is computed side by side.
 const DENSE: u64 = 3;
 
-/// The window is widened by this for the counts, whose own uncertainty is below 1e-8 for all strings that are laid out.
+/// The window is widened by this for the counts, whose own uncertainty is below 1e-8 for all strings that are
+/// laid out.
 const SLACK: f64 = 1e-6;
 
 impl Selection {
@@ -142,8 +143,9 @@ impl Selection {
     }
 }
 
-/// A range of labels among 1 to `last` that holds all tongues which meet the window: an edge with an index not above
-/// the count at its lower end lies below it, one with an index above the count at its upper end lies beyond.
+/// A range of labels among 1 to `last` that holds all tongues which meet the window: an edge with an index
+/// not above the count at its lower end lies below it, one with an index above the count at its upper end
+/// lies beyond.
 fn labels_within(edges: &Edges, (lo, hi): &Range, last: u64) -> Result<(u64, u64)> {
     let (lo, hi) = (lo.enclose_f64().0, hi.enclose_f64().1);
     if hi < lo || hi <= 0.0 {

@@ -1,5 +1,5 @@
-//! All ratios up to a sum: which tongues below the fast clock's Verlet limit are open, how thin they get, how well
-//! the resonances predict them.
+//! All ratios up to a sum: which tongues below the fast clock's Verlet limit are open, how thin they get, how
+//! well the resonances predict them.
 //!
 //! ```
 //! use kickdrift_clocks::number::rational::ratio;
@@ -32,8 +32,8 @@ pub struct Survey {
     pub edges: (u64, u64),
     /// The thinnest open ones, thinnest first.
     pub thinnest: Vec<Thin>,
-    /// Tongues with a predicted point p θ = m π, m < p, and how many of those points lie outside their tongue, on an
-    /// edge and inside.
+    /// Tongues with a predicted point p θ = m π, m < p, and how many of those points lie outside their
+    /// tongue, on an edge and inside.
     pub predicted: u64,
     pub predicted_outside: u64,
     pub predicted_on_edge: u64,
@@ -65,8 +65,8 @@ pub struct Spread {
     pub largest: f64,
 }
 
-/// The survey of all p + q ≤ `max_sum` at ρ > 0, with the `keep` thinnest tongues. The same whatever the number of
-/// threads.
+/// The survey of all p + q ≤ `max_sum` at ρ > 0, with the `keep` thinnest tongues. The same whatever the
+/// number of threads.
 ///
 /// # Errors
 /// As [`Tongues::new`].

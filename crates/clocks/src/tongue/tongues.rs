@@ -1,9 +1,10 @@
 //! The tongues of one ratio: which edge bounds which, open or closed.
 //!
-//! With 0 = P0 < P1 <= P2 < ... the zeros of B and C together and M1 <= M2 < ... those of A and D, tongue m is
-//! [M_m, M_{m+1}] for odd m and [P_{m−1}, P_m] for even m: one edge from each of the two problems, both with the index
-//! ⌈m/2⌉. For ρ > 0 there are p + q − 2 of them, and the last, m = p + q − 1, has no upper end. For ρ = 0 the slow clock is
-//! silent: all are closed, at p θ = m π, m < p, and m = p begins at the Verlet limit s = 4.
+//! With 0 = P0 < P1 <= P2 < ... the zeros of B and C together and M1 <= M2 < ... those of A and D, tongue m
+//! is [M_m, M_{m+1}] for odd m and [P_{m−1}, P_m] for even m: one edge from each of the two problems, both
+//! with the index ⌈m/2⌉. For ρ > 0 there are p + q − 2 of them, and the last, m = p + q − 1, has no upper
+//! end. For ρ = 0 the slow clock is silent: all are closed, at p θ = m π, m < p, and m = p begins at the
+//! Verlet limit s = 4.
 
 use std::cmp::Ordering;
 

@@ -10,8 +10,8 @@ use crate::propagator::TwoClocks;
 use number::Ball;
 use number::error::Result;
 
-/// A proven answer. Trace, growth and label cost hundreds of verdicts where the filter decided, so they are computed
-/// when first asked for, from the runs that decided as far as these reach.
+/// A proven answer. Trace, growth and label cost hundreds of verdicts where the filter decided, so they are
+/// computed when first asked for, from the runs that decided as far as these reach.
 ///
 /// ```
 /// use kickdrift_clocks::number::rational::ratio;

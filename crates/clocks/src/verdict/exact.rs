@@ -33,8 +33,8 @@ pub trait Decidable: Real {
         half_period(clocks).signs()
     }
 
-    /// The cost of [`Decidable::half_signs`] for a half period of so many kicks, in kicks of the refine tier (about
-    /// 1 µs each): the numbers grow with every kick. Measured, good to a factor of some units.
+    /// The cost of [`Decidable::half_signs`] for a half period of so many kicks, in kicks of the refine tier
+    /// (about 1 µs each): the numbers grow with every kick. Measured, good to a factor of some units.
     fn exact_cost(_clocks: &TwoClocks<Self>, kicks: u64) -> u64 {
         kicks.saturating_pow(3)
     }
@@ -56,8 +56,8 @@ impl Decidable for Laurent {
         half_period(clocks).signs()
     }
 
-    /// As for the rationals where both strengths are rational. Otherwise a strength of n powers of π gives the entries
-    /// up to n more with each kick, and each of them meets all n.
+    /// As for the rationals where both strengths are rational. Otherwise a strength of n powers of π gives
+    /// the entries up to n more with each kick, and each of them meets all n.
     fn exact_cost(clocks: &TwoClocks<Laurent>, kicks: u64) -> u64 {
         if let Some(rational) = clocks.as_rational() {
             return Decidable::exact_cost(&rational, kicks);

@@ -7,7 +7,8 @@
 //!     ln μ = 2 asinh √(BC)   for Tr > 2,        ln μ = 2 asinh √(-AD)   for Tr < -2,
 //! ```
 //!
-//! since Tr = 2 cosh(ln μ) = 2 + 4 sinh²(ln μ / 2) (theorems `multiplier_plus`, `multiplier_minus` in proofs/).
+//! since Tr = 2 cosh(ln μ) = 2 + 4 sinh²(ln μ / 2) (theorems `multiplier_plus`, `multiplier_minus` in
+//! proofs/).
 
 use super::exact::Decidable;
 use super::kind::{Side, Verdict};
@@ -22,8 +23,8 @@ use number::error::{Error, Result};
 use number::parallel::go_on;
 use number::{Ball, Rational, Real};
 
-/// How a pair moves over one synchronization period. As JSON its enclosures are two doubles with the value between them,
-/// `{"lo": , "hi": }`.
+/// How a pair moves over one synchronization period. As JSON its enclosures are two doubles with the value
+/// between them, `{"lo": , "hi": }`.
 #[derive(Clone, Debug, serde::Serialize)]
 pub struct Growth {
     /// Tr Q.
@@ -144,7 +145,8 @@ impl Runs {
         Ok(from_products(products, verdict, label))
     }
 
-    /// By the known run, then by return maps in more bits, at most in `most`, until `least` bits are known, and the label.
+    /// By the known run, then by return maps in more bits, at most in `most`, until `least` bits are known,
+    /// and the label.
     fn returned<S: Real>(
         &self,
         clocks: &LongClocks<S>,
@@ -175,7 +177,8 @@ impl Runs {
         best
     }
 
-    /// Refines until the distance from ±2 is known to [`ACCURACY`] bits; with the label as the sign changes give it.
+    /// Refines until the distance from ±2 is known to [`ACCURACY`] bits; with the label as the sign changes
+    /// give it.
     fn refined<S: Decidable>(
         &self,
         clocks: &TwoClocks<S>,
@@ -200,7 +203,8 @@ impl Runs {
     }
 }
 
-/// The label by kicks, where return maps lose the turns and the limits allow kicks. `None` where they do not, and unless hyperbolic.
+/// The label by kicks, where return maps lose the turns and the limits allow kicks. `None` where they do not,
+/// and unless hyperbolic.
 fn counted<S: Decidable>(clocks: &TwoClocks<S>, verdict: Verdict, limits: &Limits) -> Result<Option<u64>> {
     let ratio = clocks.ratio();
     if verdict.side() == 0 || refine::kicks(ratio) > limits.kicks {
@@ -221,9 +225,9 @@ fn first_tier<S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule) -> Option<fil
     }
 }
 
-/// Tr Q as the first tier alone encloses it: min(p, q)/2 updates in doubles. `None` where it proves nothing: both
-/// clocks beyond their own Verlet limits, a clock that does nothing, or a bound that a condition of its theorem
-/// does not allow.
+/// Tr Q as the first tier alone encloses it: min(p, q)/2 updates in doubles. `None` where it proves nothing:
+/// both clocks beyond their own Verlet limits, a clock that does nothing, or a bound that a condition of its
+/// theorem does not allow.
 ///
 /// ```
 /// use kickdrift_clocks::number::rational::ratio;
@@ -274,7 +278,8 @@ fn accurate(ends: &refine::Ends, bits: u32, verdict: Verdict) -> Option<(Product
 }
 
 impl Products {
-    /// Bits to which both are known; of a trace beyond 2^n only the logarithm is shown, which is known to log₂ n bits more.
+    /// Bits to which both are known; of a trace beyond 2^n only the logarithm is shown, which is known to
+    /// log₂ n bits more.
     fn accuracy(&self) -> i64 {
         let accuracy = self.bc.relative_accuracy_bits().min(self.ad.relative_accuracy_bits());
         let beyond = self.ad.top().unwrap_or(0).max(64) as u64;

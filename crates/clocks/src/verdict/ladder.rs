@@ -26,15 +26,16 @@ const PRECISIONS: [u32; 3] = [128, 256, 512];
 /// The least precision in which kicks of any strength are followed.
 const PAST_THE_BOUND: u32 = 1024;
 
-/// The binary digits of the longest period that is tried: a power of one step takes as many squarings of numbers with three times as
-/// many digits, half a second here.
+/// The binary digits of the longest period that is tried: a power of one step takes as many squarings of
+/// numbers with three times as many digits, half a second here.
 const LONGEST_RATIO: u64 = 1 << 12;
 
 /// Decides the pair, with the cheapest tier that can.
 ///
 /// # Errors
-/// A budget error, before the work begins, where a tier would need more than `limits` allows; `Stopped` where the work
-/// is [stoppable](number::parallel::stoppable) and was stopped: at once in the refine tier, after their run in the others.
+/// A budget error, before the work begins, where a tier would need more than `limits` allows; `Stopped` where
+/// the work is [stoppable](number::parallel::stoppable) and was stopped: at once in the refine tier, after
+/// their run in the others.
 pub fn decide<S: Decidable>(clocks: &TwoClocks<S>, limits: &Limits) -> Result<Answer<S>> {
     decide_from(Tier::Filter, clocks, limits)
 }
@@ -70,8 +71,8 @@ pub fn decide_from<S: Decidable>(first: Tier, clocks: &TwoClocks<S>, limits: &Li
     unreachable!("the exact tier decides every pair")
 }
 
-/// Decides a long period by another route than [`decide`]: return maps over the other clock, or in more bits. `None` where neither
-/// decides.
+/// Decides a long period by another route than [`decide`]: return maps over the other clock, or in more bits.
+/// `None` where neither decides.
 ///
 /// # Errors
 /// `Stopped`.
@@ -89,7 +90,8 @@ pub fn decide_anew<S: Decidable>(clocks: &LongClocks<S>) -> Result<Option<(Verdi
     go_on().map(|()| None)
 }
 
-/// Decides a pair whose period may hold any number of kicks, as that of two steps that are doubles does, by return maps alone.
+/// Decides a pair whose period may hold any number of kicks, as that of two steps that are doubles does, by
+/// return maps alone.
 ///
 /// ```
 /// use kickdrift_clocks::number::{Laurent, Rational};
@@ -103,8 +105,9 @@ pub fn decide_anew<S: Decidable>(clocks: &LongClocks<S>) -> Result<Option<(Verdi
 /// ```
 ///
 /// # Errors
-/// A budget error where return maps in 256 bits decide no verdict: on an edge of a tongue exactly or next to it, and where kicks are so
-/// strong that the bound exceeds the entries (proofs/RETURNS.md); at once where the period has more than 2^4096 kicks. `Stopped`.
+/// A budget error where return maps in 256 bits decide no verdict: on an edge of a tongue exactly or next to
+/// it, and where kicks are so strong that the bound exceeds the entries (proofs/RETURNS.md); at once where
+/// the period has more than 2^4096 kicks. `Stopped`.
 pub fn decide_long<S: Decidable>(clocks: &LongClocks<S>) -> Result<Decision> {
     let kicks = clocks.ratio().numer() + clocks.ratio().denom();
     if kicks.bits() > LONGEST_RATIO {
@@ -148,7 +151,8 @@ pub fn decide_steps(oscillator: &Oscillator, limits: &Limits) -> Result<Decision
 /// As [`decide_steps`], from the tier `first` on, with trace, growth and label.
 ///
 /// # Errors
-/// As there; where a long period is to be decided in exact arithmetic, and where its entries have more than 2^58 binary digits.
+/// As there; where a long period is to be decided in exact arithmetic, and where its entries have more than
+/// 2^58 binary digits.
 pub fn decide_with_growth(
     oscillator: &Oscillator,
     first: Tier,
@@ -177,8 +181,8 @@ fn answer<S: Decidable>(
     Answer { verdict, decided_by, clocks: clocks.clone(), limits: *limits, runs, growth: OnceLock::new() }
 }
 
-/// By return maps in the least of these bits, then in more; with the bits that decide. `None` where no precision does: an entry may be
-/// zero, or a partial quotient too large.
+/// By return maps in the least of these bits, then in more; with the bits that decide. `None` where no
+/// precision does: an entry may be zero, or a partial quotient too large.
 fn by_returns<S: Decidable>(
     clocks: &TwoClocks<S>,
     precisions: RangeInclusive<u32>,
@@ -218,7 +222,8 @@ fn without_floquet<S: Decidable>(
     runs: &mut Runs,
 ) -> Result<Option<Verdict>> {
     let schedule = Schedule::two_clocks(clocks.ratio())?;
-    // Both clocks are beyond their own limits: over so many kicks entries exceed all doubles, and the cost is that of the next tier.
+    // Both clocks are beyond their own limits: over so many kicks entries exceed all doubles, and the cost is
+    // that of the next tier.
     let is_allowed = limits.allow(schedule.strikes() / 2, Tier::Filter).is_ok();
     let ends = if is_allowed { plain::run(clocks, &schedule) } else { None };
     runs.filtered = Some(ends);
@@ -250,13 +255,14 @@ fn by_refine<S: Decidable>(
     };
     let found = PRECISIONS.into_iter().find_map(&mut verdict);
     go_on()?;
-    // Kicks so strong that the bound has no room are decided by balls as a rule, and exact numbers are as long as they are strong.
+    // Kicks so strong that the bound has no room are decided by balls as a rule, and exact numbers are as
+    // long as they are strong.
     let found = found.or_else(|| if has_room.get() { None } else { verdict(PAST_THE_BOUND) });
     if found.is_some() || !S::surely_nonzero(clocks) {
         return Ok(found);
     }
-    // No entry is zero: some precision decides all four signs. Where 2^14 bits do not suffice, the periods are short in
-    // practice, and exact arithmetic is the shorter way.
+    // No entry is zero: some precision decides all four signs. Where 2^14 bits do not suffice, the periods
+    // are short in practice, and exact arithmetic is the shorter way.
     let found = (10..15).map(|log2| 1 << log2).find_map(verdict);
     go_on().map(|()| found)
 }

@@ -1,9 +1,10 @@
 //! One clock alone: where the other one's kicks are zero, the verdict is a closed form.
 //!
-//! n kicks of strength s a period, cos θ = 1 − s/2. Q is conjugate to a turn by nθ for 0 < s < 4, so stable; it is
-//! ±I where nθ is a multiple of π. For a rational s that is so at s = 1, 2 and 3 alone (Niven), and for no transcendental one; cyclotomic
-//! numbers are left to the exact tier. For s < 0 and s > 4, θ or θ − π is imaginary: Tr Q = 2 cosh or (−1)^n 2 cosh. At s = 4 Q is
-//! (−1)^n times a shear, and where neither clock kicks it is a drift.
+//! n kicks of strength s a period, cos θ = 1 − s/2. Q is conjugate to a turn by nθ for 0 < s < 4, so stable;
+//! it is ±I where nθ is a multiple of π. For a rational s that is so at s = 1, 2 and 3 alone (Niven), and for
+//! no transcendental one; cyclotomic numbers are left to the exact tier. For s < 0 and s > 4, θ or θ − π is
+//! imaginary: Tr Q = 2 cosh or (−1)^n 2 cosh. At s = 4 Q is (−1)^n times a shear, and where neither clock
+//! kicks it is a drift.
 
 use super::kind::{Side, Verdict};
 use crate::orbit::floquet::turn_signs;
@@ -13,7 +14,8 @@ use number::{Ball, Rational, Real, Sign};
 /// Bits of s.
 const BITS: u32 = 192;
 
-/// The verdict of a pair one of whose clocks does nothing; `None` where both do something, and where Q may be ±I at a cyclotomic s.
+/// The verdict of a pair one of whose clocks does nothing; `None` where both do something, and where Q may be
+/// ±I at a cyclotomic s.
 pub(super) fn verdict<S: Real>(clocks: &TwoClocks<S>) -> Option<Verdict> {
     let idle = S::is_zero;
     // A strength is per unit h1: the slow clock's own is λ2 h2² = (λ2 h1 h2)(p/q).

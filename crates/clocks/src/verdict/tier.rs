@@ -8,8 +8,8 @@ named! {
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
     #[derive(serde::Serialize, serde::Deserialize)]
     pub enum Tier {
-        /// Doubles in Floquet coordinates, min(p, q)/2 updates, with a proven bound; where there are none, kick by kick,
-        /// and a closed form where only one clock kicks.
+        /// Doubles in Floquet coordinates, min(p, q)/2 updates, with a proven bound; where there are none,
+        /// kick by kick, and a closed form where only one clock kicks.
         Filter = "filter",
         /// Kicks and drifts in multiple precision, p + q of them, with the same bound.
         Refine = "refine",
@@ -22,13 +22,14 @@ named! {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
     /// The most kicks that one tier may compose: min(p, q)/2 in the filter, (p + q)/2 in the refine tier; for
-    /// the exact tier its cost in kicks of the refine tier, [`Decidable::exact_cost`](super::Decidable::exact_cost).
+    /// the exact tier its cost in kicks of the refine tier,
+    /// [`Decidable::exact_cost`](super::Decidable::exact_cost).
     pub kicks: u64,
 }
 
 impl Default for Limits {
-    /// 10^8 kicks: about a second in the filter, minutes in the other tiers. That is p + q up to some 2·10^8 in
-    /// the refine tier, 2·10^5 in the exact one over the rationals, 900 over Q\[π\].
+    /// 10^8 kicks: about a second in the filter, minutes in the other tiers. That is p + q up to some 2·10^8
+    /// in the refine tier, 2·10^5 in the exact one over the rationals, 900 over Q\[π\].
     fn default() -> Self {
         Limits { kicks: 100_000_000 }
     }

@@ -1,5 +1,5 @@
-//! JSON as people write it: a byte order mark is skipped, a key that stands twice in one object is an error, and values are counted before they
-//! are built.
+//! JSON as people write it: a byte order mark is skipped, a key that stands twice in one object is an error,
+//! and values are counted before they are built.
 
 use std::cell::Cell;
 use std::collections::HashSet;
@@ -12,7 +12,8 @@ use number::error::room;
 /// A value of this type, from a text in which no object has a key twice.
 ///
 /// # Errors
-/// With line and column: no JSON, a key that stands twice, more values than memory has room for, anything else than the type wants.
+/// With line and column: no JSON, a key that stands twice, more values than memory has room for, anything
+/// else than the type wants.
 pub fn from_str<T: DeserializeOwned>(text: &str) -> serde_json::Result<T> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut reader = serde_json::Deserializer::from_str(text);
@@ -21,8 +22,8 @@ pub fn from_str<T: DeserializeOwned>(text: &str) -> serde_json::Result<T> {
     serde_json::from_str(text)
 }
 
-/// What a value takes where it is read, read again as a rational, and kept: measured, a list of numbers of two bytes each takes 340 times those,
-/// and a number counts as three, since its digits are kept.
+/// What a value takes where it is read, read again as a rational, and kept: measured, a list of numbers of
+/// two bytes each takes 340 times those, and a number counts as three, since its digits are kept.
 const BYTES_A_VALUE: u128 = 230;
 
 /// So many values are always built.

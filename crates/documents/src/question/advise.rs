@@ -20,9 +20,11 @@ use systems::Limits;
 question! {
     /// Which steps are safe, in the words of those who ask.
     args struct Advise {
-        /// A period or wavenumber of a force, as OH=10fs, 3700/cm, slow=water or fast=protein,h-bonds; the last ones are on the slower clocks
+        /// A period or wavenumber of a force, as OH=10fs, 3700/cm, slow=water or fast=protein,h-bonds; the
+        /// last ones are on the slower clocks
         ///
-        /// Where no time has a unit all are plain numbers, as --period bond=0.2 --steps 0.005,0.02 in Lennard-Jones units.
+        /// Where no time has a unit all are plain numbers, as --period bond=0.2 --steps 0.005,0.02 in
+        /// Lennard-Jones units.
         #[arg(long, value_name = "[NAME=]T")]
         period: Vec<String>,
         /// A bond: k of E = k x^2/2 or K of E = K x^2, two masses in amu, the heavy atom's hydrogens if not 1
@@ -46,7 +48,8 @@ question! {
         /// The friction of the thermostat, as 1/ps: does it mask what grows?
         #[arg(long, value_name = "RATE")]
         friction: Option<String>,
-        /// Bonds that do not vibrate: h-bonds, all-bonds, or modes, as OH,NH [default: as the engine's text says]
+        /// Bonds that do not vibrate: h-bonds, all-bonds, or modes, as OH,NH [default: as the engine's text
+        /// says]
         ///
         /// For Hessians h-bonds only, with the force of each potential in the file.
         #[arg(long, value_name = "WHICH")]
@@ -73,7 +76,8 @@ question! {
 }
 
 question! {
-    /// The input in exact numbers: modes on their clocks or a system, and schemes of steps; lengths of time in fs.
+    /// The input in exact numbers: modes on their clocks or a system, and schemes of steps; lengths of time
+    /// in fs.
     struct Advised {
         /// How far every period may be off, relatively.
         band: Rational,

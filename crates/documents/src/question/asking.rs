@@ -8,8 +8,8 @@ use clocks::tongue::Progress;
 use clocks::verdict::Limits;
 use number::error::Result;
 
-/// The fields of a `Question`, each declared once: a struct that is read from the `input` of a document and written there, and, as
-/// `args struct`, read from arguments too (`arg` as clap has it).
+/// The fields of a `Question`, each declared once: a struct that is read from the `input` of a document and
+/// written there, and, as `args struct`, read from arguments too (`arg` as clap has it).
 macro_rules! question {
     (
         $(#[$meta:meta])*
@@ -74,7 +74,8 @@ pub trait Fields: Sized {
     /// A field that is missing, unknown or not what it should be, by its name.
     fn read(input: &Map<String, Value>) -> Result<Self>;
 
-    /// The fields as documents echo them: exact texts, or what has parts of its own; what is not given is not there.
+    /// The fields as documents echo them: exact texts, or what has parts of its own; what is not given is not
+    /// there.
     fn input(&self) -> Vec<(&'static str, Value)>;
 }
 
@@ -130,8 +131,8 @@ pub trait Question: Fields {
 /// The cost allowed to an answer, who hears of long work, and what a question refers to.
 #[derive(Clone, Copy, Default)]
 pub struct Work<'a> {
-    /// The most kicks that one tier composes for one pair, and each question's own measure of what it costs; its own limit
-    /// unless given.
+    /// The most kicks that one tier composes for one pair, and each question's own measure of what it costs;
+    /// its own limit unless given.
     pub budget: Option<u64>,
     /// Who hears of long work; nobody unless given.
     pub watch: Option<&'a dyn Watch>,

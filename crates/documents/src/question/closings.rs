@@ -27,7 +27,8 @@ question! {
         /// The closed range of rho = lambda2/lambda1, positive.
         #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<(Rational, Rational)>)]
         rho_range: (Rational, Rational) = "1/10000..100",
-        /// Where p + q > 24: at how many rho, evenly spaced in ln rho, edges are computed to see where two cross.
+        /// Where p + q > 24: at how many rho, evenly spaced in ln rho, edges are computed to see where two
+        /// cross.
         #[arg(long, value_name = "N", value_parser = flag::<usize>)]
         samples: usize = "400",
         /// Significant digits of s and rho.
@@ -44,7 +45,8 @@ const CAPTION: &str =
 
 /// Searches cost p + q squared for each of the samples.
 const MOST_SUM: u64 = 200;
-/// Steps of a search unless a budget says otherwise: all ratios up to the largest sum at ten times the usual samples. And the seconds of one.
+/// Steps of a search unless a budget says otherwise: all ratios up to the largest sum at ten times the usual
+/// samples. And the seconds of one.
 const MOST_COST: u64 = 1_000_000_000_000;
 const STEP: f64 = 3e-7;
 const MOST_SAMPLES: usize = 1_000_000;

@@ -13,8 +13,8 @@ use number::error::{Error, Result};
 use number::{Laurent, Rational};
 
 question! {
-    /// The trace verdict against the tan criterion and against resonance: over a grid with both stiffnesses, or over all coprime
-    /// p + q up to a sum at s = 4 k/(samples + 1).
+    /// The trace verdict against the tan criterion and against resonance: over a grid with both stiffnesses,
+    /// or over all coprime p + q up to a sum at s = 4 k/(samples + 1).
     #[derive(Default)]
     struct Compare {
         /// How near q h2 must be to a multiple of T½ to count as resonant, in units of T½.

@@ -11,7 +11,8 @@ use number::error::{Error, Result};
 use number::{ExactSign, Ratio, Rational, rational};
 
 question! {
-    /// A, B, C, D of one ratio at rational s and ρ, exact and enclosed, in the time unit h1: A and D are numbers, B is in h1, C in 1/h1.
+    /// A, B, C, D of one ratio at rational s and ρ, exact and enclosed, in the time unit h1: A and D are
+    /// numbers, B is in h1, C in 1/h1.
     args struct Half {
         /// h2/h1 = p/q.
         #[arg(long, value_name = "P/Q", allow_hyphen_values = true, value_parser = flag::<Ratio>)]
@@ -25,7 +26,8 @@ question! {
     }
 }
 
-/// The largest p + q unless a budget says otherwise: every kick adds the digits of s, so the entries have thousands there.
+/// The largest p + q unless a budget says otherwise: every kick adds the digits of s, so the entries have
+/// thousands there.
 const MOST_KICKS: u64 = 2000;
 
 /// One of the four entries.

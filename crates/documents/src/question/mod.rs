@@ -1,7 +1,8 @@
-//! Questions, typed: arguments, scenes, Python's keywords and the `input` of a document all become the same ones.
+//! Questions, typed: arguments, scenes, Python's keywords and the `input` of a document all become the same
+//! ones.
 //!
-//! A question cannot be wrong in its types; it is written as the `input` of its document, and read from there again.
-//! [`Question::answer`] computes, [`Question::document`] shows what came out.
+//! A question cannot be wrong in its types; it is written as the `input` of its document, and read from there
+//! again. [`Question::answer`] computes, [`Question::document`] shows what came out.
 //!
 //! ```
 //! use kickdrift_documents::question::{Fields, Proposition, Question, Work};
@@ -13,8 +14,9 @@
 //! assert_eq!(Proposition::read(input.as_object().unwrap()).unwrap(), question);
 //! ```
 //!
-//! A new question is a file of its own here, with its fields declared once by `question!`, and a line in each list of those who ask:
-//! [`ask`] for Python and the page, the program's commands, the documents that `verify` reads.
+//! A new question is a file of its own here, with its fields declared once by `question!`, and a line in each
+//! list of those who ask: [`ask`] for Python and the page, the program's commands, the documents that
+//! `verify` reads.
 
 mod advise;
 mod advised;
@@ -68,7 +70,8 @@ use serde_json::{Map as Input, Value};
 use crate::report::document::Document;
 use number::error::{Error, Result};
 
-/// The document that answers the question of this name, NAME in `kickdrift/NAME/1`, whose fields are those of the document's `input`.
+/// The document that answers the question of this name, NAME in `kickdrift/NAME/1`, whose fields are those of
+/// the document's `input`.
 ///
 /// ```
 /// use kickdrift_documents::question::{ask, Work};

@@ -23,7 +23,8 @@ question! {
     }
 }
 
-/// The products of coefficients that polynomials cost at most unless a budget says otherwise: some ten seconds.
+/// The products of coefficients that polynomials cost at most unless a budget says otherwise: some ten
+/// seconds.
 const MOST_PRODUCTS: u64 = 150_000;
 
 /// Polynomials in s whose coefficients are polynomials in rho.
@@ -81,8 +82,9 @@ fn polynomials(ratio: Ratio) -> Polynomials {
     [a, b, c, d, ("trace", trace(&half, ratio.q()))]
 }
 
-/// Tr Q = 4 A D − 2, in integers: drifts are multiples of h1/(2q), kicks of s/2 and s ρ/(2q), so a coefficient of s^i in A
-/// and D becomes one by (2q)^(2i). (In rationals each of the (p q/4)² products would cost a greatest common divisor.)
+/// Tr Q = 4 A D − 2, in integers: drifts are multiples of h1/(2q), kicks of s/2 and s ρ/(2q), so a
+/// coefficient of s^i in A and D becomes one by (2q)^(2i). (In rationals each of the (p q/4)² products would
+/// cost a greatest common divisor.)
 fn trace(half: &HalfPeriod<Bivariate>, q: u64) -> Bivariate {
     let unit = (BigInt::from(q) * 2u8).pow(2);
     let integers = |f: &Bivariate| -> Vec<Vec<BigInt>> {

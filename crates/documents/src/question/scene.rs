@@ -26,7 +26,8 @@ use number::rational::ratio;
 use number::{Laurent, Ratio, Rational};
 
 question! {
-    /// The quantities of a scene file and the products that it wants; only the fields that these need have to be there.
+    /// The quantities of a scene file and the products that it wants; only the fields that these need have to
+    /// be there.
     ///
     /// ```
     /// use kickdrift_documents::question::{Product, Scene};
@@ -110,8 +111,8 @@ impl Scene {
     /// Reads a scene from the text of its file.
     ///
     /// # Errors
-    /// JSON that is not a scene, an unknown field or product, a quantity that does not parse or is out of range, a product
-    /// whose fields are missing.
+    /// JSON that is not a scene, an unknown field or product, a quantity that does not parse or is out of
+    /// range, a product whose fields are missing.
     pub fn from_json(text: &str) -> Result<Scene> {
         if text.len() > LONGEST_SCENE {
             let remedy = "a scene has at most 1 MiB; is this the right file?";

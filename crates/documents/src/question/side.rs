@@ -13,8 +13,8 @@ use number::{ExactSign, Laurent, Rational, Sign};
 use words::{Bounded, Integrator};
 
 question! {
-    /// The verdicts of several integrators at all multiples of two spacings: of the step h and of ρ = Λ2/Λ1, or of the steps h1 and h2 of
-    /// each force, h² Λ1 being h1² Λ1 and h² Λ2 being h2² Λ2.
+    /// The verdicts of several integrators at all multiples of two spacings: of the step h and of ρ = Λ2/Λ1,
+    /// or of the steps h1 and h2 of each force, h² Λ1 being h1² Λ1 and h² Λ2 being h2² Λ2.
     struct CompareMethods {
         /// The integrators, by name or as words, with commas between them.
         methods: String,
@@ -125,7 +125,8 @@ impl CompareMethods {
     /// The steps, and the ratios or the steps of the slow force.
     ///
     /// # Errors
-    /// A spacing that is not positive, a range without a positive multiple; neither or both of ratios and slow steps.
+    /// A spacing that is not positive, a range without a positive multiple; neither or both of ratios and
+    /// slow steps.
     pub fn grid(&self) -> Result<[Vec<Rational>; 2]> {
         let (range, step, by_step) = self.second()?;
         Ok([

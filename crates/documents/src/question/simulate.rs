@@ -15,8 +15,8 @@ use systems::avi::{Ends, Force, Run, Simulation, growth_rate, irreversibility, s
 use systems::{Limits, Route, middle};
 
 question! {
-    /// A run from rest at a displacement: the bonds themselves about the integrator's own orbit, or the equilibrium where that is one,
-    /// linear systems about 0.
+    /// A run from rest at a displacement: the bonds themselves about the integrator's own orbit, or the
+    /// equilibrium where that is one, linear systems about 0.
     struct Simulate {
         /// The name of the system's file.
         file: String,
@@ -77,7 +77,8 @@ notation! {
 /// The most periods: the series is kept in memory, and is written as some 50 MB.
 const MOST_PERIODS: u32 = 1_000_000;
 
-/// The size of the deviations whose growth is measured: their squares are lost in it, and it is far above roundoff.
+/// The size of the deviations whose growth is measured: their squares are lost in it, and it is far above
+/// roundoff.
 const DEVIATION: f64 = 1e-6;
 
 /// A run and the system that was run.
@@ -164,7 +165,8 @@ impl Simulate {
             return Err(Error::input("displace", &self.displace.text, remedy));
         }
         let series = series(&mut simulation, centre, self.periods as usize, (period, self.form));
-        // The symmetric form is at rest at t = 0 on its own orbit; the multipliers are those of the staggered one.
+        // The symmetric form is at rest at t = 0 on its own orbit; the multipliers are those of the staggered
+        // one.
         let form = if displacement.is_some() { Ends::Symmetric } else { self.form };
         let measured = growth_rate(&mut make()?, centre, DEVIATION, (self.periods, form));
         let irreversibility = irreversibility(&mut make()?, period);

@@ -11,7 +11,8 @@ use number::error::{Error, Result};
 use number::{Ratio, Rational};
 
 question! {
-    /// All tongues of all coprime p + q up to a sum that begin below s = 4: counts, widths, the thinnest ones listed.
+    /// All tongues of all coprime p + q up to a sum that begin below s = 4: counts, widths, the thinnest ones
+    /// listed.
     struct Survey {
         /// The largest p + q.
         max_sum: u64,

@@ -19,7 +19,8 @@ use systems::vary::Intervals;
 use systems::{Analysis, Jacobians, Limits, NoGradient, OwnOrbit, Route, SchemeSummary};
 
 question! {
-    /// The verdict on a system; the verdicts over one of its numbers, or two; or the unstable intervals of one.
+    /// The verdict on a system; the verdicts over one of its numbers, or two; or the unstable intervals of
+    /// one.
     struct System {
         /// The name of its file.
         file: String,
@@ -179,7 +180,8 @@ impl System {
         Ok(SystemMap { names: axes.names(), xs, ys, points, time_unit: scene.time_unit().map(String::from) })
     }
 
-    /// The products that a map costs, roughly, from those of some points spread over it: to ask each takes as long as many a verdict.
+    /// The products that a map costs, roughly, from those of some points spread over it: to ask each takes as
+    /// long as many a verdict.
     fn cost_of_map(axes: &Scan, xs: &[Rational], ys: &[Rational]) -> Result<f64> {
         let points = xs.len() * ys.len();
         let asked = points.min(ASKED);
@@ -283,8 +285,8 @@ impl System {
 }
 
 impl System {
-    /// The multipliers and the shapes of the growing modes; a map in these colours; growth over the intervals. In the system's unit of time,
-    /// with its title and what was varied below.
+    /// The multipliers and the shapes of the growing modes; a map in these colours; growth over the
+    /// intervals. In the system's unit of time, with its title and what was varied below.
     ///
     /// # Errors
     /// As [`SystemScene::growth_rates`].

@@ -244,7 +244,8 @@ impl Decided {
         format!("  resonance    not told: directions alone do not give the half turns a period; {remedy}")
     }
 
-    /// The verdict at a much simpler ratio, where one lies within 10^-9: steps that are doubles stand for it, as a rule.
+    /// The verdict at a much simpler ratio, where one lies within 10^-9: steps that are doubles stand for it,
+    /// as a rule.
     fn simpler(&self) -> Option<String> {
         let ratio = self.oscillator.ratio();
         let off = ratio / Rational::from_integer(1_000_000_000.into());

@@ -123,7 +123,8 @@ mod drawn {
         pixels
     }
 
-    /// The sectors in the plane of steps: a pixel is filled where half of it is certified, and grey elsewhere.
+    /// The sectors in the plane of steps: a pixel is filled where half of it is certified, and grey
+    /// elsewhere.
     pub fn figure(bands: &Bands) -> Figure {
         let ends = [0, 1].map(|step| bands.window.range(step));
         let range = |step: usize| (ends[step].0.to_f64(), ends[step].1.to_f64());

@@ -1,5 +1,5 @@
-//! A verdict as a Coq proof: nine lines that state it and prove it by computation from the theorems in proofs/; of two clocks, or of
-//! a word at one step; and a tongue's edges.
+//! A verdict as a Coq proof: nine lines that state it and prove it by computation from the theorems in
+//! proofs/; of two clocks, or of a word at one step; and a tongue's edges.
 //!
 //! The file's theorem is `kickdrift_verdict`; what it means is theorem `certificate` in proofs/. The template
 //! is described in proofs/README.md; `proofs/tools/certificate.sh FILE.v` checks a file against it.
@@ -30,12 +30,12 @@ const LONGEST_EXACT: u64 = 500;
 
 /// The text of the certificate; `file_name` is the name it will have, without folders.
 ///
-/// Input with π is proven by intervals, for verdicts that hold around it, elliptic or hyperbolic; so are these of rational input where
-/// exact numbers, which gain digits with every kick, would be long.
+/// Input with π is proven by intervals, for verdicts that hold around it, elliptic or hyperbolic; so are
+/// these of rational input where exact numbers, which gain digits with every kick, would be long.
 ///
 /// # Errors
-/// A quantity that is no rational times a power of π, an edge where π is, or a file name that Coq does not take for a
-/// module's.
+/// A quantity that is no rational times a power of π, an edge where π is, or a file name that Coq does not
+/// take for a module's.
 pub fn coq(oscillator: &Oscillator, verdict: Verdict, file_name: &str) -> Result<String> {
     check_name(file_name)?;
     let clocks = oscillator.clocks()?;
@@ -97,7 +97,8 @@ fn written(numbers: &[(Rational, i32)], by_intervals: bool, sign: char) -> Strin
     numbers.iter().map(one).collect::<Vec<_>>().join(" ")
 }
 
-/// A tongue's edges as Coq proofs: each lies between two doubles, of which the entry that vanishes there has opposite signs.
+/// A tongue's edges as Coq proofs: each lies between two doubles, of which the entry that vanishes there has
+/// opposite signs.
 ///
 /// # Errors
 /// A file name that Coq does not take for a module's.
@@ -131,14 +132,14 @@ pub fn coq_of_tongue(ratio: Ratio, rho: &Rational, gap: &Gap, file_name: &str) -
     Ok(text)
 }
 
-/// The verdict of a word at one step as a Coq proof (theorem `word_certificate` in proofs/): its letters, repeated ones written out,
-/// multiplied in exact fractions.
+/// The verdict of a word at one step as a Coq proof (theorem `word_certificate` in proofs/): its letters,
+/// repeated ones written out, multiplied in exact fractions.
 ///
 /// `found` is [`at`](words::at) at h² Λ1; `lambda2` is 0 for a word that names no second force.
 ///
 /// # Errors
-/// A word with irrational coefficients, exact flows, filters or friction; a quantity that is no fraction; a file name that Coq does not
-/// take for a module's.
+/// A word with irrational coefficients, exact flows, filters or friction; a quantity that is no fraction; a
+/// file name that Coq does not take for a module's.
 pub fn coq_of_word(
     word: &Word,
     found: &At,

@@ -2,8 +2,8 @@
 //!
 //! `2.3150964146(1)` means: between 2.3150964145 and 2.3150964147. The digits in parentheses count units of
 //! the last digit, as physicists write uncertainties, but here they bound the error instead of estimating it:
-//! the shown interval always contains the given one, which exact rational arithmetic makes sure of. Ends that are asked
-//! for in many digits are written both, rounded outward.
+//! the shown interval always contains the given one, which exact rational arithmetic makes sure of. Ends that
+//! are asked for in many digits are written both, rounded outward.
 
 use std::fmt;
 use std::ops::Range;
@@ -17,7 +17,8 @@ use number::{Rational, rational};
 const MOST_DIGITS: i64 = 17;
 /// The largest uncertainty shown: a single digit, lest a last digit be shown that means nothing.
 const LARGEST_UNCERTAINTY: u32 = 9;
-/// Enclosures from 10^-5 up to below 10^7 are written without an exponent, ends in many digits from 10^-7 up to below 10^21.
+/// Enclosures from 10^-5 up to below 10^7 are written without an exponent, ends in many digits from 10^-7 up
+/// to below 10^21.
 const PLAIN: Range<i64> = -5..7;
 const PLAIN_ENDS: Range<i64> = -7..21;
 
@@ -63,7 +64,8 @@ pub fn enclosure(lo: f64, hi: f64) -> Shown {
     first_that_fits(&lo, &hi, MOST_DIGITS)
 }
 
-/// Whether the difference of two numbers is 0 but for their rounding, the larger of them being enclosed in `beside`.
+/// Whether the difference of two numbers is 0 but for their rounding, the larger of them being enclosed in
+/// `beside`.
 pub(crate) fn is_nothing((lo, hi): (f64, f64), beside: Option<(f64, f64)>) -> bool {
     lo <= 0.0 && 0.0 <= hi && hi - lo <= 1e-12 * beside.map_or(0.0, |pair| pair.1)
 }
@@ -76,7 +78,8 @@ pub fn shortened(lo: f64, hi: f64, digits: u32) -> Shown {
     }
 }
 
-/// "Between `lo` and `hi`" in so many significant digits, fewer where they are not certain: what is written contains [lo, hi].
+/// "Between `lo` and `hi`" in so many significant digits, fewer where they are not certain: what is written
+/// contains [lo, hi].
 ///
 /// ```
 /// use kickdrift_documents::number::rational::ratio;
@@ -142,7 +145,8 @@ impl fmt::Display for Shown {
     }
 }
 
-/// digits · 10^-places as a mantissa and the power of ten that is to stand behind it, where it is beyond `plain`.
+/// digits · 10^-places as a mantissa and the power of ten that is to stand behind it, where it is beyond
+/// `plain`.
 fn placed(digits: &str, places: i64, plain: Range<i64>) -> (String, Option<i64>) {
     let leading = digits.len() as i64 - 1 - places;
     let is_plain = places >= 0 && plain.contains(&leading);
@@ -153,7 +157,8 @@ fn placed(digits: &str, places: i64, plain: Range<i64>) -> (String, Option<i64>)
     (mantissa, (!is_plain).then_some(leading))
 }
 
-/// A text whose numbers with an uncertainty, as 1.2345(6), are in so many significant digits at most; all else stays.
+/// A text whose numbers with an uncertainty, as 1.2345(6), are in so many significant digits at most; all
+/// else stays.
 ///
 /// ```
 /// use kickdrift_documents::report::decimal::in_digits;
@@ -192,8 +197,8 @@ fn uncertain(number: &str, units: &str, digits: u32) -> Option<String> {
     (lo.is_positive() && &hi - &lo <= lo).then(|| concise(&lo, &hi, digits).to_string())
 }
 
-/// Both ends with so many significant digits, the lower rounded down and the upper up: what is written contains
-/// [lo, hi], 0 < lo ≤ hi.
+/// Both ends with so many significant digits, the lower rounded down and the upper up: what is written
+/// contains [lo, hi], 0 < lo ≤ hi.
 ///
 /// ```
 /// use kickdrift_documents::number::rational::ratio;
@@ -237,7 +242,8 @@ fn written(mut whole: BigInt, mut places: i64) -> String {
     }
 }
 
-/// A double of so many significant digits, the nearest in decimal: for people, who need no more of a rounded number.
+/// A double of so many significant digits, the nearest in decimal: for people, who need no more of a rounded
+/// number.
 pub fn rounded(x: f64, digits: usize) -> f64 {
     format!("{x:.*e}", digits.saturating_sub(1)).parse().unwrap_or(x)
 }

@@ -1,8 +1,8 @@
 //! A result on its way out: one document, four formats.
 //!
-//! JSON carries everything: the schema's name, the program's version and command, the input as exact strings, the summary, the rows. CSV is the
-//! rows alone, LaTeX the rows as a table for a paper, text the summary and (where there are few) the rows for
-//! a person at a terminal.
+//! JSON carries everything: the schema's name, the program's version and command, the input as exact strings,
+//! the summary, the rows. CSV is the rows alone, LaTeX the rows as a table for a paper, text the summary and
+//! (where there are few) the rows for a person at a terminal.
 
 use serde_json::{Map, Value, json};
 

@@ -4,9 +4,9 @@
 //! are flushed to the disk, and only then take the final name in one step. Whoever looks at that name sees
 //! the old content or the new one, never a half.
 //!
-//! A temporary file is called `.NAME.PID-N.part` and is locked as long as it is open. What a process leaves behind that
-//! is ended by a signal it can catch, it removes by itself, see [`abandon`]; what another one left is known by its
-//! missing lock, and the next process that writes to the directory removes it.
+//! A temporary file is called `.NAME.PID-N.part` and is locked as long as it is open. What a process leaves
+//! behind that is ended by a signal it can catch, it removes by itself, see [`abandon`]; what another one
+//! left is known by its missing lock, and the next process that writes to the directory removes it.
 
 use std::cell::RefCell;
 use std::ffi::{OsStr, OsString};
@@ -21,8 +21,8 @@ use number::error::{Error, Result};
 /// Writes `bytes` to `path`, or to standard output where there is no path.
 ///
 /// # Errors
-/// [`Kind::Io`](number::error::Kind::Io) naming the path and a remedy. A closed pipe on standard output is not an
-/// error: the reader has had what it wanted.
+/// [`Kind::Io`](number::error::Kind::Io) naming the path and a remedy. A closed pipe on standard output is
+/// not an error: the reader has had what it wanted.
 pub fn write_output(path: Option<&Path>, bytes: &[u8]) -> Result<()> {
     write_with(path, |sink| sink.write_all(bytes).map_err(Error::stream))
 }
@@ -32,8 +32,8 @@ pub fn write_output(path: Option<&Path>, bytes: &[u8]) -> Result<()> {
 /// `content` writes to a buffered sink; when it fails, no file appears.
 ///
 /// # Errors
-/// Those of the content as they are, and those of the sink, which the content hands on by [`Error::stream`], as
-/// [`write_output`].
+/// Those of the content as they are, and those of the sink, which the content hands on by [`Error::stream`],
+/// as [`write_output`].
 pub fn write_with(path: Option<&Path>, content: impl FnOnce(&mut dyn Write) -> Result<()>) -> Result<()> {
     if is_captured() {
         let mut bytes = Vec::new();
@@ -57,8 +57,8 @@ pub fn is_captured() -> bool {
     CAPTURED.with_borrow(Option::is_some)
 }
 
-/// Runs `work` and returns what [`write_output`] and [`write_with`] would have written on this thread, wherever to;
-/// no file and no stream is touched by them.
+/// Runs `work` and returns what [`write_output`] and [`write_with`] would have written on this thread,
+/// wherever to; no file and no stream is touched by them.
 ///
 /// # Errors
 /// Those of the work.
@@ -136,7 +136,8 @@ fn to_path(path: &Path, content: impl FnOnce(&mut dyn Write) -> Result<()>) -> R
     finish().map_err(Error::stream)
 }
 
-/// Who may read and write a file that replaces an old one: those who could, but nobody runs what is new as the owner or the group of what was old.
+/// Who may read and write a file that replaces an old one: those who could, but nobody runs what is new as
+/// the owner or the group of what was old.
 fn permissions(old: &fs::Metadata) -> fs::Permissions {
     #[cfg(unix)]
     {
@@ -169,7 +170,8 @@ fn replaceable(path: &Path) -> Result<()> {
 /// That a file can be made where there is none, and else that it may be replaced: asked before the work.
 ///
 /// # Errors
-/// [`Kind::Io`](number::error::Kind::Io) naming a file that is read-only, a directory, or a path in no folder.
+/// [`Kind::Io`](number::error::Kind::Io) naming a file that is read-only, a directory, or a path in no
+/// folder.
 pub fn writable(path: &Path) -> Result<()> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
     let cause = if is_captured() {
@@ -191,8 +193,8 @@ fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Removes the files and folders that are not finished, then calls `end`, which is to end the process: meanwhile no file
-/// begins and none takes its name. For whoever has caught a signal.
+/// Removes the files and folders that are not finished, then calls `end`, which is to end the process:
+/// meanwhile no file begins and none takes its name. For whoever has caught a signal.
 pub fn abandon(end: impl FnOnce()) {
     let unfinished = unfinished();
     for path in unfinished.iter().rev() {
@@ -202,8 +204,8 @@ pub fn abandon(end: impl FnOnce()) {
     end();
 }
 
-/// A file that its owner alone may read, among temporary ones, with an end such as `.html`. It goes when a signal ends this process; what is in it
-/// is worth nothing after that.
+/// A file that its owner alone may read, among temporary ones, with an end such as `.html`. It goes when a
+/// signal ends this process; what is in it is worth nothing after that.
 ///
 /// # Errors
 /// Those of the file.

@@ -48,7 +48,8 @@ pub fn lines(own: &Friction) -> Vec<String> {
 /// A range that ends so soon is told as one friction.
 const NARROW: f64 = 1.01;
 
-/// "a friction above 1.5 masks", or "frictions of 1.5 to 2 mask", in another unit: so many of the old ones, and its name.
+/// "a friction above 1.5 masks", or "frictions of 1.5 to 2 mask", in another unit: so many of the old ones,
+/// and its name.
 pub(crate) fn masking(own: &Masked, unit: f64, name: &str) -> String {
     if own.stays() {
         let above = decimal::enclosure(unit * own.grows, unit * own.least());

@@ -1,8 +1,8 @@
 //! Results on their way out: rows and documents, and what is drawn of them.
 //!
-//! A [`document::Document`] holds a result and renders every form. Beneath it, and hidden from these pages: a table of typed cells, a
-//! file for each form (CSV, LaTeX, text, NumPy's arrays), the files themselves, which appear whole or not at all, and the charts, which
-//! the crate `plot` draws.
+//! A [`document::Document`] holds a result and renders every form. Beneath it, and hidden from these pages: a
+//! table of typed cells, a file for each form (CSV, LaTeX, text, NumPy's arrays), the files themselves, which
+//! appear whole or not at all, and the charts, which the crate `plot` draws.
 
 pub mod advise;
 pub mod bands;

@@ -1,5 +1,5 @@
-//! NumPy's `.npz`: arrays that grow piece by piece, each in a temporary file beside the output, then joined into a
-//! zip archive and deflated there. Memory does not grow with their size.
+//! NumPy's `.npz`: arrays that grow piece by piece, each in a temporary file beside the output, then joined
+//! into a zip archive and deflated there. Memory does not grow with their size.
 //!
 //! An array is a `.npy` file of format 1.0: the magic bytes, a header that is a Python dictionary padded to a
 //! multiple of 64 bytes, and the elements in C order, little-endian.

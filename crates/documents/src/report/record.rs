@@ -1,5 +1,5 @@
-//! Records: the named, typed cells of one thing, from which its JSON entries, its row of CSV and LaTeX and its line of
-//! text all come.
+//! Records: the named, typed cells of one thing, from which its JSON entries, its row of CSV and LaTeX and
+//! its line of text all come.
 
 use serde_json::{Map, Value};
 
@@ -9,7 +9,8 @@ use super::table::{Cell, Column, Table};
 /// How the cell of one column is found in a `T`.
 type Find<'a, T> = Box<dyn Fn(&T) -> Cell + Send + Sync + 'a>;
 
-/// One cell: its column, where it is a column of tables, its path among the entries of JSON, where it is one of them, and the way to it.
+/// One cell: its column, where it is a column of tables, its path among the entries of JSON, where it is one
+/// of them, and the way to it.
 struct Field<'a, T> {
     column: Option<Column>,
     path: Option<String>,
@@ -18,8 +19,8 @@ struct Field<'a, T> {
 
 /// The cells that are written of a `T`, each with the way to it.
 ///
-/// A path such as `s.decimal.lo` leads into objects of JSON. An object without any value is null, and an enclosure is an
-/// object, `{"lo": , "hi": }`, that may hold more.
+/// A path such as `s.decimal.lo` leads into objects of JSON. An object without any value is null, and an
+/// enclosure is an object, `{"lo": , "hi": }`, that may hold more.
 ///
 /// ```
 /// use kickdrift_documents::report::record::Record;

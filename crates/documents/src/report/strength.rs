@@ -1,7 +1,9 @@
-//! How strong the families are: measured widths of tongues over the first-order law, against a and against |S_a|.
+//! How strong the families are: measured widths of tongues over the first-order law, against a and
+//! against |S_a|.
 //!
 //! To first order a tongue is 2 s ρ |S| wide in s, and for long periods |S| is |S_a(θ)| (see
-//! [`clocks::resonance::strength`]). So near one angle θ all tongues of a family whose q is large lie on one value.
+//! [`clocks::resonance::strength`]). So near one angle θ all tongues of a family whose q is large lie on one
+//! value.
 
 use plot::palette::{GREY, Gradient, INK, family};
 use plot::{Axis, ColourBar, Figure, Layer, Panel, Place, Shape, Stroke};
@@ -44,12 +46,12 @@ pub fn figure(share: f64, title: &str, measured: &[Measured]) -> Figure {
         .with(panel.with(crosses).bar(bar).legend(Place::Above))
 }
 
-/// The smallest strength drawn, relative to the largest: beyond this the law has the corrections of higher orders alone to
-/// compare with.
+/// The smallest strength drawn, relative to the largest: beyond this the law has the corrections of higher
+/// orders alone to compare with.
 const DECADES: f64 = 1e-5;
 
-/// Each tongue's width over 2 s ρ against |S_a(θ)| of its own family and angle: on the diagonal where the first-order law for
-/// long periods holds. Families differ in shape as well as in hue.
+/// Each tongue's width over 2 s ρ against |S_a(θ)| of its own family and angle: on the diagonal where the
+/// first-order law for long periods holds. Families differ in shape as well as in hue.
 pub fn widths(title: &str, measured: &[Measured]) -> Figure {
     let places: Vec<(i64, [f64; 2])> =
         measured.iter().map(|m| (m.a, [strength(m.a, m.theta).abs(), m.strength])).collect();

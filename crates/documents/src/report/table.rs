@@ -298,7 +298,8 @@ impl Table {
     }
 }
 
-/// Some of the columns, by their keys or by the names that CSV has: `KEY_lo` is the lower end of an enclosure alone.
+/// Some of the columns, by their keys or by the names that CSV has: `KEY_lo` is the lower end of an enclosure
+/// alone.
 #[derive(Clone, Debug)]
 pub struct Choice {
     picks: Vec<(usize, Part)>,

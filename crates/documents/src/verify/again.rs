@@ -1,7 +1,8 @@
 //! A document held, value by value, against the same document computed again from its input.
 //!
-//! One input gives one document, digit by digit, so whatever was changed afterwards differs. Values that the input
-//! does not determine are [`Left`] out, and only those: what a check names as not rechecked follows from this comparison.
+//! One input gives one document, digit by digit, so whatever was changed afterwards differs. Values that the
+//! input does not determine are [`Left`] out, and only those: what a check names as not rechecked follows
+//! from this comparison.
 
 use serde_json::{Map, Value};
 
@@ -50,8 +51,8 @@ pub struct Compared {
     pub left: Vec<String>,
 }
 
-/// Compares a document with the one computed again; `table` is the key of its rows. Of its input only the fields that `again` echoes
-/// are compared.
+/// Compares a document with the one computed again; `table` is the key of its rows. Of its input only the
+/// fields that `again` echoes are compared.
 pub fn compare(written: &Map<String, Value>, again: Value, table: &str, left: &[Left]) -> Compared {
     let (mut written, mut again) = (Value::Object(written.clone()), again);
     let version = ("kickdrift.version", "which version wrote it is no claim");

@@ -1,6 +1,6 @@
-//! Closings: at both ends of the range of ρ the edges lie in opposite orders, by exact signs; where a closing is
-//! rational, both entries vanish there. How many there are is counted for the mirror ratio q/p, whose tongues close at
-//! 1/ρ: by another resultant.
+//! Closings: at both ends of the range of ρ the edges lie in opposite orders, by exact signs; where a closing
+//! is rational, both entries vanish there. How many there are is counted for the mirror ratio q/p, whose
+//! tongues close at 1/ρ: by another resultant.
 
 use serde_json::Value;
 
@@ -89,8 +89,8 @@ impl Claim {
         Ok(())
     }
 
-    /// As many closings as the resultants have zeros, where the ratio is complete; else as many, but for pairs, as the
-    /// edges' orders at both ends of the range of ρ require.
+    /// As many closings as the resultants have zeros, where the ratio is complete; else as many, but for
+    /// pairs, as the edges' orders at both ends of the range of ρ require.
     fn counted(
         &self,
         ratio: Ratio,
@@ -200,8 +200,9 @@ impl Closing {
             }
             _ => return Err(Fault::Wrong("s and rho are rational together".into())),
         }
-        // A hair to either side of the box, in units of its own size: there the edges have parted. Zeros move by no larger
-        // part of themselves than rho does (masses and eigenvalues), and rho by three of its sizes at most.
+        // A hair to either side of the box, in units of its own size: there the edges have parted. Zeros move
+        // by no larger part of themselves than rho does (masses and eigenvalues), and rho by three of its
+        // sizes at most.
         let margin = rho.size();
         let reach = s.size() + &s.hi * fraction(4, 1) * &margin / &rho.lo;
         let around = (&s.lo - &reach, &s.hi + &reach);

@@ -1,4 +1,5 @@
-//! A comparison: every pair by the filter, every offender by the full period in exact arithmetic, and θ enclosed.
+//! A comparison: every pair by the filter, every offender by the full period in exact arithmetic, and θ
+//! enclosed.
 
 use super::again::{Recheck, asked};
 use super::context::{Checked, Context, Fault, Outcome, Place, holds, same};

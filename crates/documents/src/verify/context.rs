@@ -13,7 +13,8 @@ use number::parallel::try_map;
 /// The remedy for a document that cannot be read.
 pub const REMEDY: &str = "whole documents, as kickdrift wrote them, can be rechecked";
 
-/// A route's room at the end of a region, relative: the smallest eigenvalue of the action there is some 10^-6 of its largest.
+/// A route's room at the end of a region, relative: the smallest eigenvalue of the action there is some 10^-6
+/// of its largest.
 pub const ROOM: f64 = 1e-6;
 
 /// How much is rechecked, and what one row may cost.

@@ -1,5 +1,5 @@
-//! Curves: θ of each h1 by an arctangent, and h2 from the symmetric form 1/T½ = a/h1 + b/h2; which pieces lie in the window, from
-//! the heights of each branch at its ends, in doubles along θ.
+//! Curves: θ of each h1 by an arctangent, and h2 from the symmetric form 1/T½ = a/h1 + b/h2; which pieces lie
+//! in the window, from the heights of each branch at its ends, in doubles along θ.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -38,7 +38,8 @@ rows! {
 /// The most curves and points that a document can hold.
 const MOST: i128 = 20_000_000;
 
-/// Heights in doubles are right to some units in the last place; what is this near the border may lie on either side.
+/// Heights in doubles are right to some units in the last place; what is this near the border may lie on
+/// either side.
 const NEAR: f64 = 1e-9;
 
 /// Below such a spacing of θ/π points fall on the same doubles of h1.
@@ -112,7 +113,8 @@ impl Window {
         }
     }
 
-    /// How many pieces of a curve lie in the window; `None` where doubles leave it open, a height being near the border.
+    /// How many pieces of a curve lie in the window; `None` where doubles leave it open, a height being near
+    /// the border.
     fn expected(&self, a: i64, b: i64) -> Option<usize> {
         let ((from, to), (low, high)) = (self.share, self.h2);
         // h2 √L1/2 along x = θ/π, and where it turns: (π/2) cos(πx/2) (x − a) = sin(πx/2).
@@ -152,7 +154,8 @@ impl Window {
         }
     }
 
-    /// There are as many pieces as there should be, each from one border to the next, its points inside and evenly spaced in θ.
+    /// There are as many pieces as there should be, each from one border to the next, its points inside and
+    /// evenly spaced in θ.
     fn pieces(&self, curve: &Curve) -> Checked {
         let pieces: Vec<&[Point]> = curve.points.chunk_by(|p, q| p.piece == q.piece).collect();
         let expected = self.expected(curve.a, curve.b);

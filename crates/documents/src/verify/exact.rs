@@ -140,7 +140,8 @@ pub fn full_period<S: ExactSign>(clocks: &TwoClocks<S>) -> FullPeriod<S> {
     FullPeriod { verdict: verdict.expect("one of seven"), trace }
 }
 
-/// Kicks up to which the full period is composed exactly: numbers grow with every kick, over Q\[π\] much faster.
+/// Kicks up to which the full period is composed exactly: numbers grow with every kick, over Q\[π\] much
+/// faster.
 pub fn affordable(clocks: &TwoClocks<Laurent>) -> bool {
     let kicks = clocks.p().saturating_add(clocks.q());
     kicks <= if clocks.as_rational().is_some() { 1000 } else { 60 }

@@ -1,9 +1,9 @@
-//! Documents rechecked: computed again from their inputs, then held against the mathematics by another route than the one
-//! that made them.
+//! Documents rechecked: computed again from their inputs, then held against the mathematics by another route
+//! than the one that made them.
 //!
-//! One input gives one document, so whatever was changed afterwards differs from the document computed again: every
-//! value is compared, and those that the input does not determine are named. What would be wrong from the start is looked
-//! for by the other route.
+//! One input gives one document, so whatever was changed afterwards differs from the document computed again:
+//! every value is compared, and those that the input does not determine are named. What would be wrong from
+//! the start is looked for by the other route.
 //!
 //! | document | made by | the other route |
 //! |---|---|---|
@@ -38,8 +38,9 @@
 //! assert_eq!(outcome.failures[0].row, 1);
 //! ```
 
-/// Rows of documents: what the other route needs of them. A field `T | null` must be there and may be null, one of type
-/// `Option` may be missing. An input knows all of its fields. A row is named by the fields in brackets.
+/// Rows of documents: what the other route needs of them. A field `T | null` must be there and may be null,
+/// one of type `Option` may be missing. An input knows all of its fields. A row is named by the fields in
+/// brackets.
 macro_rules! rows {
     ($(
         $(#[$row:meta])*
@@ -197,8 +198,8 @@ impl Claim {
     /// Reads a document: JSON into rows.
     ///
     /// # Errors
-    /// A text that is no JSON, a schema that cannot be rechecked, a head that kickdrift does not write, a field that is
-    /// missing or not what the schema says; named by its path.
+    /// A text that is no JSON, a schema that cannot be rechecked, a head that kickdrift does not write, a
+    /// field that is missing or not what the schema says; named by its path.
     pub fn read(text: &str) -> Result<Claim> {
         let document: Map<String, Value> =
             json::from_str(text).map_err(|cause| Error::input("document", "no JSON", not_json(&cause)))?;
@@ -219,17 +220,18 @@ impl Claim {
         Ok(Claim { document, rows })
     }
 
-    /// Rechecks every claim: the document is computed again and compared value by value; where nothing differs, another
-    /// route is taken. Progress is shown to `see`.
+    /// Rechecks every claim: the document is computed again and compared value by value; where nothing
+    /// differs, another route is taken. Progress is shown to `see`.
     ///
     /// # Errors
-    /// An input that makes no sense, and a recheck that costs more than the options allow; what does not hold is no error
-    /// but a [`Failure`].
+    /// An input that makes no sense, and a recheck that costs more than the options allow; what does not hold
+    /// is no error but a [`Failure`].
     pub fn recheck(&self, options: &Options, see: Option<See>) -> Result<Outcome> {
         self.rows.recheck(&self.document, How::Both, &Context::new(options, see))
     }
 
-    /// Takes the other route alone: it holds what is written against the mathematics, whichever version wrote it.
+    /// Takes the other route alone: it holds what is written against the mathematics, whichever version wrote
+    /// it.
     ///
     /// # Errors
     /// As [`Claim::recheck`].
@@ -237,7 +239,8 @@ impl Claim {
         self.rows.recheck(&self.document, How::OtherRouteAlone, &Context::new(options, see))
     }
 
-    /// The document computed again from its input, for [`Claim::apart`]; `None` of a kind whose rows say what was asked, too.
+    /// The document computed again from its input, for [`Claim::apart`]; `None` of a kind whose rows say what
+    /// was asked, too.
     ///
     /// # Errors
     /// As [`Claim::recheck`].
@@ -245,8 +248,8 @@ impl Claim {
         self.rows.again(&self.document, &Context::new(options, None))
     }
 
-    /// The first part of [`Claim::recheck`] against a document that was computed again before: the values that differ. `None` where that
-    /// one has another schema or another input.
+    /// The first part of [`Claim::recheck`] against a document that was computed again before: the values
+    /// that differ. `None` where that one has another schema or another input.
     pub fn apart(&self, again: &Again) -> Option<Vec<Failure>> {
         let alike = again.head == asked_in(&self.document);
         alike.then(|| (again.compare)(&self.document, again.document.clone()).failures)

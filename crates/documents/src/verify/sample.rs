@@ -1,6 +1,7 @@
 //! A sample that depends on the document alone.
 
-/// So many different numbers below `of`, increasing, drawn by the text's own seed; all of them where there are no more.
+/// So many different numbers below `of`, increasing, drawn by the text's own seed; all of them where there
+/// are no more.
 pub fn sample(text: &str, count: u64, most: u64) -> Vec<u64> {
     if count <= most {
         return (0..count).collect();

@@ -1,4 +1,5 @@
-//! A survey: its counts by the survey's own route again; the thin tongues, and a sample of all others, by exact signs.
+//! A survey: its counts by the survey's own route again; the thin tongues, and a sample of all others, by
+//! exact signs.
 
 use super::again::{Recheck, asked};
 use super::context::{Checked, Context, Outcome, Place, holds};

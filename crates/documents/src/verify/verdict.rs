@@ -1,5 +1,5 @@
-//! A verdict: the full period, kick by kick, in exact arithmetic; for long periods the next tier of the ladder, for very long ones
-//! return maps over the other clock.
+//! A verdict: the full period, kick by kick, in exact arithmetic; for long periods the next tier of the
+//! ladder, for very long ones return maps over the other clock.
 
 use super::again::{Recheck, asked};
 use super::context::{Checked, Context, Outcome, holds, same};

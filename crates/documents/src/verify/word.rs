@@ -205,7 +205,8 @@ impl Recheck for Listed {
 }
 
 impl Entry {
-    /// Just below the edge it is stable, just above it is not: the interval there is no narrower than 2^-30 of its size.
+    /// Just below the edge it is stable, just above it is not: the interval there is no narrower than 2^-30
+    /// of its size.
     fn holds(&self) -> Checked {
         holds(method(&self.name)?.word() == self.word.0, || "its word is another one".into())?;
         if let Some(Ends { lo, hi }) = self.coupled_edge {

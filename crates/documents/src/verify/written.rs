@@ -131,7 +131,8 @@ pub fn nullable<'de, T: Deserialize<'de>, D: Deserializer<'de>>(
     Option::deserialize(deserializer)
 }
 
-/// An enclosure in doubles, lo ≤ hi; an end that is null lies beyond all doubles, the other one being the last of them.
+/// An enclosure in doubles, lo ≤ hi; an end that is null lies beyond all doubles, the other one being the
+/// last of them.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize)]
 #[serde(try_from = "RawEnds")]
 pub struct Ends {
@@ -156,7 +157,8 @@ impl TryFrom<RawEnds> for Ends {
     }
 }
 
-/// The logarithm of what lies beyond every double, where an outward rounding to doubles loses nothing that is written.
+/// The logarithm of what lies beyond every double, where an outward rounding to doubles loses nothing that is
+/// written.
 const BEYOND_DOUBLES: i64 = 2000;
 
 impl Ends {

@@ -1,4 +1,5 @@
-//! Which engine a text of lines speaks of: words that this engine alone has, and hardly one that it does not know.
+//! Which engine a text of lines speaks of: words that this engine alone has, and hardly one that it does not
+//! know.
 
 use std::collections::HashSet;
 

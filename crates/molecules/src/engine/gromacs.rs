@@ -1,4 +1,5 @@
-//! GROMACS: `dt` (ps) is the innermost step; with `mts` the second level kicks every `mts-level2-factor` of them.
+//! GROMACS: `dt` (ps) is the innermost step; with `mts` the second level kicks every `mts-level2-factor` of
+//! them.
 
 use super::evidence::Vocabulary;
 use super::lines::{Line, Notation, Word, interval, intervals, last, lines};

@@ -1,4 +1,5 @@
-//! The force groups of OpenMM's forces: each group with forces is integrated, and each that is listed has forces.
+//! The force groups of OpenMM's forces: each group with forces is integrated, and each that is listed has
+//! forces.
 
 use std::collections::{BTreeMap, BTreeSet};
 

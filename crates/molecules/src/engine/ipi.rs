@@ -175,7 +175,8 @@ fn nested(reading: &mut Reading, levels: &[Iterations], weights: &[(&str, Vec<St
         reading.remarks.push("levels of equal steps are taken as one".into());
         reading.forces = vec!["forces of all its levels".into(); reading.scheme.steps().len()];
     }
-    // An outermost level of several iterations, idle levels or levels of equal steps: then these two numbers do not determine the steps.
+    // An outermost level of several iterations, idle levels or levels of equal steps: then these two numbers
+    // do not determine the steps.
     if levels[0].0 != 1 || !idle.is_empty() || !distinct {
         reading.places.clear();
     } else if let Some((_, second)) = levels.get(1) {
@@ -184,7 +185,8 @@ fn nested(reading: &mut Reading, levels: &[Iterations], weights: &[(&str, Vec<St
     Ok(())
 }
 
-/// Each `<force>` of the dynamics' own system with its weights, level by level, the outermost first; without any it has one level.
+/// Each `<force>` of the dynamics' own system with its weights, level by level, the outermost first; without
+/// any it has one level.
 fn weights<'a>(node: Node<'a, 'a>, text: &'a str) -> Result<Vec<(&'a str, Vec<String>)>> {
     let system = node.ancestors().find(|node| node.has_tag_name("system"));
     let forces = system.and_then(|system| child(system, "forces"));
@@ -214,7 +216,8 @@ fn unread(node: Node) -> Option<String> {
     (!names.is_empty()).then(|| format!("not read: {} of dynamics", names.join(", ")))
 }
 
-/// The force fields whose model is asked for forces that it predicts directly: `non_conservative:True` among the parameters.
+/// The force fields whose model is asked for forces that it predicts directly: `non_conservative:True` among
+/// the parameters.
 fn direct<'a>(root: Node<'a, 'a>, text: &'a str) -> Vec<&'a str> {
     let is_direct = |node: &Node<'a, 'a>| {
         let parameters = named(*node, "parameters").and_then(|node| words(node, text).ok());

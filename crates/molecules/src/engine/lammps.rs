@@ -310,7 +310,8 @@ pub(super) fn of_log(text: &str) -> Option<Result<Reading>> {
 }
 
 impl<'a> Commands<'a> {
-    /// What stands in a log: lines with names are followed by the same lines with values, those of conditions by what was done.
+    /// What stands in a log: lines with names are followed by the same lines with values, those of conditions
+    /// by what was done.
     fn of_log(text: &'a str) -> Commands<'a> {
         let mut commands = Commands::of(text);
         let known: HashSet<&str> = WORDS.words.split_whitespace().collect();

@@ -138,7 +138,8 @@ impl<'a> Names<'a> {
     }
 }
 
-/// An interval where it stands in a text; one to be added where its default may not do; none where it is 0 or a name.
+/// An interval where it stands in a text; one to be added where its default may not do; none where it is 0 or
+/// a name.
 pub(super) fn interval(
     lines: &[Line],
     end: usize,

@@ -10,11 +10,13 @@
 //! | Tinker-HP | `INTEGRATOR RESPA` and `RESPA1`, `DSHORT` and `DINTER` in ps; the outer step likewise | – | half kicks |
 //! | i-PI | `<timestep>`, `<nmts>`, level 0 the outermost | the outermost step | half kicks |
 //!
-//! A text is of an engine by words that this engine alone has (`evidence`); inputs of others are refused by name (`others`). Logs of LAMMPS, NAMD and
-//! GROMACS are read as what the engine understood. Keys that do not affect the steps are skipped; the reading lists those that were used, and remarks what
-//! bears on the answer and was not read. A text is rewritten in place: only the numbers that change are touched, and written as decimals, rounded
-//! down. A number that the engine wants to be a multiple of the changed one becomes a multiple, and is written out where its default is none: at a factor of 6,
-//! GROMACS's energies of every 100 steps are of every 102.
+//! A text is of an engine by words that this engine alone has (`evidence`); inputs of others are refused by
+//! name (`others`). Logs of LAMMPS, NAMD and GROMACS are read as what the engine understood. Keys that do not
+//! affect the steps are skipped; the reading lists those that were used, and remarks what bears on the answer
+//! and was not read. A text is rewritten in place: only the numbers that change are touched, and written as
+//! decimals, rounded down. A number that the engine wants to be a multiple of the changed one becomes a
+//! multiple, and is written out where its default is none: at a factor of 6, GROMACS's energies of every 100
+//! steps are of every 102.
 //!
 //! ```
 //! use kickdrift_molecules::engine::{Engine, read};

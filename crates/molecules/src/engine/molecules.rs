@@ -1,4 +1,5 @@
-//! What a script of OpenMM's says of its molecules: bonds that are held, water, the masses of hydrogens. What is not read is asked for.
+//! What a script of OpenMM's says of its molecules: bonds that are held, water, the masses of hydrogens. What
+//! is not read is asked for.
 
 use std::ops::Range;
 

@@ -204,7 +204,8 @@ fn forces(n: u64, m: u64, is_full: bool) -> Vec<String> {
     std::iter::once("bonded forces").chain(slower).map(Into::into).collect()
 }
 
-/// NAMD wants both frequencies to divide the steps of a cycle, that cycle the steps of a run, and energies to go with full electrostatics.
+/// NAMD wants both frequencies to divide the steps of a cycle, that cycle the steps of a run, and energies to
+/// go with full electrostatics.
 fn multiples(keys: &Keys) -> Vec<(std::ops::Range<usize>, Place)> {
     let tied = [
         ("stepspercycle", 20),

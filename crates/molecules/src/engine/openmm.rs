@@ -1,7 +1,8 @@
 //! OpenMM: integrators in Python, and serialized ones beside systems.
 //!
-//! `MTSIntegrator(dt, [(group, n), ...])` evaluates a force group n times in an outermost step dt, in half kicks nested by n. A group that has
-//! forces and is not listed is never integrated, and OpenMM does not say so: that is an error here. So is a listed group without a force.
+//! `MTSIntegrator(dt, [(group, n), ...])` evaluates a force group n times in an outermost step dt, in half
+//! kicks nested by n. A group that has forces and is not listed is never integrated, and OpenMM does not say
+//! so: that is an error here. So is a listed group without a force.
 
 use std::ops::Range;
 
@@ -143,7 +144,8 @@ fn integrator(text: &str, script: &Script, call: &Call) -> Result<Reading> {
     Ok(reading)
 }
 
-/// Where dt is among the arguments of an integrator that kicks with all forces once a step; `None` for any other.
+/// Where dt is among the arguments of an integrator that kicks with all forces once a step; `None` for any
+/// other.
 fn plain(name: &str, positional: usize, arguments: &[Argument]) -> Option<usize> {
     // Splittings of openmmtools may have several steps.
     let has_splitting = arguments.iter().any(|(key, _)| *key == Some("splitting"));
@@ -196,7 +198,8 @@ fn levels(
         }
         places.push(place.clone().map(|place| (place, Place::PerOuter(level))));
     }
-    // With an outermost group that is itself evaluated more than once, dt stays: only then the counts do not determine the steps.
+    // With an outermost group that is itself evaluated more than once, dt stays: only then the counts do not
+    // determine the steps.
     let slowest = entries.last().map_or(1, |(n, ..)| *n);
     reading.places = places.into_iter().collect::<Option<_>>().filter(|_| slowest == 1).unwrap_or_default();
     Ok(())

@@ -1,4 +1,5 @@
-//! Inputs of engines that are not read here: known by name, and refused with the rule by which their steps are given.
+//! Inputs of engines that are not read here: known by name, and refused with the rule by which their steps
+//! are given.
 
 use number::error::Error;
 

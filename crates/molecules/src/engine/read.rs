@@ -14,10 +14,12 @@ const NONE: &str =
 static KNOWN: LazyLock<[Known; 4]> =
     LazyLock::new(|| [lammps::WORDS, gromacs::WORDS, namd::WORDS, tinker::WORDS].map(Known::new));
 
-/// Reads an engine's texts, the engine recognized by their content; `outer` is the outermost step where the text does not have it.
+/// Reads an engine's texts, the engine recognized by their content; `outer` is the outermost step where the
+/// text does not have it.
 ///
 /// # Errors
-/// A text of no known engine; an integrator that is not symplectic; forces that would never be integrated; a number that is missing or none.
+/// A text of no known engine; an integrator that is not symplectic; forces that would never be integrated; a
+/// number that is missing or none.
 pub fn read(texts: &[&str], outer: Option<&Rational>) -> Result<Reading> {
     if texts.iter().any(|text| text.len() > LONGEST) {
         let remedy = "give the engine's input, not its output";

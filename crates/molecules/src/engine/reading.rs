@@ -51,7 +51,8 @@ pub(super) enum Place {
     Interval(Interval),
     /// A whole line to add at the end, with the last ratio behind it.
     Append(&'static str),
-    /// The innermost step in fs with a point, of an engine that takes the next shorter one which divides the outermost.
+    /// The innermost step in fs with a point, of an engine that takes the next shorter one which divides the
+    /// outermost.
     Inner,
     /// Whether there are two clocks at all, as yes or no.
     Switch,
@@ -146,7 +147,8 @@ pub struct Reading {
     pub constraints: Option<Constraints>,
     /// The mass in amu that it gives to hydrogens, taken from their heavy atoms, where its text says so.
     pub hydrogen: Option<Rational>,
-    /// Where the innermost step, or the one that is no other's multiple, is the engine's default: that default.
+    /// Where the innermost step, or the one that is no other's multiple, is the engine's default: that
+    /// default.
     pub(super) default: Option<String>,
     /// Why no line of it is to be written anew.
     pub(super) stays: Option<String>,
@@ -174,7 +176,8 @@ pub fn not_nested(scheme: &Scheme, unit: TimeUnit) -> Option<String> {
     Some(format!("{} is no multiple of {}", unit.of(decimal(&pair[1])), unit.of(decimal(&pair[0]))))
 }
 
-/// For two steps that are no multiples of each other: the steps, and the outer steps beside that are multiples.
+/// For two steps that are no multiples of each other: the steps, and the outer steps beside that are
+/// multiples.
 pub fn nested_beside(scheme: &Scheme, unit: TimeUnit) -> Option<String> {
     let ([inner, outer], Some(why)) = (scheme.steps(), not_nested(scheme, unit)) else { return None };
     let one = Rational::from_integer(1.into());
@@ -184,7 +187,8 @@ pub fn nested_beside(scheme: &Scheme, unit: TimeUnit) -> Option<String> {
 }
 
 impl Reading {
-    /// Notes intervals that the engine, or a program of its, refuses beside an outermost step of so many innermost ones.
+    /// Notes intervals that the engine, or a program of its, refuses beside an outermost step of so many
+    /// innermost ones.
     pub(super) fn note_intervals(&mut self, by: &str, places: &[(Range<usize>, Place)], outer: u64) {
         let wrong = places.iter().filter_map(|(_, place)| match place {
             Place::Interval(interval) => interval.amiss(outer),
@@ -219,8 +223,8 @@ impl Reading {
     /// The text with another outermost step, all inner steps as they are.
     ///
     /// # Errors
-    /// A step that is not a multiple of the one before it, or (where evaluations are counted per outermost step) of another one;
-    /// a text in which the steps do not stand.
+    /// A step that is not a multiple of the one before it, or (where evaluations are counted per outermost
+    /// step) of another one; a text in which the steps do not stand.
     pub fn rewritten(&self, outer: &Rational) -> Result<String> {
         let steps = self.scheme.steps();
         let shown = format!("{} fs", decimal(outer));

@@ -80,7 +80,8 @@ fn is_on(word: &str) -> bool {
 
 pub(super) const BONDED: [&str; 4] = ["bond", "angle", "dihedral", "improper"];
 
-/// Each force with its level, as LAMMPS sets them: `hybrid` has a level for each part of the pair style, a word that is given twice its last one.
+/// Each force with its level, as LAMMPS sets them: `hybrid` has a level for each part of the pair style, a
+/// word that is given twice its last one.
 ///
 /// # Errors
 /// A word that LAMMPS does not know there, or a level that there is not.
@@ -122,8 +123,8 @@ fn named(rest: &[Word], styles: &[PairStyle], levels: usize) -> Result<Vec<(Stri
 const KEYWORDS: [&str; 10] =
     ["bond", "angle", "dihedral", "improper", "pair", "inner", "middle", "outer", "hybrid", "kspace"];
 
-/// The same with the defaults: bonded forces on the level of the bonded one before, the first on 1; pairs on the last level, the sum over waves with them.
-/// A force that is not named and has no style is none.
+/// The same with the defaults: bonded forces on the level of the bonded one before, the first on 1; pairs on
+/// the last level, the sum over waves with them. A force that is not named and has no style is none.
 pub(super) fn on_levels(
     rest: &[Word],
     lines: &[Line],

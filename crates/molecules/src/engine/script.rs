@@ -1,4 +1,5 @@
-//! A Python script, as far as it can be read without running it: calls, their arguments, and names that are set once.
+//! A Python script, as far as it can be read without running it: calls, their arguments, and names that are
+//! set once.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -154,7 +155,8 @@ impl Script {
         start..start + text.trim().len()
     }
 
-    /// The place of the `=` that parts a target or a keyword from its value; `None` where there is none or more than one.
+    /// The place of the `=` that parts a target or a keyword from its value; `None` where there is none or
+    /// more than one.
     fn equals(&self, range: Range<usize>) -> Option<usize> {
         let signs = self.signs(range);
         <[usize; 1]>::try_from(signs).ok().map(|[at]| at)
@@ -292,7 +294,8 @@ fn blanked(text: &str) -> String {
     String::from_utf8(code).unwrap_or_default()
 }
 
-/// What is between the quotes of the string that begins here, and what follows; one of a single line ends with it.
+/// What is between the quotes of the string that begins here, and what follows; one of a single line ends
+/// with it.
 fn string(bytes: &[u8], at: usize, quote: u8) -> (Range<usize>, usize) {
     let width = if bytes[at..].starts_with(&[quote; 3]) { 3 } else { 1 };
     let from = at + width;

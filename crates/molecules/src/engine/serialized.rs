@@ -1,7 +1,8 @@
 //! OpenMM's serialized integrators and systems.
 //!
-//! `MTSIntegrator` is a custom integrator whose steps stand written out. What is none of its computations is refused, and the places of all
-//! kicks and drifts are checked: a group kicks twice at each multiple of its step, once at both ends.
+//! `MTSIntegrator` is a custom integrator whose steps stand written out. What is none of its computations is
+//! refused, and the places of all kicks and drifts are checked: a group kicks twice at each multiple of its
+//! step, once at both ends.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
@@ -174,7 +175,8 @@ fn written_out(reading: &mut Reading, node: Node, text: &str, size: Range<usize>
     Ok(())
 }
 
-/// The loop over the level below the outermost: what stands between the kicks of the outermost level, if that is one turn so many times.
+/// The loop over the level below the outermost: what stands between the kicks of the outermost level, if that
+/// is one turn so many times.
 fn turns(root: Node, text: &str, turns: u64) -> Option<(Range<usize>, Loop)> {
     let all: Vec<Node> = root.descendants().filter(|node| node.attribute(EXPRESSION).is_some()).collect();
     let is_outermost = |node: &&Node| {

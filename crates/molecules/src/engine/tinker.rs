@@ -1,7 +1,7 @@
 //! Tinker and Tinker-HP: key files. The outer step is no part of them: it is given when a run starts.
 //!
-//! Tinker-HP has `DSHORT` and `DINTER` in ps. `RESPA-INNER` is Tinker's: the inner step in fs until version 8, and since version 25 how many
-//! of them an outer step has. A value that both could mean is asked for.
+//! Tinker-HP has `DSHORT` and `DINTER` in ps. `RESPA-INNER` is Tinker's: the inner step in fs until version
+//! 8, and since version 25 how many of them an outer step has. A value that both could mean is asked for.
 
 use std::ops::Range;
 

@@ -135,7 +135,8 @@ impl Ball {
         Some(Ball::rounded(root.into(), exp, error, bits))
     }
 
-    /// √x of a number known to be ≥ 0: negative points of the ball are ignored; `None` if there are no others.
+    /// √x of a number known to be ≥ 0: negative points of the ball are ignored; `None` if there are no
+    /// others.
     pub fn sqrt_clipped(&self, bits: u32) -> Option<Ball> {
         let (lower, upper) = self.ends();
         if !lower.mid.is_negative() {

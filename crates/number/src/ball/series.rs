@@ -12,9 +12,9 @@ use super::{Ball, Magnitude};
 ///
 /// Error, in units u = 2^-fraction. Rounding: p_k is off by ε_k ≤ (|y| ε_{k−1} + 1)/d_k + 1 ≤ ε_{k−1}/2 + 2,
 /// so ε_k ≤ 4, and p_k/e_k by at most 5. Truncation: the loop ends when the computed |p_k| ≤ u, the true one
-/// is ≤ 5u, and the ratio of terms is ≤ 1/2, so the tail is ≤ 5u. Argument: |dS/dy| ≤ Σ k 2^{−(k−1)} = 4 in the
-/// first case, and ≤ Σ k/(2^k k!) < 1 in the second, so an argument off by η costs at most 4 η, and its own
-/// rounding 4u. In all (5N + 9) u + 4η after N terms.
+/// is ≤ 5u, and the ratio of terms is ≤ 1/2, so the tail is ≤ 5u. Argument: |dS/dy| ≤ Σ k 2^{−(k−1)} = 4 in
+/// the first case, and ≤ Σ k/(2^k k!) < 1 in the second, so an argument off by η costs at most 4 η, and its
+/// own rounding 4u. In all (5N + 9) u + 4η after N terms.
 pub(super) fn sum(y: &Ball, fraction: u32, divisor: fn(u64) -> u64, weight: fn(u64) -> u64) -> Ball {
     let exp = -i64::from(fraction);
     let (step, _) = y.mid_scaled(i64::from(fraction));

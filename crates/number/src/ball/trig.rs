@@ -82,7 +82,8 @@ impl Ball {
         Ball::rounded(value.mid, value.exp, error, bits)
     }
 
-    /// arctan t = 2 arctan(t / (1 + √(1 + t²))), thrice, then t Σ (−t²)^k / (2k + 1), for any t but fast for |t| ≤ 1.
+    /// arctan t = 2 arctan(t / (1 + √(1 + t²))), thrice, then t Σ (−t²)^k / (2k + 1), for any t but fast
+    /// for |t| ≤ 1.
     fn atan_of_exact(self, w: u32) -> Ball {
         let (one, mut t, mut halvings) = (Ball::one(), self, 0);
         while t.top().is_some_and(|top| top > -HALVINGS) {
@@ -117,7 +118,8 @@ impl Ball {
             let half_angle = self.half_chord(w)?.asin(w)?.scale2(1);
             return Some(Ball::pi(w).scale2(-1).sub(&half_angle, bits));
         }
-        // arcsin m = arctan(m / √(1 − m²)); m ≤ 1/2 and r ≤ 1/8: the radius passes at most 1/√(1 − (5/8)²) < 2.
+        // arcsin m = arctan(m / √(1 − m²)); m ≤ 1/2 and r ≤ 1/8: the radius passes at most 1/√(1 −
+        // (5/8)²) < 2.
         let cosine = Ball::one().sub(&middle.square(2 * w), w).sqrt(w)?;
         let value = middle.div(&cosine, w)?.atan(w);
         let error = value.radius().plus(self.radius().scale2(1));

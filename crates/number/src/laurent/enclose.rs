@@ -29,7 +29,8 @@ impl Real for Laurent {
         Ball::to_accuracy(bits, |working| self.evaluated(working))
     }
 
-    /// For c π^k with |k| ≤ 2: c is within 2^-104, π² within 2^-100.9, and a product or a quotient adds 2^-100 at most.
+    /// For c π^k with |k| ≤ 2: c is within 2^-104, π² within 2^-100.9, and a product or a quotient adds
+    /// 2^-100 at most.
     fn two_doubles(&self) -> Option<(f64, f64)> {
         let (k, c) = self.as_monomial()?;
         let (hi, lo) = c.two_doubles()?;

@@ -49,8 +49,9 @@ pub(super) fn evaluate(text: &str) -> Parsed<Laurent> {
     if parser.at < characters.len() { Err(parser.unexpected()) } else { Ok(value) }
 }
 
-/// A plain decimal of at most 25 digits and a power of ten between 10^-36 and 10^12, as data mostly are: in machine words, in a
-/// twentieth of the time that the grammar takes. `None` for everything else, errors among it.
+/// A plain decimal of at most 25 digits and a power of ten between 10^-36 and 10^12, as data mostly are: in
+/// machine words, in a twentieth of the time that the grammar takes. `None` for everything else, errors among
+/// it.
 fn decimal(text: &str) -> Option<Rational> {
     let (negative, text) = text.strip_prefix('-').map_or((false, text), |rest| (true, rest));
     let (digits, exponent) = text.split_once(['e', 'E']).unwrap_or((text, "0"));

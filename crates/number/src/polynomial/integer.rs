@@ -1,8 +1,8 @@
-//! Polynomials with integer coefficients as vectors, lowest coefficient first: squarefree parts put together from prime
-//! fields, and real roots by Descartes' rule and bisection (Vincent, Collins, Akritas).
+//! Polynomials with integer coefficients as vectors, lowest coefficient first: squarefree parts put together
+//! from prime fields, and real roots by Descartes' rule and bisection (Vincent, Collins, Akritas).
 //!
-//! Additions only, where the remainders of a Sturm chain of a polynomial with coefficients of 10^5 bits would grow past
-//! 10^6.
+//! Additions only, where the remainders of a Sturm chain of a polynomial with coefficients of 10^5 bits would
+//! grow past 10^6.
 
 use num_bigint::BigInt;
 use num_integer::Integer;
@@ -11,7 +11,8 @@ use num_traits::{One, Signed, Zero};
 use super::sturm::{RootInterval, primitive, sign_at};
 use crate::{Lift, PrimeField, Rational, Sign, prime_fields, rational};
 
-/// The primitive polynomial with the roots of f ≠ 0, each simple; its leading coefficient has the sign of f's.
+/// The primitive polynomial with the roots of f ≠ 0, each simple; its leading coefficient has the sign of
+/// f's.
 pub fn squarefree(f: &[BigInt]) -> Vec<BigInt> {
     let f = primitive(f.to_vec());
     let derivative: Vec<BigInt> = f.iter().enumerate().skip(1).map(|(k, c)| c * k).collect();
@@ -23,8 +24,9 @@ pub fn squarefree(f: &[BigInt]) -> Vec<BigInt> {
 
 /// The primitive greatest common divisor of f ≠ 0 and g, its leading coefficient positive.
 ///
-/// A divisor modulo p has at least the degree of the true one, and the latter times l/(its leading coefficient), l that of
-/// f, has integer coefficients (Gauss): that is what the residues of least degree, scaled, lift to.
+/// A divisor modulo p has at least the degree of the true one, and the latter times l/(its leading
+/// coefficient), l that of f, has integer coefficients (Gauss): that is what the residues of least degree,
+/// scaled, lift to.
 pub fn common(f: &[BigInt], g: &[BigInt]) -> Vec<BigInt> {
     let f = primitive(f.to_vec());
     let leading = f.last().expect("not 0");
@@ -126,7 +128,8 @@ fn clipped(f: &[BigInt], (a, b): RootInterval, lo: &Rational, hi: &Rational) -> 
     }
 }
 
-/// The roots of a squarefree f in the open interval (0, 1), in no order: points, or brackets with a root at no end.
+/// The roots of a squarefree f in the open interval (0, 1), in no order: points, or brackets with a root at
+/// no end.
 pub fn in_unit_interval(f: Vec<BigInt>) -> Vec<RootInterval> {
     let (mut roots, mut open) = (Vec::new(), vec![(f, 0, BigInt::zero())]);
     while let Some((f, depth, place)) = open.pop() {

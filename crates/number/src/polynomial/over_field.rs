@@ -57,8 +57,8 @@ impl<F: NumberField> Polynomial<Element<F>> {
 }
 
 impl<F: NumberField> Sturm<Element<F>> {
-    /// The chain of f ≠ 0 over a number field, as [`Sturm::new`] makes it over ℚ. Remainders are divided by the size of
-    /// their leading coefficients.
+    /// The chain of f ≠ 0 over a number field, as [`Sturm::new`] makes it over ℚ. Remainders are divided by
+    /// the size of their leading coefficients.
     ///
     /// **Panics** if f = 0, whose roots cannot be counted.
     pub fn over_field(f: &Polynomial<Element<F>>) -> Self {

@@ -112,7 +112,8 @@ impl<C: SignAt> Sturm<C> {
             return (lo.clone(), hi.clone());
         }
         let below = self.sign_at(lo);
-        // Over one denominator: greatest common divisors of thousands of bits at each bisection would take most of the time.
+        // Over one denominator: greatest common divisors of thousands of bits at each bisection would take
+        // most of the time.
         let mut denominator = lo.denom().lcm(hi.denom());
         let over = |x: &Rational| x.numer() * (&denominator / x.denom());
         let (mut lo, mut hi) = (over(lo), over(hi));
@@ -161,7 +162,8 @@ impl Polynomial<Rational> {
         Sturm::new(self).count(lo, hi)
     }
 
-    /// All real roots, increasing, in intervals that share at most an end, which is no root; see [`Sturm::refine`] to make these small.
+    /// All real roots, increasing, in intervals that share at most an end, which is no root; see
+    /// [`Sturm::refine`] to make these small.
     ///
     /// **Panics** for the polynomial 0.
     pub fn isolate_real_roots(&self) -> Vec<RootInterval> {

@@ -12,12 +12,12 @@ use super::{LANES, Vector};
 #[cfg(target_arch = "x86_64")]
 use registers::{Avx2, Avx2Single, Avx512, Avx512Single};
 
-/// The width of a portable vector that stands for one register. On x86-64 without AVX2 fused operations are calls, and one by one
-/// they are no slower.
+/// The width of a portable vector that stands for one register. On x86-64 without AVX2 fused operations are
+/// calls, and one by one they are no slower.
 const PLAIN: usize = if cfg!(target_arch = "x86_64") { 1 } else { 4 };
 
-/// Instructions that this processor has: but for the portable ones nobody has such a value who has not asked the processor, so whatever runs
-/// with them may run.
+/// Instructions that this processor has: but for the portable ones nobody has such a value who has not asked
+/// the processor, so whatever runs with them may run.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub struct Instructions(Set);
 
@@ -73,7 +73,8 @@ impl Instructions {
         }
     }
 
-    /// A task that is done number by number: of all vector instructions it needs the fused operations, which come with AVX2.
+    /// A task that is done number by number: of all vector instructions it needs the fused operations, which
+    /// come with AVX2.
     pub fn perform_alone<T: Task>(self, task: T) -> T::Output {
         match self.0 {
             Set::Portable => task.run(),
@@ -129,8 +130,8 @@ pub fn names() -> Vec<String> {
     Instructions::available().map(|set| format!("{set:?}")).collect()
 }
 
-/// From now on every kernel runs in the form of this name (`portable`, `avx2`, `avx512`), so that one machine measures, and
-/// compares, several. False where the processor lacks it.
+/// From now on every kernel runs in the form of this name (`portable`, `avx2`, `avx512`), so that one machine
+/// measures, and compares, several. False where the processor lacks it.
 #[doc(hidden)]
 pub fn force_instructions(name: &str) -> bool {
     let meant = Instructions::available().position(|set| format!("{set:?}").eq_ignore_ascii_case(name));

@@ -1,7 +1,8 @@
 //! Doubles side by side in the processor's registers.
 //!
-//! A compiler makes vector instructions of most plain loops over lanes, but not of every one where it must not fail: the
-//! few kernels that everything waits for are written for a [`Vector`] instead, and compiled for each kind of registers.
+//! A compiler makes vector instructions of most plain loops over lanes, but not of every one where it must
+//! not fail: the few kernels that everything waits for are written for a [`Vector`] instead, and compiled for
+//! each kind of registers.
 
 pub mod instructions;
 mod pair;
@@ -22,8 +23,8 @@ pub fn each<const N: usize>(f: impl Fn(usize) -> f64) -> [f64; N] {
     all
 }
 
-/// All lanes in one number, from 0 on: in eight chains at a time, for compilers make vector instructions of them, and no lane waits for
-/// all before it.
+/// All lanes in one number, from 0 on: in eight chains at a time, for compilers make vector instructions of
+/// them, and no lane waits for all before it.
 #[inline(always)]
 fn gathered<const N: usize>(lanes: &[f64; N], join: impl Fn(f64, f64) -> f64) -> f64 {
     let (eights, rest) = lanes.as_chunks::<8>();
@@ -101,8 +102,8 @@ pub trait Vector: Copy {
     fn count_change_below(self, a: Self, b: Self, c: Self) -> Self;
     /// The power of two that brings |self|, not below 2^-1022, to [1, 2).
     fn normalizing(self) -> Self;
-    /// 2^32 log2 |x| up to a constant, to within 2^29, as a whole number: a double's bits are its logarithm, the mantissa's
-    /// straightened.
+    /// 2^32 log2 |x| up to a constant, to within 2^29, as a whole number: a double's bits are its logarithm,
+    /// the mantissa's straightened.
     fn logarithm(self) -> Self;
 
     /// The next double above, of a positive number.

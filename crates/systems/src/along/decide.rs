@@ -38,12 +38,13 @@ pub struct OwnOrbit {
 
 /// The verdict on small deviations from a periodic orbit, proven for the Hessians given as they stand.
 ///
-/// `hessians[k]` holds those of the clocks that kick in event k of [`Schedule::half_period`], in increasing order of the
-/// clocks, n x n, symmetric, in force/length; `masses` the n masses. The steps of the schedule are in the unit of time of both.
+/// `hessians[k]` holds those of the clocks that kick in event k of [`Schedule::half_period`], in increasing
+/// order of the clocks, n x n, symmetric, in force/length; `masses` the n masses. The steps of the schedule
+/// are in the unit of time of both.
 ///
 /// # Errors
-/// Names what does not fit: a schedule that is no palindrome, Hessians of another number or size than the kicks, not symmetric or
-/// not finite, a mass that is not positive; a budget error before the work.
+/// Names what does not fit: a schedule that is no palindrome, Hessians of another number or size than the
+/// kicks, not symmetric or not finite, a mass that is not positive; a budget error before the work.
 ///
 /// ```
 /// use kickdrift_systems::number::rational::ratio;
@@ -76,10 +77,12 @@ const FINER: f64 = 2.0;
 const MARGINS: i32 = 40;
 
 impl Along {
-    /// The verdict on the Hessians given, enclosures of growth for all within their accuracy, and in `measured` what holds for all of these.
+    /// The verdict on the Hessians given, enclosures of growth for all within their accuracy, and in
+    /// `measured` what holds for all of these.
     ///
     /// # Errors
-    /// A budget error before the work; exact arithmetic beside rigid motions; rigid motions that no Hessians within the accuracy leave free.
+    /// A budget error before the work; exact arithmetic beside rigid motions; rigid motions that no Hessians
+    /// within the accuracy leave free.
     pub fn decide(&self, route: Route, limits: &Limits) -> Result<Analysis> {
         let n = self.size();
         limits.allow_dense(self.cost(), || {
@@ -140,8 +143,8 @@ impl Along {
         Ok(Analysis { rigid_modes, measured, ..Analysis::of_part(part, clocks, warnings) })
     }
 
-    /// Products of doubles, roughly: the kicks with the norms of what they meet, eigenvalues with vectors and their proof, that proof for some
-    /// accuracies more.
+    /// Products of doubles, roughly: the kicks with the norms of what they meet, eigenvalues with vectors and
+    /// their proof, that proof for some accuracies more.
     pub fn cost(&self) -> u64 {
         let (n, kicks) = (self.size() as u64, self.hessians.iter().map(Vec::len).sum::<usize>() as u64);
         let measured = if self.accuracy.is_some() { 300 + 8 * kicks } else { 0 };
@@ -193,7 +196,8 @@ impl Along {
         self.schedule.tick() * Rational::from_integer(self.schedule.clocks()[clock].step().into())
     }
 
-    /// One whole period in doubles, rounded, kick by kick: mass-weighted positions and velocities that are orthogonal to rigid motions, 2m x 2m.
+    /// One whole period in doubles, rounded, kick by kick: mass-weighted positions and velocities that are
+    /// orthogonal to rigid motions, 2m x 2m.
     pub fn full_period(&self) -> DMatrix<f64> {
         let n = self.size();
         let root: Vec<f64> = self.masses.iter().map(|m| m.sqrt()).collect();
@@ -261,8 +265,9 @@ impl Along {
         self.motions().map(columns).unwrap_or_default()
     }
 
-    /// The half period. Positions are times a_i, momenta divided by it: a power of two near √(m ω) where the Hessians are taken as they stand, else
-    /// √m times a power of two, so that mass-weighted orthonormal columns stay orthonormal.
+    /// The half period. Positions are times a_i, momenta divided by it: a power of two near √(m ω) where the
+    /// Hessians are taken as they stand, else √m times a power of two, so that mass-weighted orthonormal
+    /// columns stay orthonormal.
     fn half(&self) -> Half<'_> {
         let n = self.size();
         let tick = to_f64(self.schedule.tick());
@@ -340,7 +345,8 @@ struct Frames {
 impl Frames {
     fn new([start, turned]: [Mat<f64>; 2]) -> Frames {
         let defect = |matrix: &Mat<f64>| orthogonality(matrix).unwrap_or(f64::INFINITY);
-        // Of Householder's factorization of r orthonormal columns: their space turns by some n r roundings (Higham, Theorem 19.4).
+        // Of Householder's factorization of r orthonormal columns: their space turns by some n r roundings
+        // (Higham, Theorem 19.4).
         let (n, r) = (start.nrows() as f64, (start.nrows() - start.ncols()) as f64);
         let off = defect(&start) + defect(&turned) + 20.0 * (n + 8.0) * r * U;
         Frames { start, turned, off }
@@ -384,8 +390,9 @@ impl Half<'_> {
         FloatBlocks { m, y: turned(&whole.y), p: turned(&whole.p), error, norm, scales: vec![1.0; m] }
     }
 
-    /// That some Hessians within the accuracy leave the rigid motions free, C J₀ = 0 and J₁ᵀ C = 0: else what is proven would be so of none. (A J₀ is in
-    /// the span of J₁ then, as Cᵀ A = Aᵀ C, and J₁ᵀ D in that of J₀ᵀ.)
+    /// That some Hessians within the accuracy leave the rigid motions free, C J₀ = 0 and J₁ᵀ C = 0: else what
+    /// is proven would be so of none. (A J₀ is in the span of J₁ then, as Cᵀ A = Aᵀ C, and J₁ᵀ D in that of
+    /// J₀ᵀ.)
     fn check_rigid(&self) -> Result<()> {
         if let Rigid::Translations(motions) = &self.along.rigid {
             return self.along.check_translations(motions);
@@ -462,8 +469,8 @@ fn frequency(masses: &[f64], hessians: &[Vec<DMatrix<f64>>]) -> f64 {
     (squares / count).sqrt()
 }
 
-/// For each degree of freedom a power of two near √(m ω), ω the mean frequency a tick, so that positions and momenta are of one
-/// size.
+/// For each degree of freedom a power of two near √(m ω), ω the mean frequency a tick, so that positions and
+/// momenta are of one size.
 fn scales(masses: &[f64], hessians: &[Vec<DMatrix<f64>>], tick: f64) -> Vec<f64> {
     let omega = frequency(masses, hessians) * tick;
     masses.iter().map(|m| power(m * omega)).collect()

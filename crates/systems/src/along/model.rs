@@ -52,12 +52,12 @@ pub(super) enum Rigid {
 }
 
 impl Along {
-    /// From the n masses, the steps of the clocks, increasing, and for each clock the Hessian at each of its kicks from t = 0 to half the period,
-    /// n x n, in force/length; the unit of time is that of the steps.
+    /// From the n masses, the steps of the clocks, increasing, and for each clock the Hessian at each of its
+    /// kicks from t = 0 to half the period, n x n, in force/length; the unit of time is that of the steps.
     ///
     /// # Errors
-    /// Names what does not fit: another number of Hessians than of kicks, one that is not n x n, finite and symmetric, a mass that is not positive, a
-    /// step that is not positive or that two clocks share.
+    /// Names what does not fit: another number of Hessians than of kicks, one that is not n x n, finite and
+    /// symmetric, a mass that is not positive, a step that is not positive or that two clocks share.
     pub fn new(masses: &[f64], steps: &[Rational], kicks: &[Vec<DMatrix<f64>>]) -> Result<Along> {
         if steps.len() != kicks.len() || !steps.is_sorted_by(|a, b| a < b) {
             let remedy = "give each clock its own step, shortest first, with its Hessians";
@@ -109,8 +109,8 @@ impl Along {
         Ok(Along { accuracy: Some(accuracy), ..self })
     }
 
-    /// Without the rigid motions of a free molecule, whose atoms are at these positions where the orbit starts and where it turns: for
-    /// forces that turn with the atoms.
+    /// Without the rigid motions of a free molecule, whose atoms are at these positions where the orbit
+    /// starts and where it turns: for forces that turn with the atoms.
     ///
     /// # Errors
     /// Positions of another number of atoms.
@@ -130,11 +130,12 @@ impl Along {
         Ok(Along { rigid: Rigid::Turning(motions), ..self })
     }
 
-    /// These Hessians without rigid motions that are given as columns, mass-weighted, at t = 0 and at T/2. Coordinates other than those of atoms need
-    /// this, as of a molecule with held bonds.
+    /// These Hessians without rigid motions that are given as columns, mass-weighted, at t = 0 and at T/2.
+    /// Coordinates other than those of atoms need this, as of a molecule with held bonds.
     ///
     /// # Errors
-    /// Columns of another length than n, of another number at the two ends, that depend on each other or are all there is.
+    /// Columns of another length than n, of another number at the two ends, that depend on each other or are
+    /// all there is.
     pub fn free_of(self, ends: &[DMatrix<f64>]) -> Result<Along> {
         let n = self.size();
         let orthonormal = |matrix: &DMatrix<f64>| {

@@ -29,16 +29,16 @@ pub struct Run {
     pub predicted: f64,
     /// The largest difference after running forward and back, relative to the start.
     pub irreversibility: f64,
-    /// How far the integrator's own orbit, about which growth is predicted and measured, lies from the equilibrium; `None` where
-    /// the equilibrium is one.
+    /// How far the integrator's own orbit, about which growth is predicted and measured, lies from the
+    /// equilibrium; `None` where the equilibrium is one.
     pub displacement: Option<f64>,
     /// Whether deviations of any size move like small ones.
     pub linear: bool,
 }
 
 impl Run {
-    /// Measured growth rates below this are none: a bounded solution returns to its size only after a beat, and over half
-    /// the run that looks like growth.
+    /// Measured growth rates below this are none: a bounded solution returns to its size only after a beat,
+    /// and over half the run that looks like growth.
     pub fn resolution(&self) -> f64 {
         self.series.last().filter(|s| s.time > 0.0).map_or(f64::INFINITY, |s| 2.0 / s.time)
     }
@@ -55,8 +55,8 @@ fn sample<F: Force<f64>>(simulation: &Simulation<f64, F>, centre: &[f64]) -> Sam
     }
 }
 
-/// The state now and after each of `samples` runs of `ticks`, amplitudes measured from `centre`. Where a run overflows, or is
-/// stopped, the series ends.
+/// The state now and after each of `samples` runs of `ticks`, amplitudes measured from `centre`. Where a run
+/// overflows, or is stopped, the series ends.
 pub fn series<F: Force<f64>>(
     simulation: &mut Simulation<f64, F>,
     centre: &[f64],
@@ -92,12 +92,12 @@ fn rescale<F: Force<f64>>(simulation: &mut Simulation<f64, F>, centre: &[f64], s
     scale.ln()
 }
 
-/// The measured growth rate of small deviations z from `centre`, an equilibrium, per unit time: ln |z|/|z_0| over the
-/// second half of `periods` synchronization periods, z scaled back to near `size` after each by a power of two. Near 0
-/// where it is stable, to about 1/(periods T). Of no meaning where it is stopped.
+/// The measured growth rate of small deviations z from `centre`, an equilibrium, per unit time: ln |z|/|z_0|
+/// over the second half of `periods` synchronization periods, z scaled back to near `size` after each by a
+/// power of two. Near 0 where it is stable, to about 1/(periods T). Of no meaning where it is stopped.
 ///
-/// For a linear system about 0 scaling is exact and any size will do. Else the motion is that of the Hessians up to
-/// terms of the order z²: `size` makes them small, and has to stay well above the roundoff of x.
+/// For a linear system about 0 scaling is exact and any size will do. Else the motion is that of the Hessians
+/// up to terms of the order z²: `size` makes them small, and has to stay well above the roundoff of x.
 pub fn growth_rate<F: Force<f64>>(
     simulation: &mut Simulation<f64, F>,
     centre: &[f64],
@@ -118,8 +118,9 @@ pub fn growth_rate<F: Force<f64>>(
     (log + deviation(simulation, centre).ln() - middle) / half
 }
 
-/// Runs `ticks` forward in the time-symmetric form, turns the momenta round, runs back: the largest difference to the
-/// start over the largest entry of it. 0 in exact arithmetic, where `ticks` is a multiple of half the period.
+/// Runs `ticks` forward in the time-symmetric form, turns the momenta round, runs back: the largest
+/// difference to the start over the largest entry of it. 0 in exact arithmetic, where `ticks` is a multiple
+/// of half the period.
 pub fn irreversibility<F: Force<f64>>(simulation: &mut Simulation<f64, F>, ticks: u64) -> f64 {
     let start = simulation.state().clone();
     simulation.run(ticks, Ends::Symmetric);

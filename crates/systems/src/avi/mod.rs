@@ -1,7 +1,8 @@
-//! AVI as the paper's Algorithm 1: a priority queue of kicks, a clock for every potential, a time for every particle.
+//! AVI as the paper's Algorithm 1: a priority queue of kicks, a clock for every potential, a time for every
+//! particle.
 //!
-//! Times are whole ticks, so two kicks coincide iff they do in exact arithmetic; floating-point queues get ties
-//! wrong. Over an exact ring a linear simulation of one period is the propagator itself.
+//! Times are whole ticks, so two kicks coincide iff they do in exact arithmetic; floating-point queues get
+//! ties wrong. Over an exact ring a linear simulation of one period is the propagator itself.
 //!
 //! ```
 //! use kickdrift_systems::avi::{Clocks, Ends, Linear, Simulation, State};

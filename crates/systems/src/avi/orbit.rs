@@ -1,10 +1,11 @@
 //! The integrator's own periodic orbit beside an equilibrium.
 //!
-//! Where the forces of different clocks balance at an equilibrium but do not vanish one by one, the equilibrium is no fixed point of
-//! the integrator: each kick displaces, and the others swing back. The map over T has a fixed point (y, 0) nearby. The orbit
-//! from (y, 0) is its own mirror image in time iff the momenta are 0 again at T/2 (half of each kick given at both ends), so y
-//! solves n equations, p(T/2; y) = 0, by Newton's method with the tangent map, started at the equilibrium. The Hessians
-//! that the kicks meet along the orbit form a palindrome, too: half a period of them decides the orbit's stability.
+//! Where the forces of different clocks balance at an equilibrium but do not vanish one by one, the
+//! equilibrium is no fixed point of the integrator: each kick displaces, and the others swing back. The map
+//! over T has a fixed point (y, 0) nearby. The orbit from (y, 0) is its own mirror image in time iff the
+//! momenta are 0 again at T/2 (half of each kick given at both ends), so y solves n equations, p(T/2; y) = 0,
+//! by Newton's method with the tangent map, started at the equilibrium. The Hessians that the kicks meet
+//! along the orbit form a palindrome, too: half a period of them decides the orbit's stability.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -28,7 +29,8 @@ pub struct PeriodicOrbit {
     pub hessians: Vec<Vec<DMatrix<f64>>>,
 }
 
-/// Bonds with the clocks that they kick by: bond b by clock `clock_of[b]` of the schedule, one degree of freedom a particle.
+/// Bonds with the clocks that they kick by: bond b by clock `clock_of[b]` of the schedule, one degree of
+/// freedom a particle.
 #[derive(Clone, Debug)]
 pub struct Clocked<'a> {
     pub masses: &'a [f64],
@@ -53,8 +55,8 @@ impl Clocked<'_> {
     /// The periodic orbit near `start`.
     ///
     /// # Errors
-    /// A schedule that is no palindrome; where Newton's method does not converge (at an edge of stability the tangent map is
-    /// singular).
+    /// A schedule that is no palindrome; where Newton's method does not converge (at an edge of stability the
+    /// tangent map is singular).
     pub fn periodic_orbit(&self, start: &[f64]) -> Result<PeriodicOrbit> {
         if !self.schedule.is_palindrome() {
             return Err(Error::input("phase", "not 0 or 1/2", "other phases have no time reversal"));
@@ -63,13 +65,15 @@ impl Clocked<'_> {
         let mut last = f64::INFINITY;
         for _ in 0..ITERATIONS {
             let half = self.half(&y);
-            // Forces that vanish one by one, but for the roundings of the equilibrium: it is the orbit, at an edge of stability too.
+            // Forces that vanish one by one, but for the roundings of the equilibrium: it is the orbit, at an
+            // edge of stability too.
             if last.is_infinite() && half.kicks <= VANISHING * half.stiffness * y.amax().max(1.0) {
                 return Ok(PeriodicOrbit { start: start.to_vec(), hessians: half.hessians });
             }
             let Some(step) = half.tangent.clone().lu().solve(&half.p) else { break };
             let size = step.amax();
-            // The step is at its rounding level, or has ceased to shrink there (a few hundred roundings of |y|).
+            // The step is at its rounding level, or has ceased to shrink there (a few hundred roundings
+            // of |y|).
             let scale = y.amax().max(1.0);
             if size <= 1e-15 * scale || (size <= 1e-12 * scale && size >= last / 2.0) {
                 return Ok(PeriodicOrbit { start: y.iter().copied().collect(), hessians: half.hessians });

@@ -1,7 +1,8 @@
 //! Algorithm 1: kicks in the order of time, every particle with a clock of its own.
 //!
-//! Repeat: take the potential that kicks next, at time t; drift each of its particles from that particle's own time
-//! to t; kick them with the force of the potential there, over its step; schedule the potential again.
+//! Repeat: take the potential that kicks next, at time t; drift each of its particles from that particle's
+//! own time to t; kick them with the force of the potential there, over its step; schedule the potential
+//! again.
 
 use super::force::Force;
 use clocks::schedule::{Clock, Clocks, Queue};
@@ -83,8 +84,8 @@ impl<S: Ticks, F: Force<S>> Simulation<S, F> {
     /// At t = 0, before the kicks that stand there.
     ///
     /// # Errors
-    /// Names what does not fit: numbers of masses, positions and momenta, of potentials and clocks, a particle that is
-    /// not there; a mass of 0.
+    /// Names what does not fit: numbers of masses, positions and momenta, of potentials and clocks, a
+    /// particle that is not there; a mass of 0.
     pub fn new(masses: &[Rational], forces: Vec<F>, clocks: Clocks, state: State<S>) -> Result<Self> {
         let n = masses.len();
         check(masses, &forces, &clocks, &state)?;
@@ -105,8 +106,8 @@ impl<S: Ticks, F: Force<S>> Simulation<S, F> {
         })
     }
 
-    /// Runs for `ticks` more, kicks at the ends as `ends` says; afterwards all particles are at the same time. Returns the
-    /// number of kicks.
+    /// Runs for `ticks` more, kicks at the ends as `ends` says; afterwards all particles are at the same
+    /// time. Returns the number of kicks.
     pub fn run(&mut self, ticks: u64, ends: Ends) -> u64 {
         let (start, end) = (self.now, self.now + ticks);
         if ends == Ends::Staggered {
@@ -114,8 +115,8 @@ impl<S: Ticks, F: Force<S>> Simulation<S, F> {
             self.finish(end);
             return kicks;
         }
-        // The kicks at `start` stand first in the queue; those at `end` are given in halves, and the other halves
-        // belong to the next run, whose queue must hold them again.
+        // The kicks at `start` stand first in the queue; those at `end` are given in halves, and the other
+        // halves belong to the next run, whose queue must hold them again.
         let mut kicks = 0;
         while let Some((time, potential)) = self.queue.pop_before(start, true) {
             self.kick(time, potential, 1);
@@ -195,8 +196,8 @@ impl<S: Ticks, F: Force<S>> Simulation<S, F> {
         (self.state.x, self.state.p) = (x, p);
     }
 
-    /// The multiplications of a run of `ticks`, roughly: those of every force as a dense matrix on its particles, and
-    /// what the queue and the drifts cost.
+    /// The multiplications of a run of `ticks`, roughly: those of every force as a dense matrix on its
+    /// particles, and what the queue and the drifts cost.
     pub fn cost(&self, ticks: u64) -> u64 {
         const OVERHEAD: u64 = 16;
         let kicks = self.clocks.all().iter().map(|clock| ticks / clock.step() + 1);

@@ -6,9 +6,9 @@
 //! * At an interior μ, where λ ≠ 1/λ: (Q + 1/Q) = 2 + 4 diag(S, Sᵀ) makes Q semisimple iff S is. With f the
 //!   squarefree polynomial of the interior roots that is rank f(S) = the multiplicities of 0 and −1 together.
 //! * At λ = ±1: Q = R H⁻¹ R H with R = diag(I, −I), so Q v = v iff H v commutes with R: ker(Q − I) =
-//!   ker C ⊕ ker B, and ker(Q + I) = ker A ⊕ ker D. A root μ = 0 of multiplicity a (λ = 1 of multiplicity 2a) is
-//!   semisimple iff null B + null C = 2a; μ = −1 likewise with A and D. For one degree of freedom this is the table of
-//!   four signs.
+//!   ker C ⊕ ker B, and ker(Q + I) = ker A ⊕ ker D. A root μ = 0 of multiplicity a (λ = 1 of multiplicity 2a)
+//!   is semisimple iff null B + null C = 2a; μ = −1 likewise with A and D. For one degree of freedom this is
+//!   the table of four signs.
 
 use nalgebra::DMatrix;
 use num_bigint::BigInt;
@@ -34,8 +34,8 @@ use number::polynomial::squarefree;
 /// The result of exact arithmetic for a system without rigid modes.
 #[derive(Clone, Debug)]
 pub struct ExactVerdict {
-    /// Elliptic: stable. Coexistence: stable with a multiplier ±1. Parabolic: all |λ| = 1, with a Jordan block.
-    /// Hyperbolic: some |λ| > 1.
+    /// Elliptic: stable. Coexistence: stable with a multiplier ±1. Parabolic: all |λ| = 1, with a Jordan
+    /// block. Hyperbolic: some |λ| > 1.
     pub kind: Kind,
     /// The eigenvalues μ of Bᵀ C by place.
     pub roots: MuCount,
@@ -58,8 +58,9 @@ pub struct MuCount {
     pub complex: usize,
 }
 
-/// The exact verdict on a system as one, over its whole period; its rigid modes are set apart. Parts that its other clocks leave alone have
-/// shorter periods: what is elliptic over one of these may be coexistence over the whole (see [`Part`](crate::Part)).
+/// The exact verdict on a system as one, over its whole period; its rigid modes are set apart. Parts that its
+/// other clocks leave alone have shorter periods: what is elliptic over one of these may be coexistence over
+/// the whole (see [`Part`](crate::Part)).
 ///
 /// # Errors
 /// A budget error with the estimated cost, before any work.
@@ -67,8 +68,8 @@ pub fn decide_exact(system: &System, limits: &Limits) -> Result<ExactVerdict> {
     decide_beside(system, &Frame::new(system), limits)
 }
 
-/// The exact verdict beside the rigid modes of `frame`. Potentials of one clock, restricted to a subspace that their sum alone leaves invariant,
-/// do not tell any more what is rigid.
+/// The exact verdict beside the rigid modes of `frame`. Potentials of one clock, restricted to a subspace
+/// that their sum alone leaves invariant, do not tell any more what is rigid.
 ///
 /// # Errors
 /// As [`decide_exact`].
@@ -88,7 +89,8 @@ const TIMES_TO_REFINE: u64 = 8;
 /// Roots are refined where there are no more of them.
 const MOST_REFINED: usize = 24;
 
-/// All μ with their growth, the largest to a double's digits, from the roots of the characteristic polynomial; `None` where that costs much.
+/// All μ with their growth, the largest to a double's digits, from the roots of the characteristic
+/// polynomial; `None` where that costs much.
 pub fn multipliers(system: &System, frame: &Frame, limits: &Limits) -> Option<Vec<Multiplier>> {
     let program = IntegerProgram::new(system);
     let most = limits.refining.min(limits.products);
@@ -110,11 +112,11 @@ pub fn multipliers(system: &System, frame: &Frame, limits: &Limits) -> Option<Ve
     Some(found)
 }
 
-/// The kind, where the trace of Bᵀ C decides it or one of the half period's forms is definite: a few eliminations in integers, no
-/// polynomial; `None` otherwise. The rigid modes of `frame` are set apart.
+/// The kind, where the trace of Bᵀ C decides it or one of the half period's forms is definite: a few
+/// eliminations in integers, no polynomial; `None` otherwise. The rigid modes of `frame` are set apart.
 ///
-/// Stable motion has all n eigenvalues μ in \[−1, 0\], so a trace outside \[−n, 0\] is growth. It costs n² products and decides
-/// growth beyond the range of doubles, where a characteristic polynomial takes minutes.
+/// Stable motion has all n eigenvalues μ in \[−1, 0\], so a trace outside \[−n, 0\] is growth. It costs n²
+/// products and decides growth beyond the range of doubles, where a characteristic polynomial takes minutes.
 ///
 /// # Errors
 /// A budget error with the estimated cost, before the work that exceeds it.
@@ -161,8 +163,8 @@ impl Inertias for IntegerBlocks {
     }
 }
 
-/// The words of the half period's numbers, and the products of 64-bit words of composing it, in which they grow by the
-/// bits of f with each kick.
+/// The words of the half period's numbers, and the products of 64-bit words of composing it, in which they
+/// grow by the bits of f with each kick.
 fn composing(system: &System, frame: &Frame, program: &IntegerProgram) -> (f64, f64) {
     let kicks = (system.schedule().strikes() / 2 + 1) as f64;
     let words = kicks * program.bits() as f64 / 64.0 + 1.0;
@@ -170,8 +172,8 @@ fn composing(system: &System, frame: &Frame, program: &IntegerProgram) -> (f64, 
     (words, kicks * 2.0 * frame.kept.len() as f64 * 3.0 * entries as f64 * words / 2.0)
 }
 
-/// Products of 64-bit words, roughly: composing, and n³ operations for each of the primes of which the coefficients
-/// consist.
+/// Products of 64-bit words, roughly: composing, and n³ operations for each of the primes of which the
+/// coefficients consist.
 fn estimate(system: &System, frame: &Frame, program: &IntegerProgram) -> u64 {
     let n = frame.kept.len() as f64;
     let (words, compose) = composing(system, frame, program);
@@ -263,8 +265,9 @@ mod tests {
     use crate::{Potential, Symmetric, decide_system, exact_kind};
     use number::rational::ratio;
 
-    /// Random entries, or (so that edges are met exactly) diagonal stiffnesses of 0 to 5, turned by (3, 4, 5); of these a third with two modes
-    /// alike (multiple multipliers, of both of Krein's signs where single stiffnesses differ), a third with a rigid mode.
+    /// Random entries, or (so that edges are met exactly) diagonal stiffnesses of 0 to 5, turned by (3,
+    /// 4, 5); of these a third with two modes alike (multiple multipliers, of both of Krein's signs where
+    /// single stiffnesses differ), a third with a rigid mode.
     fn system(numbers: &mut Numbers) -> System {
         let n = 1 + numbers.below(3) as usize;
         let edges = numbers.below(2) == 0;
@@ -300,7 +303,8 @@ mod tests {
         System::new(Symmetric::diagonal(&vec![ratio(1, 1); n]), potentials).unwrap()
     }
 
-    /// Decides by forms where one is definite, by doubles and by characteristic polynomials, which must agree: how often forms gave each kind.
+    /// Decides by forms where one is definite, by doubles and by characteristic polynomials, which must
+    /// agree: how often forms gave each kind.
     fn agreed(count: usize) -> std::collections::BTreeMap<&'static str, usize> {
         let (mut numbers, limits) = (Numbers(7), Limits::default());
         let mut decided = std::collections::BTreeMap::new();

@@ -62,7 +62,8 @@ pub fn kernel(field: &PrimeField, mut m: DMatrix<u64>) -> Vec<Vec<u64>> {
     (0..n).filter(|column| !pivots.contains(column)).map(vector).collect()
 }
 
-/// The rank modulo a prime of rows of rationals, of n columns, which is no larger than the true one; `None` where the prime divides a denominator.
+/// The rank modulo a prime of rows of rationals, of n columns, which is no larger than the true one; `None`
+/// where the prime divides a denominator.
 pub(crate) fn rank_of(rows: &[BTreeMap<usize, Rational>], n: usize) -> Option<usize> {
     let field = PrimeField::LARGEST;
     let mut m = DMatrix::from_element(rows.len(), n, 0);

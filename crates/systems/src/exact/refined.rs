@@ -1,14 +1,16 @@
 //! The eigenvalues μ of Bᵀ C over ℚ, to as many digits as the growth of the fastest asks for.
 //!
-//! Approximations z_i of the n simple roots of f(z) = Π (z − μ_i) all move by their corrections (Weierstrass; Durand, Kerner)
+//! Approximations z_i of the n simple roots of f(z) = Π (z − μ_i) all move by their corrections (Weierstrass;
+//! Durand, Kerner)
 //!
 //! ```text
 //!     w_i = f(z_i)/Π (z_i − z_j).
 //! ```
 //!
-//! The matrix diag(z) − w (1, ..., 1) has the characteristic polynomial f, so by Gershgorin all roots lie in the discs of radius
-//! n |w_i| about z_i, and in a disc that meets no other there is one. The z_i are Gaussian integers over 2^bits and the products exact; the
-//! coefficients of f are known to 2^-fraction, and so is each step of Horner's scheme: f(z) to 3 n max(1, |z|)^n of these.
+//! The matrix diag(z) − w (1, ..., 1) has the characteristic polynomial f, so by Gershgorin all roots lie in
+//! the discs of radius n |w_i| about z_i, and in a disc that meets no other there is one. The z_i are
+//! Gaussian integers over 2^bits and the products exact; the coefficients of f are known to 2^-fraction, and
+//! so is each step of Horner's scheme: f(z) to 3 n max(1, |z|)^n of these.
 
 use num_bigint::BigInt;
 use num_complex::{Complex, Complex64};
@@ -21,13 +23,15 @@ use number::{Ball, Rational, U};
 
 type Gaussian = Complex<BigInt>;
 
-/// 2^13 bits resolve an excess of 2^-8000: none is nearer to 0 among systems that exact arithmetic decides in seconds.
+/// 2^13 bits resolve an excess of 2^-8000: none is nearer to 0 among systems that exact arithmetic decides in
+/// seconds.
 const MOST_BITS: u32 = 1 << 13;
 
 /// Corrections at one precision: from far, each takes away some n-th part of the distance.
 const MOST_ROUNDS: usize = 1_000;
 
-/// Products of words over n³ times those of one number: n² steps of Horner's scheme and n² factors, n words of each, in complex numbers.
+/// Products of words over n³ times those of one number: n² steps of Horner's scheme and n² factors, n words
+/// of each, in complex numbers.
 const PRODUCTS: u64 = 6;
 
 /// Relative bits of the largest excess that a double's digits of its growth need.
@@ -51,8 +55,9 @@ struct Correction {
     off: BigInt,
 }
 
-/// The roots μ = z/d of a monic squarefree polynomial in z, each with an enclosure of its growth; the largest to a double's digits.
-/// `None` where that takes more than [`MOST_BITS`], or more than `most` products of machine words.
+/// The roots μ = z/d of a monic squarefree polynomial in z, each with an enclosure of its growth; the largest
+/// to a double's digits. `None` where that takes more than [`MOST_BITS`], or more than `most` products of
+/// machine words.
 pub fn multipliers(f: &[BigInt], d: &BigInt, most: u64) -> Option<Vec<Multiplier>> {
     let mut roots = Roots { left: most, ..Roots::start(f, d) };
     loop {
@@ -99,7 +104,8 @@ impl<'a> Roots<'a> {
         }
     }
 
-    /// The places of coefficients: a cluster of roots takes as many more as its product of distances is small.
+    /// The places of coefficients: a cluster of roots takes as many more as its product of distances is
+    /// small.
     fn fraction(&self) -> u32 {
         2 * self.bits + 64
     }
@@ -123,8 +129,8 @@ impl<'a> Roots<'a> {
         Some(())
     }
 
-    /// The products of words that one correction of every root takes: Horner's scheme, and the distances to the others, whose product
-    /// becomes n times as long as one of them.
+    /// The products of words that one correction of every root takes: Horner's scheme, and the distances to
+    /// the others, whose product becomes n times as long as one of them.
     fn spend(&mut self) -> Option<()> {
         let parts = self.points.iter().map(|z| z.re.bits().max(z.im.bits())).max().unwrap_or(0);
         let (n, words) = (self.points.len() as u64, (parts.max(self.bits.into()) / 64 + 1));
@@ -133,8 +139,8 @@ impl<'a> Roots<'a> {
         Some(())
     }
 
-    /// Corrects until only what is not known of the corrections moves; `None` where two approximations meet, and where they cost too
-    /// much.
+    /// Corrects until only what is not known of the corrections moves; `None` where two approximations meet,
+    /// and where they cost too much.
     fn settle(&mut self) -> Option<()> {
         let (n, coefficients) = (BigInt::from(self.points.len()), self.coefficients());
         for round in 0..=MOST_ROUNDS {
@@ -184,7 +190,8 @@ impl<'a> Roots<'a> {
         (0..n).all(|i| (0..i).all(|j| !self.meet(i, &self.points[i], j)))
     }
 
-    /// Whether the root in an isolated disc is real: the conjugate one lies in the mirrored disc, which meets no other.
+    /// Whether the root in an isolated disc is real: the conjugate one lies in the mirrored disc, which meets
+    /// no other.
     fn is_real(&self, i: usize) -> bool {
         let mirrored = self.points[i].conj();
         (0..self.points.len()).all(|j| (i == j) == self.meet(i, &mirrored, j))

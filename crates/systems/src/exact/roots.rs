@@ -97,8 +97,8 @@ pub fn count(f: &[BigInt], d: &BigInt) -> RootCount {
 
 /// The rank over ℚ of an integer matrix given by its residues, whose entries do not exceed `bound`.
 ///
-/// A rank modulo p is at most the true one. If it is r for primes whose product exceeds every minor of size r + 1
-/// (Hadamard), all these minors are 0.
+/// A rank modulo p is at most the true one. If it is r for primes whose product exceeds every minor of size
+/// r + 1 (Hadamard), all these minors are 0.
 pub fn rank(rows: usize, bound: &BigInt, residues: impl Fn(&PrimeField) -> DMatrix<u64>) -> usize {
     // A row of a minor has at most `rows` entries: its length is at most √rows bound.
     let entry_bits = bound.bits() + rows.ilog2() as u64 / 2 + 1;

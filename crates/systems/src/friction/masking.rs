@@ -18,7 +18,8 @@ pub enum Mask {
 pub struct Masked {
     /// At this one something is proven to grow; 0 where that is known without friction alone.
     pub grows: f64,
-    /// Ranges of frictions that are proven to mask, increasing, at least one. The last has no end where all larger ones are proven to.
+    /// Ranges of frictions that are proven to mask, increasing, at least one. The last has no end where all
+    /// larger ones are proven to.
     pub ranges: Vec<(f64, f64)>,
 }
 
@@ -130,8 +131,8 @@ impl Search<'_> {
     }
 }
 
-/// The range that is proven from a friction that masks, or from just above it: beside an edge bounds may be as
-/// wide as the way to it.
+/// The range that is proven from a friction that masks, or from just above it: beside an edge bounds may be
+/// as wide as the way to it.
 pub(crate) fn from_edge(first: f64, up: impl Fn(f64) -> f64) -> (f64, f64) {
     let reach = |part: f64| (part * first, up(part * first));
     let found = [1.0, 1.001, 1.003, 1.01].into_iter().map(reach).find(|(lo, hi)| lo < hi);

@@ -1,4 +1,5 @@
-//! Many degrees of freedom with friction: the eigenvalues of the whole period in doubles, within proven discs.
+//! Many degrees of freedom with friction: the eigenvalues of the whole period in doubles, within proven
+//! discs.
 
 use super::cells::Cells;
 use super::damping::Damping;
@@ -30,14 +31,15 @@ pub struct Friction {
     pub rate: Rational,
     /// Where the spectral radius lies, rigid motions apart; `None`: doubles cannot decide.
     pub damping: Option<Damping>,
-    /// ln ρ(Q)/T of the part where it is largest, enclosed, per unit time: below 0 the slowest decay, above 0 the growth;
-    /// `None` where doubles bound nothing.
+    /// ln ρ(Q)/T of the part where it is largest, enclosed, per unit time: below 0 the slowest decay, above 0
+    /// the growth; `None` where doubles bound nothing.
     pub growth: Option<(f64, f64)>,
     /// The frictions that mask every resonance.
     pub masking: Mask,
 }
 
-/// The effect of friction of the rate γ per unit time on a system, and the friction that masks its resonances.
+/// The effect of friction of the rate γ per unit time on a system, and the friction that masks its
+/// resonances.
 ///
 /// # Errors
 /// A rate that is not positive; budget errors, before the work.
@@ -117,8 +119,8 @@ pub fn damped_pair(oscillator: &Oscillator, rate: &Rational, limits: &verdict::L
     damped_oscillator(&clocks, oscillator.h1(), rate)
 }
 
-/// As [`damped_system`], for K clocks on one oscillator, whose stiffnesses and steps may involve π; `unit` is h_1, the unit of time of the
-/// clocks, and γ is per unit of what `unit` is in.
+/// As [`damped_system`], for K clocks on one oscillator, whose stiffnesses and steps may involve π; `unit` is
+/// h_1, the unit of time of the clocks, and γ is per unit of what `unit` is in.
 ///
 /// # Errors
 /// A rate that is not positive.

@@ -1,18 +1,20 @@
 //! Friction: Ornstein and Uhlenbeck's step O in the middle of every drift, as BAOAB and its relatives do.
 //!
-//! Between two kick times a time t apart the state goes through D(t/2) O D(t/2), O: v → c v (+ noise), c = exp(−γ t). The kick times are
-//! those of the whole schedule: a potential parts the drifts of what it does not act on, too, and of strength 0 it still does
-//! (D(t/2) O D(t/2) twice is not the same over 2t). So what moves apart from the rest is damped as if weakly coupled to it.
-//! With one level this is BAOAB, with r-RESPA its multiple-time-step form (the innermost step a BAOAB one). Means and
-//! covariances of the chain stay bounded iff the *spectral radius* ρ(Q) of the noiseless period is below 1. Friction is no
-//! longer reversible, so the whole period decides, not its half. For one oscillator
+//! Between two kick times a time t apart the state goes through D(t/2) O D(t/2), O: v → c v (+ noise), c =
+//! exp(−γ t). The kick times are those of the whole schedule: a potential parts the drifts of what it does
+//! not act on, too, and of strength 0 it still does (D(t/2) O D(t/2) twice is not the same over 2t). So what
+//! moves apart from the rest is damped as if weakly coupled to it. With one level this is BAOAB, with r-RESPA
+//! its multiple-time-step form (the innermost step a BAOAB one). Means and covariances of the chain stay
+//! bounded iff the *spectral radius* ρ(Q) of the noiseless period is below 1. Friction is no longer
+//! reversible, so the whole period decides, not its half. For one oscillator
 //!
 //! ```text
 //!     det Q = exp(−γ T),     ρ(Q) < 1  iff  |Tr Q| < 1 + det Q   (Jury),
 //! ```
 //!
-//! and a linear resonance is *masked* by every γ for which ρ(Q) < 1 although the frictionless period grows. Larger frictions need not mask it, too: a strong one
-//! stops velocities in the middle of each drift, and positions then follow products of 1 − t K/2, which may grow.
+//! and a linear resonance is *masked* by every γ for which ρ(Q) < 1 although the frictionless period grows.
+//! Larger frictions need not mask it, too: a strong one stops velocities in the middle of each drift, and
+//! positions then follow products of 1 − t K/2, which may grow.
 //!
 //! | file | what |
 //! |---|---|

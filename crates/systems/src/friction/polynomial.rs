@@ -12,7 +12,8 @@ use number::{Ball, Sign};
 /// The degree in c: to halve a cell costs its square, some milliseconds at this.
 const MAX_STEPS: usize = 128;
 
-/// Sums of balls that halving may cost in all: about a second, and some six edges to the width of [`MIN_CELL`] at the largest degree.
+/// Sums of balls that halving may cost in all: about a second, and some six edges to the width of
+/// [`MIN_CELL`] at the largest degree.
 const MAX_SUMS: usize = 5_000_000;
 
 /// Cells that are halved in all.
@@ -72,7 +73,8 @@ impl Polynomials<'_> {
         Some(Mask::found(least, ranges))
     }
 
-    /// The cells from `lo` to `hi`, the last one first; `None` in place of a polynomial that is positive there.
+    /// The cells from `lo` to `hi`, the last one first; `None` in place of a polynomial that is positive
+    /// there.
     fn visit(
         &self,
         sides: [Option<Coefficients>; 2],

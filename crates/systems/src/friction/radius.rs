@@ -9,8 +9,8 @@ use crate::signs::inertia::is_definite;
 use crate::spectrum::discs::{components, real_form, residual};
 use number::U;
 
-/// Where the spectral radius of all matrices within `error` (2-norm) of q lies: by its enclosure, or, near double eigenvalues where that is
-/// wide, by a form that each of them shrinks.
+/// Where the spectral radius of all matrices within `error` (2-norm) of q lies: by its enclosure, or, near
+/// double eigenvalues where that is wide, by a form that each of them shrinks.
 pub fn damping(q: &Mat<f64>, error: f64, radius: Option<Radius>) -> Option<Damping> {
     let by_radius = radius.and_then(Radius::damping);
     by_radius.or_else(|| shrinks_a_form(q, error).then_some(Damping::Damped))
@@ -80,8 +80,8 @@ pub(crate) struct Radius {
 }
 
 impl Radius {
-    /// For all matrices within `error` (2-norm) of q: no eigenvalue lies outside the discs, and at least one in each of their connected
-    /// components. `None` where doubles bound nothing.
+    /// For all matrices within `error` (2-norm) of q: no eigenvalue lies outside the discs, and at least one
+    /// in each of their connected components. `None` where doubles bound nothing.
     pub fn of(q: &Mat<f64>, error: f64) -> Option<Radius> {
         let eigen = q.eigen().ok()?;
         let values: Vec<_> = (0..q.nrows()).map(|i| eigen.S()[i]).collect();

@@ -1,4 +1,5 @@
-//! One oscillator whose spectral radius is 1 at every friction, as velocity Verlet's at its own limit, exactly.
+//! One oscillator whose spectral radius is 1 at every friction, as velocity Verlet's at its own limit,
+//! exactly.
 
 use num_traits::One;
 
@@ -9,8 +10,8 @@ use number::{Rational, Real, Sign};
 /// The longest period that is looked at, in ticks: each is a place at which a polynomial has to vanish.
 const LONGEST: u64 = 200;
 
-/// Whether the period has an eigenvalue 1 or −1 at every friction: one of 1 + c^N ∓ Tr Q(c), polynomials of degree N in the factor c of a
-/// tick, is 0. The other one is then positive, so the spectral radius is 1.
+/// Whether the period has an eigenvalue 1 or −1 at every friction: one of 1 + c^N ∓ Tr Q(c), polynomials of
+/// degree N in the factor c of a tick, is 0. The other one is then positive, so the spectral radius is 1.
 pub(super) fn is_tie<S: Real>(clocks: &ManyClocks<S>) -> bool {
     let ticks = clocks.schedule().period();
     if ticks > LONGEST {

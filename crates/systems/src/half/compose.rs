@@ -99,8 +99,8 @@ impl Program<f64> {
 }
 
 impl<S> Program<S> {
-    /// Over the scalars that `entry` makes of one of M⁻¹, and `products` of a stiffness and the factor of its clock: the
-    /// rows that are not 0.
+    /// Over the scalars that `entry` makes of one of M⁻¹, and `products` of a stiffness and the factor of its
+    /// clock: the rows that are not 0.
     fn over(
         system: &System,
         entry: impl Fn(&Rational) -> S,
@@ -223,8 +223,8 @@ fn propagator<S: Ring>(program: &Program<S>, events: impl Iterator<Item = Event>
     DMatrix::from_fn(2 * n, 2 * n, |i, j| rows[i][j].clone())
 }
 
-/// H, the propagator over half the period, half of each kick at its ends, in any ring: 2n x 2n, positions before
-/// momenta, the momenta in the unit of time one tick.
+/// H, the propagator over half the period, half of each kick at its ends, in any ring: 2n x 2n, positions
+/// before momenta, the momenta in the unit of time one tick.
 pub fn half_period<S: Ring>(system: &System) -> DMatrix<S> {
     half_period_of(&Program::new(system).map(S::from_rational), system)
 }
@@ -239,14 +239,16 @@ pub fn full_period<S: Ring>(system: &System) -> DMatrix<S> {
     propagator(&Program::new(system).map(S::from_rational), system.schedule().symmetric_period())
 }
 
-/// The degrees of freedom that some entry of the mass or of a stiffness connects, an effective one or one that it comes from.
+/// The degrees of freedom that some entry of the mass or of a stiffness connects, an effective one or one
+/// that it comes from.
 pub(crate) fn connected_parts(system: &System) -> Vec<Vec<usize>> {
     let potentials = system.potentials().iter().map(|potential| &potential.stiffness);
     let graphs = potentials.chain(system.holding()).chain([system.mass()]);
     connected(system.size(), graphs.flat_map(Symmetric::places))
 }
 
-/// The connected components of the graph on 0, ..., n − 1 with these edges, each increasing, in the order of their first.
+/// The connected components of the graph on 0, ..., n − 1 with these edges, each increasing, in the order of
+/// their first.
 pub(crate) fn connected(n: usize, edges: impl Iterator<Item = (usize, usize)>) -> Vec<Vec<usize>> {
     let mut root: Vec<usize> = (0..n).collect();
     fn find(root: &mut [usize], mut i: usize) -> usize {

@@ -1,22 +1,23 @@
 //! The half period in doubles, with a proven bound on what rounding did to it.
 //!
-//! Every row update is a symplectic shear: H_k = M_k H_(k−1) exactly, Ĥ_k = M_k Ĥ_(k−1) + e_i r_kᵀ computed, the error
-//! r_k in the one row i. So the error is E_k = Σ_j H_k H_j⁻¹ e_i r_jᵀ. The inverse of a symplectic matrix is its
-//! transpose up to signs and order: |H_j⁻¹ e_i| = |row i' of H_j|, where i' is the momentum of the position i and the
-//! other way round, a row that the shear leaves alone. With σ = Σ |row i' of Ĥ_j| |r_j|, ρ = Σ |r_j|,
-//! G = max ‖Ĥ_k‖ and e a bound on all earlier errors,
+//! Every row update is a symplectic shear: H_k = M_k H_(k−1) exactly, Ĥ_k = M_k Ĥ_(k−1) + e_i r_kᵀ computed,
+//! the error r_k in the one row i. So the error is E_k = Σ_j H_k H_j⁻¹ e_i r_jᵀ. The inverse of a symplectic
+//! matrix is its transpose up to signs and order: |H_j⁻¹ e_i| = |row i' of H_j|, where i' is the momentum of
+//! the position i and the other way round, a row that the shear leaves alone. With σ = Σ |row i' of
+//! Ĥ_j| |r_j|, ρ = Σ |r_j|, G = max ‖Ĥ_k‖ and e a bound on all earlier errors,
 //!
 //! ```text
 //!     ‖E_k‖ ≤ (‖Ĥ_k‖ + ‖E_k‖) s,   s = σ + e ρ:      ‖E_k‖ ≤ ‖Ĥ_k‖ s/(1 − s).
 //! ```
 //!
 //! If 8 G ρ ≤ 1 then e = 2Gσ does: σ ≤ Gρ ≤ 1/8, s ≤ 1.25 σ < 0.16, and 1.25/0.84 < 2. At the end ‖Ĥ‖ is the
-//! spectral norm, and so is that of the bound on E. Positions and momenta are scaled by powers of two, exactly, so
-//! that both are of one size.
+//! spectral norm, and so is that of the bound on E. Positions and momenta are scaled by powers of two,
+//! exactly, so that both are of one size.
 //!
-//! Drifts that follow each other change no momentum, and kicks no position: together they are one shear, with the errors r_i in
-//! rows i of one matrix R, and H_j⁻¹ takes R to (rows i' of H_j)ᵀ R: a term of σ is ‖rows i' of Ĥ_j‖₂ ‖R‖₂, one of ρ is ‖R‖₂. Of n rows that
-//! reach few others that is some n times less than row by row; ‖·‖₂² is at most the largest sum of a row times that of a column.
+//! Drifts that follow each other change no momentum, and kicks no position: together they are one shear, with
+//! the errors r_i in rows i of one matrix R, and H_j⁻¹ takes R to (rows i' of H_j)ᵀ R: a term of σ is ‖rows
+//! i' of Ĥ_j‖₂ ‖R‖₂, one of ρ is ‖R‖₂. Of n rows that reach few others that is some n times less than row by
+//! row; ‖·‖₂² is at most the largest sum of a row times that of a column.
 
 use faer::Mat;
 
@@ -40,7 +41,8 @@ pub(crate) struct FloatBlocks {
     pub y: Vec<Vec<f64>>,
     /// m rows of 2m entries: C and D side by side.
     pub p: Vec<Vec<f64>>,
-    /// The spectral norm of the error of all together is at most this; `None` where the bound's condition fails.
+    /// The spectral norm of the error of all together is at most this; `None` where the bound's condition
+    /// fails.
     pub error: Option<f64>,
     /// More than the spectral norm of each.
     pub norm: f64,
@@ -48,7 +50,8 @@ pub(crate) struct FloatBlocks {
     pub scales: Vec<f64>,
 }
 
-/// From how many degrees of freedom on shears are looked at as a whole, and those of how many rows: fewer gain little.
+/// From how many degrees of freedom on shears are looked at as a whole, and those of how many rows: fewer
+/// gain little.
 const MANY: usize = 64;
 const FEW: usize = 16;
 
@@ -77,8 +80,8 @@ enum Side {
     Momenta,
 }
 
-/// Rows of one side, each changed once by multiples f_ij of rows j of the other side, which stay: |r_i| ≤ c_i (|before| + Σ |f_ij| |row j|)
-/// entry by entry.
+/// Rows of one side, each changed once by multiples f_ij of rows j of the other side, which stay: |r_i| ≤ c_i
+/// (|before| + Σ |f_ij| |row j|) entry by entry.
 struct Shear {
     side: Side,
     rows: Vec<usize>,
@@ -116,8 +119,8 @@ impl Shear {
         (self.share, self.row) = (self.share.max(share), self.row.max(sum));
     }
 
-    /// Upper bounds of the terms of ρ and σ, together or row by row, whichever is less: with |before| ≤ |after| + |F| |other|,
-    /// ‖R‖₂ ≤ c ‖|after|‖₂ + 2 ‖C |F|‖₂ ‖|other|‖₂.
+    /// Upper bounds of the terms of ρ and σ, together or row by row, whichever is less:
+    /// with |before| ≤ |after| + |F| |other|, ‖R‖₂ ≤ c ‖|after|‖₂ + 2 ‖C |F|‖₂ ‖|other|‖₂.
     fn terms<'a>(&self, width: usize, changed: &'a [f64], other: &'a [f64]) -> [f64; 2] {
         let row = |values: &'a [f64], i: usize| &values[i * width..(i + 1) * width];
         let changed = norm::by_sums(width, self.rows.iter().map(|&i| row(changed, i)));
@@ -151,8 +154,8 @@ impl Rows {
         }
     }
 
-    /// Accounts for a row that had the squared norm `before` and was computed with an error of at most `error`, the
-    /// conjugate row having the squared norm `conjugate`.
+    /// Accounts for a row that had the squared norm `before` and was computed with an error of at most
+    /// `error`, the conjugate row having the squared norm `conjugate`.
     fn account(&mut self, before: f64, after: f64, error: f64, conjugate: f64) {
         self.total += after - before;
         self.largest = self.largest.max(self.total);
@@ -206,7 +209,8 @@ impl State<f64> for Rows {
             }
             let after = norm2(row);
             self.x_norms[i] = after;
-            // Each of the k terms: the factor's three roundings (t, a, product), the product's, at most k sums.
+            // Each of the k terms: the factor's three roundings (t, a, product), the product's, at most k
+            // sums.
             let share = 1.01 * U * (program.inverse_mass[i].len() as f64 + 4.0);
             self.account(before, after, share * size, self.p_norms[i]);
             if let Some(shear) = &mut self.shear {
@@ -305,8 +309,9 @@ fn finish(rows: Rows, frame: &Frame, scales: Vec<f64>) -> FloatBlocks {
 }
 
 impl Rows {
-    /// The bound of the module's head, through a projection P = (I, −N) on both sides, r columns in N of squared
-    /// norm `stretch` together, ‖Ĥ‖₂ ≤ `end`: ‖P‖² ≤ 1 + ‖N‖², and each side rounds r + 1 terms, N itself included.
+    /// The bound of the module's head, through a projection P = (I, −N) on both sides, r columns in N of
+    /// squared norm `stretch` together, ‖Ĥ‖₂ ≤ `end`: ‖P‖² ≤ 1 + ‖N‖², and each side rounds r + 1 terms, N
+    /// itself included.
     fn error(&self, r: usize, stretch: f64, end: f64) -> Option<f64> {
         // 1.01: the roundings of norms and of their running sums (fewer than 10^12 updates).
         let largest = 1.01 * (self.largest + self.total.abs()).sqrt();
@@ -332,9 +337,9 @@ impl Rows {
     }
 }
 
-/// For each degree of freedom a power of two a_i near √(m_i ω): positions are taken times a_i, momenta divided by
-/// it. With ω between the lowest and the highest frequency (their geometric mean, per tick) a mode of frequency w
-/// enters the propagator with entries up to max(ω/w, w/ω).
+/// For each degree of freedom a power of two a_i near √(m_i ω): positions are taken times a_i, momenta
+/// divided by it. With ω between the lowest and the highest frequency (their geometric mean, per tick) a mode
+/// of frequency w enters the propagator with entries up to max(ω/w, w/ω).
 fn scales(program: &Program<f64>, omega: f64) -> Vec<f64> {
     let scale = |(i, row): (usize, &Row<f64>)| {
         let inverse_mass = row.iter().find(|(j, _)| *j == i).map_or(1.0, |(_, x)| x.abs());

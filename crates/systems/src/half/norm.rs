@@ -18,8 +18,8 @@ pub(crate) fn frobenius(m: &Mat<f64>) -> f64 {
     1.01 * sums.iter().sum::<f64>().sqrt()
 }
 
-/// More than the spectral norm of the matrix of absolute values: Frobenius's norm, or the root of the largest sum of a column times that of a
-/// row, which is nearer where entries fall off away from the diagonal.
+/// More than the spectral norm of the matrix of absolute values: Frobenius's norm, or the root of the largest
+/// sum of a column times that of a row, which is nearer where entries fall off away from the diagonal.
 pub fn absolute(m: &Mat<f64>) -> f64 {
     let size = frobenius(m);
     if !size.is_finite() {
@@ -28,7 +28,8 @@ pub fn absolute(m: &Mat<f64>) -> f64 {
     size.min(by_sums(m.nrows(), (0..m.ncols()).map(|j| m.col_as_slice(j))))
 }
 
-/// The bound by sums alone, for a matrix of finite entries given by its columns, or by its rows, each of this length.
+/// The bound by sums alone, for a matrix of finite entries given by its columns, or by its rows, each of this
+/// length.
 pub(crate) fn by_sums<'a>(length: usize, lines: impl Iterator<Item = &'a [f64]>) -> f64 {
     let (mut across, mut largest) = (vec![0.0; length], 0.0_f64);
     for line in lines {
@@ -40,8 +41,8 @@ pub(crate) fn by_sums<'a>(length: usize, lines: impl Iterator<Item = &'a [f64]>)
 
 /// More than the spectral norm, by at most a factor n^(1/8): ‖A‖₂^4 = ‖(Aᵀ A)²‖₂ ≤ ‖(Aᵀ A)²‖_F.
 ///
-/// Rounding: with ν = ‖A‖_F ≤ √n ‖A‖₂ each product is off by less than 10^-12 of its norm for n < 10^4, the bound
-/// by less than 1.01. A is scaled by its Frobenius norm first, so that nothing overflows.
+/// Rounding: with ν = ‖A‖_F ≤ √n ‖A‖₂ each product is off by less than 10^-12 of its norm for n < 10^4, the
+/// bound by less than 1.01. A is scaled by its Frobenius norm first, so that nothing overflows.
 pub fn spectral(a: &Mat<f64>) -> f64 {
     let size = frobenius(a);
     if size == 0.0 || !size.is_finite() {

@@ -1,10 +1,12 @@
-//! A period or half of one in doubles with a proven bound, with friction, and with a stiffness of its own for every kick.
+//! A period or half of one in doubles with a proven bound, with friction, and with a stiffness of its own for
+//! every kick.
 //!
-//! Each step is Ĥ_k = M_k Ĥ_(k−1) + Δ_k, the M_k shears or, with friction, shears times diag(1, c): then H_k is d_k^½ times a
-//! symplectic matrix, d_k the product of the c's, and H_k⁻¹ takes an error R in the rows of momenta to Xᵀ R/d_k, X the rows of positions, and
-//! one in those of positions to Pᵀ R/d_k, but for signs. The error after the last step is Σ_j H H_j⁻¹ Δ_j, so with
-//! σ = Σ ‖X̂_j‖ ‖R_j‖/d_j (or P̂_j), ρ = Σ ‖R_j‖/d_j and G = max ‖Ĥ_k‖ the bound of [`float`](crate::half::float) holds: if
-//! 8 G ρ ≤ 1 all errors stay below 2 G σ, and ‖E‖ ≤ ‖Ĥ‖ s/(1 − s), s = σ + 2 G σ ρ. A kick F that is off by δ has R = δ X, and its term
+//! Each step is Ĥ_k = M_k Ĥ_(k−1) + Δ_k, the M_k shears or, with friction, shears times diag(1, c): then H_k
+//! is d_k^½ times a symplectic matrix, d_k the product of the c's, and H_k⁻¹ takes an error R in the rows of
+//! momenta to Xᵀ R/d_k, X the rows of positions, and one in those of positions to Pᵀ R/d_k, but for signs.
+//! The error after the last step is Σ_j H H_j⁻¹ Δ_j, so with σ = Σ ‖X̂_j‖ ‖R_j‖/d_j (or P̂_j), ρ = Σ
+//! ‖R_j‖/d_j and G = max ‖Ĥ_k‖ the bound of [`float`](crate::half::float) holds: if 8 G ρ ≤ 1 all errors stay
+//! below 2 G σ, and ‖E‖ ≤ ‖Ĥ‖ s/(1 − s), s = σ + 2 G σ ρ. A kick F that is off by δ has R = δ X, and its term
 //! is δ ‖X̂‖²: norms are spectral, of many rows some n times less than Frobenius's.
 
 use std::collections::BTreeMap;
@@ -18,7 +20,8 @@ use crate::half::norm;
 use clocks::schedule::{Event, Weight};
 use number::{Ball, Rational, U};
 
-/// One kick: F, and how far (2-norm) the true F may be from it: `off`, and `known` beside it where F was measured.
+/// One kick: F, and how far (2-norm) the true F may be from it: `off`, and `known` beside it where F was
+/// measured.
 #[derive(Clone, Debug)]
 pub(crate) struct Stiff {
     pub stiffness: Stiffness,
@@ -34,7 +37,8 @@ pub enum Stiffness {
     Whole(Mat<f64>),
 }
 
-/// The motion between the events: drifts with M⁻¹ in ticks, which is known to `off` (2-norm), v → c v with c = exp(−decay) a tick.
+/// The motion between the events: drifts with M⁻¹ in ticks, which is known to `off` (2-norm), v → c v with
+/// c = exp(−decay) a tick.
 #[derive(Clone, Debug)]
 pub(crate) struct Drifts<'a> {
     pub inverse_mass: &'a [Row<f64>],
@@ -52,7 +56,8 @@ pub(crate) struct Propagated {
     account: Account,
 }
 
-/// ‖R‖ and ‖X‖ ‖R‖ of one step's errors, with P in place of X for errors of positions; and of a kick's `known` alone.
+/// ‖R‖ and ‖X‖ ‖R‖ of one step's errors, with P in place of X for errors of positions; and of a kick's
+/// `known` alone.
 struct Step {
     error: f64,
     taken_back: f64,
@@ -100,7 +105,8 @@ pub(crate) fn follow_proven<'a>(
     follow_looking(drifts, events, kick, |_, _| ())
 }
 
-/// Follows with a bound, and shows `look` every event and the rows of positions there, 2n columns each, within [`Propagated::error_on_the_way`].
+/// Follows with a bound, and shows `look` every event and the rows of positions there, 2n columns each,
+/// within [`Propagated::error_on_the_way`].
 pub(crate) fn follow_looking<'a>(
     drifts: &Drifts,
     events: impl Iterator<Item = Event>,
@@ -178,7 +184,8 @@ fn within([own, known]: [f64; 2], times: f64) -> f64 {
 }
 
 impl Propagated {
-    /// The bound on the error where each F is off by `off` and so many times its `known`; `None` where its condition fails.
+    /// The bound on the error where each F is off by `off` and so many times its `known`; `None` where its
+    /// condition fails.
     pub fn error_within(&self, times: f64) -> Option<f64> {
         self.account.holds(times).then(|| self.account.bound(self.norm(), times))
     }
@@ -197,7 +204,8 @@ impl Propagated {
         spectral(&self.x, self.n).hypot(spectral(&self.p, self.n))
     }
 
-    /// x ← x + t (1 + c)/2 M⁻¹ p, p ← c p; more than the error. The sizes are bounds of ‖X̂‖ and ‖P̂‖, before and then after.
+    /// x ← x + t (1 + c)/2 M⁻¹ p, p ← c p; more than the error. The sizes are bounds of ‖X̂‖ and ‖P̂‖, before
+    /// and then after.
     fn drift(&mut self, drifts: &Drifts, ticks: f64, c: f64, [x_size, p_size]: &mut [f64; 2]) -> Step {
         let columns = 2 * self.n;
         let mean = ticks * (1.0 + c) / 2.0;
@@ -261,7 +269,8 @@ impl Propagated {
         squares
     }
 
-    /// Kicks at once, w a power of 2: whatever the order of its sums, an entry is off by n + 1 roundings of the sum of all sizes at most.
+    /// Kicks at once, w a power of 2: whatever the order of its sums, an entry is off by n + 1 roundings of
+    /// the sum of all sizes at most.
     fn kick_whole(&mut self, stiffness: &Mat<f64>, weight: f64) -> f64 {
         let (n, columns) = (self.n, 2 * self.n);
         let sizes = |rows: &[f64]| Mat::from_fn(n, 1, |i, _| norm2(Propagated::row(rows, columns, i)).sqrt());
@@ -291,7 +300,8 @@ impl Propagated {
     }
 }
 
-/// More than the 2-norm of the rows, each of so many columns: Frobenius's, or of many rows the root of the largest sums.
+/// More than the 2-norm of the rows, each of so many columns: Frobenius's, or of many rows the root of the
+/// largest sums.
 fn bound(rows: &[f64], columns: usize) -> f64 {
     let size = 1.01 * norm2(rows).sqrt();
     if columns < MANY || !size.is_finite() {

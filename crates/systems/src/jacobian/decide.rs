@@ -1,4 +1,5 @@
-//! The verdict on forces that are no gradient, their growth with the steps and without, the friction that masks it.
+//! The verdict on forces that are no gradient, their growth with the steps and without, the friction that
+//! masks it.
 
 use faer::{Mat, c64};
 use nalgebra::DMatrix;
@@ -26,12 +27,14 @@ pub struct NoGradient {
     pub without_steps: Option<(f64, f64)>,
     /// The growth rate for all matrices within their accuracy, enclosed, where they were measured.
     pub within_accuracy: Option<(f64, f64)>,
-    /// The least rate of friction per unit time under which nothing grows, rounded; 0 where nothing does, `None` where it was not looked for.
+    /// The least rate of friction per unit time under which nothing grows, rounded; 0 where nothing does,
+    /// `None` where it was not looked for.
     pub masking: Option<f64>,
 }
 
 impl NoGradient {
-    /// How much faster it grows with the steps of a verdict than without, enclosed; `None` where one of these is not bounded.
+    /// How much faster it grows with the steps of a verdict than without, enclosed; `None` where one of these
+    /// is not bounded.
     pub fn added_by_steps(&self, analysis: &Analysis) -> Option<(f64, f64)> {
         let ((lo, hi), (least, most)) = (analysis.growth_rate()?, self.without_steps?);
         Some(outward((lo - most, hi - least))).filter(|(lo, hi)| lo.is_finite() && hi.is_finite())
@@ -81,8 +84,8 @@ impl Jacobians {
         Ok(Analysis { rigid_modes: self.rigid.clone(), ..Analysis::of_part(part, clocks, warnings) })
     }
 
-    /// Products of doubles, roughly: both halves of a period, eigenvalues with vectors and their proof; periods with friction and their
-    /// eigenvalues.
+    /// Products of doubles, roughly: both halves of a period, eigenvalues with vectors and their proof;
+    /// periods with friction and their eigenvalues.
     pub fn cost(&self) -> u64 {
         let (n, kicks) = (self.size() as u64, self.schedule.strikes());
         let damped = if self.size() <= MOST_MASKED { 6_000 } else { 0 };
@@ -99,7 +102,8 @@ impl Jacobians {
         }
     }
 
-    /// The growth rate with these steps, per unit time, enclosed, for the matrices given; `None`: not bounded.
+    /// The growth rate with these steps, per unit time, enclosed, for the matrices given; `None`: not
+    /// bounded.
     pub fn growth_rate(&self) -> Option<(f64, f64)> {
         self.rate_of(self.spectrum().0.as_ref()?)
     }
@@ -120,7 +124,8 @@ impl Jacobians {
         Some(rate::per_time(rate::largest(growth.into_iter()), &Laurent::from_rational(self.period())))
     }
 
-    /// Positions of what grows fastest with these steps, real and imaginary part, rounded; `None` where nothing is seen to grow.
+    /// Positions of what grows fastest with these steps, real and imaginary part, rounded; `None` where
+    /// nothing is seen to grow.
     pub fn fastest(&self) -> Option<[Vec<f64>; 2]> {
         let spectrum = self.spectrum().0.as_ref()?;
         let sizes = spectrum.multipliers().into_iter().map(|multiplier| multiplier.size()).enumerate();
@@ -130,7 +135,8 @@ impl Jacobians {
         (size > 1.0).then(|| [part(|z| z.re), part(|z| z.im)])
     }
 
-    /// The eigenvalues of S for the matrices given, and how far S can be from that of others within their accuracy.
+    /// The eigenvalues of S for the matrices given, and how far S can be from that of others within their
+    /// accuracy.
     pub(super) fn spectrum(&self) -> &(Option<Spectrum>, f64) {
         self.spectrum.get_or_init(|| {
             let (s, [error, within]) = orbit::half_product(self);
@@ -144,7 +150,8 @@ impl Jacobians {
             .collect()
     }
 
-    /// The kind by the characteristic polynomial of S, and where the μ lie: of doubles as the numbers that they are.
+    /// The kind by the characteristic polynomial of S, and where the μ lie: of doubles as the numbers that
+    /// they are.
     ///
     /// # Errors
     /// A budget error.

@@ -1,8 +1,9 @@
 //! Friction on forces that are no gradient: which masks growth, by the spectral radius of whole periods.
 //!
-//! O, v → exp(−γ d) v, stands in the middle of every drift d, as BAOAB has it. Eigenvalues of the period in doubles lie in discs that its error
-//! widens (file `discs` of the spectrum), so all discs within the unit circle prove that every mean and covariance stays bounded, and a component of discs
-//! outside it that something grows in spite of the friction.
+//! O, v → exp(−γ d) v, stands in the middle of every drift d, as BAOAB has it. Eigenvalues of the period in
+//! doubles lie in discs that its error widens (file `discs` of the spectrum), so all discs within the unit
+//! circle prove that every mean and covariance stays bounded, and a component of discs outside it that
+//! something grows in spite of the friction.
 
 use faer::Mat;
 use nalgebra::DMatrix;
@@ -15,10 +16,12 @@ use clocks::schedule::KickDrift;
 use number::rational::{from_f64_exact, to_f64};
 use number::{Ball, Rational};
 
-/// The friction that masks growth is looked for of so many degrees of freedom: some thirty eigenvalue problems of twice as many rows.
+/// The friction that masks growth is looked for of so many degrees of freedom: some thirty eigenvalue
+/// problems of twice as many rows.
 pub(super) const MOST_MASKED: usize = 150;
 
-/// How much a multiplier may be above 1 in doubles where nothing grows: of nearly defective periods half of the digits are right.
+/// How much a multiplier may be above 1 in doubles where nothing grows: of nearly defective periods half of
+/// the digits are right.
 const STILL: f64 = 1e-7;
 
 /// A friction so much above the least one in doubles is tried for a proof.
@@ -27,7 +30,8 @@ const ABOVE: f64 = 1.01;
 const BITS: u32 = 96;
 
 impl Jacobians {
-    /// Where the spectral radius of a period with friction γ per unit time lies; `None`: doubles cannot decide.
+    /// Where the spectral radius of a period with friction γ per unit time lies; `None`: doubles cannot
+    /// decide.
     pub fn damping(&self, friction: &Rational) -> Option<Damping> {
         let (period, error) = self.damped_period(friction);
         let found = Spectrum::of(period, error.is_finite().then_some(error))?;
@@ -40,8 +44,8 @@ impl Jacobians {
         components(&found.mu, radius).iter().any(is_outside).then_some(Damping::Growing)
     }
 
-    /// A friction per unit time that is proven to mask what grows, about the least; `None` where nothing grows in doubles, none is proven, or there
-    /// are too many degrees of freedom to look for it.
+    /// A friction per unit time that is proven to mask what grows, about the least; `None` where nothing
+    /// grows in doubles, none is proven, or there are too many degrees of freedom to look for it.
     pub fn masking_friction(&self) -> Option<f64> {
         if self.size() > MOST_MASKED {
             return None;
@@ -50,7 +54,8 @@ impl Jacobians {
         (self.damping(&from_f64_exact(found)?) == Some(Damping::Damped)).then_some(found)
     }
 
-    /// One period of the time-symmetric form in doubles, rounded: positions first, then velocities, without rigid motions.
+    /// One period of the time-symmetric form in doubles, rounded: positions first, then velocities, without
+    /// rigid motions.
     pub fn full_period(&self) -> DMatrix<f64> {
         let (period, _) = self.damped_period(&Rational::default());
         DMatrix::from_fn(period.nrows(), period.ncols(), |i, j| period[(i, j)])
@@ -68,7 +73,8 @@ impl Jacobians {
         (period, state.doubles.error())
     }
 
-    /// By bisection on the spectral radius of the damped period, rounded; 0 where nothing grows without friction.
+    /// By bisection on the spectral radius of the damped period, rounded; 0 where nothing grows without
+    /// friction.
     pub(super) fn masking(&self) -> f64 {
         let grows = |rate: f64| {
             let rate = from_f64_exact(rate).unwrap_or_default();

@@ -107,8 +107,8 @@ impl Jacobians {
             (DMatrix::from_fn(n, n, |a, b| &j[(a, b)] / &masses[a]), step.clone(), phase.clone())
         });
         let clocks = merged(weighted);
-        // Motions n that no force sees, each for itself: those of one clock may cancel. In the coordinates y_i = x_i − Σ n_J[i] x_J of the
-        // others A_k keeps its rows' images.
+        // Motions n that no force sees, each for itself: those of one clock may cancel. In the coordinates
+        // y_i = x_i − Σ n_J[i] x_J of the others A_k keeps its rows' images.
         let rows = given.iter().flat_map(|(j, ..)| {
             j.row_iter().map(|row| {
                 row.iter().cloned().enumerate().filter(|(_, x)| !x.is_zero()).collect::<BTreeMap<_, _>>()
@@ -134,8 +134,8 @@ impl Jacobians {
         Jacobians::new(clocks.collect(), (motions, lift), asymmetries, (None, body), symmetric)
     }
 
-    /// From Jacobians in doubles, each known to `accuracy` times its norm, with steps: rigid motions by positions, in a periodic box
-    /// translations, are set apart, unless they are kept.
+    /// From Jacobians in doubles, each known to `accuracy` times its norm, with steps: rigid motions by
+    /// positions, in a periodic box translations, are set apart, unless they are kept.
     ///
     /// # Errors
     /// As [`Jacobians::rational`]; an accuracy that is not in (0, 1/10); constraints.
@@ -293,7 +293,8 @@ impl Jacobians {
         self.accuracy
     }
 
-    /// The highest frequency of the matrix on the shortest step alone, √Re λ of its eigenvalues λ, rounded; `None` where none is positive.
+    /// The highest frequency of the matrix on the shortest step alone, √Re λ of its eigenvalues λ, rounded;
+    /// `None` where none is positive.
     pub fn highest_fast_frequency(&self) -> Option<f64> {
         let found = self.clocks.first()?.matrix.eigenvalues().ok()?;
         let largest = found.iter().map(|z| z.re).fold(0.0, f64::max);

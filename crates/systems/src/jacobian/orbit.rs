@@ -1,7 +1,8 @@
 //! The half period of forces that are no gradient: in doubles with a proven bound, and exactly.
 //!
-//! Bounds grow as the norms of drifts and kicks do, e_x + d e_v and e_v + h |A| e_x: some e^(√|A| T) times the rounding of a step. That
-//! serves the few dozen inner steps of a run; no inverse is needed, which only symplectic matrices have for nothing.
+//! Bounds grow as the norms of drifts and kicks do, e_x + d e_v and e_v + h |A| e_x: some e^(√|A| T) times
+//! the rounding of a step. That serves the few dozen inner steps of a run; no inverse is needed, which only
+//! symplectic matrices have for nothing.
 
 use faer::{Mat, Scale};
 use nalgebra::DMatrix;

@@ -1,16 +1,18 @@
 //! Which motions may be set apart: those that no stiffness holds, each by what it is known to itself.
 //!
-//! Where F and S cancel their sum holds nothing, and a run is held all the same: their kicks fall at different times. So a motion r is rigid only if
+//! Where F and S cancel their sum holds nothing, and a run is held all the same: their kicks fall at
+//! different times. So a motion r is rigid only if
 //! |K_k r| ≤ accuracy ‖K_k‖ for every potential k.
 //!
-//! Rotations are seen in another way. A potential that knows no place turns its force with the atoms: for ω × x it has
+//! Rotations are seen in another way. A potential that knows no place turns its force with the atoms: for ω ×
+//! x it has
 //!
 //! ```text
 //!     K_k (ω × x) = ω × g_k,      g_k its gradient, Σ g_k = 0 at a minimum.
 //! ```
 //!
-//! Its own share is not small there, and no spring holds the rotation. So from K_k r of motions by positions that of the best g_k is taken away, three
-//! numbers an atom from nine; the rest counts as held.
+//! Its own share is not small there, and no spring holds the rotation. So from K_k r of motions by positions
+//! that of the best g_k is taken away, three numbers an atom from nine; the rest counts as held.
 
 use faer::{Mat, MatRef, Side};
 use nalgebra::{DMatrix, Matrix3, Vector3};
@@ -21,12 +23,14 @@ use crate::half::norm;
 use number::error::{Error, Result};
 use number::{Rational, U};
 
-/// A potential's part of its norm that is small beside a motion set apart. Turned forces hold up to 0.064 of molecules at their minima (four flexible
-/// waters, nonbonded). What holds a motion by more than a quarter is no matter of balance: the projection would move its stiffest modes by an eighth of
-/// their frequencies and more, and no advice covers that.
+/// A potential's part of its norm that is small beside a motion set apart. Turned forces hold up to 0.064 of
+/// molecules at their minima (four flexible waters, nonbonded). What holds a motion by more than a quarter is
+/// no matter of balance: the projection would move its stiffest modes by an eighth of their frequencies and
+/// more, and no advice covers that.
 const SMALL: f64 = 0.25;
 
-/// What is left of a sum that cancels: a rotation of a molecule by far less, what only one potential holds all of it.
+/// What is left of a sum that cancels: a rotation of a molecule by far less, what only one potential holds
+/// all of it.
 const CANCELLED: f64 = 0.5;
 
 /// A mass-weighted stiffness given, its step, and its norm.
@@ -43,7 +47,8 @@ impl Given {
         Given { step, stiffness, size }
     }
 
-    /// Refuses translations of particles that it holds, a kick along an orbit, known to `accuracy` times `size`.
+    /// Refuses translations of particles that it holds, a kick along an orbit, known to `accuracy` times
+    /// `size`.
     ///
     /// # Errors
     /// Where it holds them by more.
@@ -151,12 +156,13 @@ fn unexplained(pull: &Mat<f64>, motions: &Motions, masses: &[f64]) -> Mat<f64> {
     rest
 }
 
-/// The motions that no potential holds, as orthonormal columns, where no positions tell them; none: `None`. Motions along which the sum vanishes and single
-/// potentials do not stay, unless they may be rotations.
+/// The motions that no potential holds, as orthonormal columns, where no positions tell them; none: `None`.
+/// Motions along which the sum vanishes and single potentials do not stay, unless they may be rotations.
 ///
 /// # Errors
-/// More than `most` motions for each part that no entry joins to the others: what is soft is not rigid. Potentials that balance each other along a motion,
-/// each by a small part of itself, as along rotations of a molecule: neither rigid nor held.
+/// More than `most` motions for each part that no entry joins to the others: what is soft is not rigid.
+/// Potentials that balance each other along a motion, each by a small part of itself, as along rotations of a
+/// molecule: neither rigid nor held.
 pub(crate) fn common_null_space(
     given: &[Given],
     accuracy: f64,

@@ -1,8 +1,10 @@
-//! A band of stiffnesses: every fast one up to a factor, the slow ones by a factor, in the first stable region together.
+//! A band of stiffnesses: every fast one up to a factor, the slow ones by a factor, in the first stable
+//! region together.
 //!
-//! Conditions (1) and (2) of proofs/REGION.md at c F and s S hold at every F' ≤ c F and s S; (1) is linear in s, so that both ends of a
-//! range of s prove all of it. Condition (3) follows from (1) wherever F' + s S > 0: the system is still at a minimum. Filters are no monotone
-//! functions of matrices: of mollified impulses F' has the modes of F, each of a frequency of its own (proofs/REGION.md, section 8).
+//! Conditions (1) and (2) of proofs/REGION.md at c F and s S hold at every F' ≤ c F and s S; (1) is linear in
+//! s, so that both ends of a range of s prove all of it. Condition (3) follows from (1) wherever F' + s S >
+//! 0: the system is still at a minimum. Filters are no monotone functions of matrices: of mollified impulses
+//! F' has the modes of F, each of a frequency of its own (proofs/REGION.md, section 8).
 
 use faer::Mat;
 
@@ -23,10 +25,11 @@ struct Factors {
 }
 
 impl Kernel {
-    /// Whether it is proven stable at this outer step, and at every smaller one of as many inner steps, with every F' and s S in
-    /// place of F and S for which F' ≤ F/(1 − b)², (1 + b)⁻² ≤ s ≤ (1 − b)⁻² and F' + s S > 0, b = `band` in [0, 1): fast periods may
-    /// be shorter by b each for itself, or longer, the slow ones by b together. All are known within `epsilon` of their norms. Of mollified
-    /// impulses F' has the modes of F; whatever F' is where the midpoint rule solves for it. No two-step method is proven so.
+    /// Whether it is proven stable at this outer step, and at every smaller one of as many inner steps, with
+    /// every F' and s S in place of F and S for which F' ≤ F/(1 − b)², (1 + b)⁻² ≤ s ≤ (1 − b)⁻² and F' + s
+    /// S > 0, b = `band` in [0, 1): fast periods may be shorter by b each for itself, or longer, the slow
+    /// ones by b together. All are known within `epsilon` of their norms. Of mollified impulses F' has the
+    /// modes of F; whatever F' is where the midpoint rule solves for it. No two-step method is proven so.
     pub fn covers_band(&self, outer: &Outer, band: f64, epsilon: f64) -> bool {
         let factors = Factors {
             least: (1.0 + band).powi(-2) * (1.0 - ROOM),
@@ -54,8 +57,8 @@ impl Kernel {
         self.are_stretched(outer, &stretch, factors, self.shifted(outer, epsilon).slow_slack)
     }
 
-    /// s h² S < 4: then P = 2/h − h S/2 and R = h (F + S)/2 are definite, and that is all there is to show (theorem `both_definite` in proofs/; of one
-    /// mode theorem `implicit_explicit` in proofs/).
+    /// s h² S < 4: then P = 2/h − h S/2 and R = h (F + S)/2 are definite, and that is all there is to show
+    /// (theorem `both_definite` in proofs/; of one mode theorem `implicit_explicit` in proofs/).
     fn covers_midpoint(&self, outer: &Outer, factors: &Factors, epsilon: f64) -> bool {
         let [_, slow] = self.errors_within(epsilon);
         // Of the half period of p inner steps a/b is 2/p, in the time unit h.
@@ -65,8 +68,8 @@ impl Kernel {
         is_definite(self.with_slow(outer, &self.slow, -factors.most, &two), slack)
     }
 
-    /// Of the exact flow filtered by φ: κ = (a/b)/φ² increases with w² up to some place and decreases from there on, so that both ends of a range
-    /// of w² bound it; P > 0 iff κ − s h² S/2 > 0.
+    /// Of the exact flow filtered by φ: κ = (a/b)/φ² increases with w² up to some place and decreases from
+    /// there on, so that both ends of a range of w² bound it; P > 0 iff κ − s h² S/2 > 0.
     fn covers_filtered(&self, outer: &Outer, factors: &Factors, epsilon: f64) -> bool {
         let [fast, slow] = self.errors_within(epsilon);
         let (p, most) = (outer.inner_steps, factors.most);
@@ -107,8 +110,8 @@ impl Kernel {
         [factors.least, factors.most].into_iter().all(|s| is_definite(form(s), 1.01 * s * slack))
     }
 
-    /// The outer step, as many inner ones in it, up to which [`Kernel::covers_band`] provably holds, within 1e-6 of the longest; `None`
-    /// where it does for none.
+    /// The outer step, as many inner ones in it, up to which [`Kernel::covers_band`] provably holds, within
+    /// 1e-6 of the longest; `None` where it does for none.
     pub fn band_edge(&self, inner_steps: u64, band: f64, epsilon: f64) -> Option<f64> {
         let holds = |step: f64| {
             Outer::new(step, inner_steps).is_ok_and(|outer| self.covers_band(&outer, band, epsilon))

@@ -1,4 +1,5 @@
-//! The eigenbasis of a symmetric matrix, block by block where it decouples: molecules whose bonds do not join them.
+//! The eigenbasis of a symmetric matrix, block by block where it decouples: molecules whose bonds do not join
+//! them.
 
 use faer::{Mat, Side};
 

@@ -1,12 +1,12 @@
 //! The verdict beyond the first stable region: eigenvalues of S = Bᵀ C in discs and clusters.
 //!
-//! For symmetric X and X' with spectra in \[−1, 1\] and any unitarily invariant norm ‖T_k(X') − T_k(X)‖ ≤ k² ‖X' − X‖ and
-//! ‖U_k(X') − U_k(X)‖ ≤ k (k + 1) (k + 2)/3 ‖X' − X‖, the Lipschitz constants of the polynomials themselves: by their recurrence the
-//! difference is a sum of U_i(X') 2 (X' − X) T_j(X) or of U_i(X') 2 (X' − X) U_j(X), and |U_i| ≤ i + 1. So errors of Λ move the
-//! fast half period by known amounts, x = 1 − s/2.
+//! For symmetric X and X' with spectra in \[−1, 1\] and any unitarily invariant norm ‖T_k(X') − T_k(X)‖ ≤ k²
+//! ‖X' − X‖ and ‖U_k(X') − U_k(X)‖ ≤ k (k + 1) (k + 2)/3 ‖X' − X‖, the Lipschitz constants of the polynomials
+//! themselves: by their recurrence the difference is a sum of U_i(X') 2 (X' − X) T_j(X) or of U_i(X') 2 (X' −
+//! X) U_j(X), and |U_i| ≤ i + 1. So errors of Λ move the fast half period by known amounts, x = 1 − s/2.
 //!
-//! Where spectra reach beyond \[−1, 1\], to ξ, the constants are T_k'(ξ) and U_k'(ξ): |T_j| ≤ T_j(ξ) and |U_j| ≤ U_j(ξ) there, and for 1 x 1
-//! matrices X = X' = ξ the sums above are these derivatives.
+//! Where spectra reach beyond \[−1, 1\], to ξ, the constants are T_k'(ξ) and U_k'(ξ): |T_j| ≤ T_j(ξ)
+//! and |U_j| ≤ U_j(ξ) there, and for 1 x 1 matrices X = X' = ξ the sums above are these derivatives.
 
 use faer::{Mat, Side, c64};
 
@@ -19,7 +19,8 @@ use crate::spectrum::discs::Spectrum;
 use clocks::verdict::Kind;
 use number::U;
 
-/// A matrix that is known but for an error: bounds on the norms of the true and the computed one, and on their distance.
+/// A matrix that is known but for an error: bounds on the norms of the true and the computed one, and on
+/// their distance.
 #[derive(Clone, Copy)]
 struct Near {
     size: f64,
@@ -82,7 +83,8 @@ impl Kernel {
         Some(Blocks { halves, near, kick, near_kick })
     }
 
-    /// The kind that the eigenvalues of S prove for all F + E₁, S + E₂, ‖E₁‖₂ ≤ ε ‖F‖₂, ‖E₂‖₂ ≤ ε ‖S‖₂, if any.
+    /// The kind that the eigenvalues of S prove for all F + E₁, S + E₂, ‖E₁‖₂ ≤ ε ‖F‖₂, ‖E₂‖₂ ≤ ε ‖S‖₂, if
+    /// any.
     pub(super) fn beyond(&self, outer: &Outer, epsilon: f64) -> Option<Kind> {
         let blocks = self.blocks(outer, epsilon)?;
         blocks.certified(&self.spectrum_of(outer, &blocks)?)
@@ -103,7 +105,8 @@ impl Kernel {
         })
     }
 
-    /// The spectrum of S where p θ < π for all modes: with V = 2 b d > 0, 1 + 2 S = V^½ (cos p θ − V^½ M V^½) V^-½.
+    /// The spectrum of S where p θ < π for all modes: with V = 2 b d > 0, 1 + 2 S = V^½ (cos p θ − V^½ M V^½)
+    /// V^-½.
     fn real_spectrum(&self, outer: &Outer, blocks: &Blocks) -> Option<Spectrum> {
         let highest = self.values.last().copied()?;
         let top = self.method.half(Interval::point(outer.inner_square * highest), outer.inner_steps);
@@ -124,8 +127,8 @@ impl Kernel {
         Spectrum::with(s, Some(error), mu, vectors).filter(|spectrum| spectrum.radius.is_some())
     }
 
-    /// The largest ε, within a tenth, for which all F + E₁, S + E₂, ‖E₁‖₂ ≤ ε ‖F‖₂, ‖E₂‖₂ ≤ ε ‖S‖₂, are proven unstable: by counts where these
-    /// decide, else by the discs about the eigenvalues at this step.
+    /// The largest ε, within a tenth, for which all F + E₁, S + E₂, ‖E₁‖₂ ≤ ε ‖F‖₂, ‖E₂‖₂ ≤ ε ‖S‖₂, are
+    /// proven unstable: by counts where these decide, else by the discs about the eigenvalues at this step.
     pub(super) fn unstable_margin(&self, outer: &Outer, spectrum: Option<&Spectrum>) -> Option<f64> {
         let by_discs = |epsilon: f64| {
             let error = self.blocks(outer, epsilon)?.s().1;
@@ -158,9 +161,11 @@ fn lipschitz(p: u64, beyond: f64) -> [f64; 4] {
     }
 }
 
-/// T_j'(ξ) and U_j'(ξ) at ξ = 1 + x for j = k − 1, k and k + 1, rounded up (T_(−1)' counts as 0: nobody asks for it).
+/// T_j'(ξ) and U_j'(ξ) at ξ = 1 + x for j = k − 1, k and k + 1, rounded up (T_(−1)' counts as 0: nobody asks
+/// for it).
 ///
-/// By the differences T_(j+1) − T_j = T_j − T_(j−1) + 2 x T_j, and the same of U: no term is negative from the first one on.
+/// By the differences T_(j+1) − T_j = T_j − T_(j−1) + 2 x T_j, and the same of U: no term is negative from
+/// the first one on.
 pub(super) fn slopes(k: u64, x: f64) -> [[f64; 2]; 3] {
     // T_0 and U_0: values, slopes, and their differences from those before.
     let (mut value, mut slope, mut rise, mut steeper) = ([1.0; 2], [0.0; 2], [-x, 1.0], [-1.0, 0.0]);

@@ -1,12 +1,14 @@
 //! Verdicts on all outer steps, or all scales of one level, between two: cells that cover a range.
 //!
-//! In a cell the fast kicks are t F, t_1 ≤ t ≤ t_2, the slow ones m S, m_1 ≤ m ≤ m_2. Each mode of F is bounded by its own kicks at
-//! the two ends, and m S by m_0 S ± (m_2 − m_1)/2 |S|, |S| the matrix with the absolute values of S's eigenvalues: what is soft is moved
-//! by little, whatever the norm of the whole. So the counts at both ends bound those between (`counts`). Discs take over where a pair of
-//! multipliers left the circle together: entry by entry, how far S = bᵀ C can be from that in the middle.
+//! In a cell the fast kicks are t F, t_1 ≤ t ≤ t_2, the slow ones m S, m_1 ≤ m ≤ m_2. Each mode of F is
+//! bounded by its own kicks at the two ends, and m S by m_0 S ± (m_2 − m_1)/2 |S|, |S| the matrix with the
+//! absolute values of S's eigenvalues: what is soft is moved by little, whatever the norm of the whole. So
+//! the counts at both ends bound those between (`counts`). Discs take over where a pair of multipliers left
+//! the circle together: entry by entry, how far S = bᵀ C can be from that in the middle.
 //!
-//! All of it holds for every F + E₁ and S + E₂ within the accuracy of the data, as one verdict's margin does: ‖E₁‖ moves each mode of F both ways,
-//! ‖E₂‖ is room for every eigenvalue (Loewner's order and Weyl), and discs widen by how far both can move bᵀ C (`beyond`).
+//! All of it holds for every F + E₁ and S + E₂ within the accuracy of the data, as one verdict's margin does:
+//! ‖E₁‖ moves each mode of F both ways, ‖E₂‖ is room for every eigenvalue (Loewner's order and Weyl), and
+//! discs widen by how far both can move bᵀ C (`beyond`).
 
 use faer::{Mat, Side};
 
@@ -50,7 +52,8 @@ struct Cell {
 }
 
 impl<'a> Cells<'a> {
-    /// For all stiffnesses within `accuracy` of their norms, 0 for those given alone: one eigendecomposition of S.
+    /// For all stiffnesses within `accuracy` of their norms, 0 for those given alone: one eigendecomposition
+    /// of S.
     ///
     /// # Errors
     /// Where its iteration fails: never seen, but not excluded.
@@ -65,7 +68,8 @@ impl<'a> Cells<'a> {
         let largest = values.iter().fold(0.0, |a: f64, x| a.max(x.abs()));
         let scaled = Mat::from_fn(m, m, |i, j| v[(i, j)] * values[j].abs());
         let mut size = &scaled * v.transpose();
-        // V |Λ| Vᵀ beside Q |Λ| Qᵀ, Q the orthogonal factor of V; the product's rounding; that of the sums here.
+        // V |Λ| Vᵀ beside Q |Λ| Qᵀ, Q the orthogonal factor of V; the product's rounding; that of the sums
+        // here.
         let rounding = 1.1 * (m as f64 + 4.0) * U * norm::frobenius(&scaled) * norm::frobenius(&v);
         let room = 1.01 * (error + 2.1 * defect * largest + rounding) + 4.0 * U * largest;
         (0..m).for_each(|i| size[(i, i)] += room);
@@ -87,7 +91,8 @@ impl<'a> Cells<'a> {
         }))
     }
 
-    /// The verdict at an outer step that is proven for all systems in which one level (0: the fast one) is lo to hi times as stiff.
+    /// The verdict at an outer step that is proven for all systems in which one level (0: the fast one) is lo
+    /// to hi times as stiff.
     pub fn verdict_scaled(&self, outer: &Outer, level: usize, (lo, hi): (f64, f64)) -> Holds {
         if level == 0 && lo <= 0.0 {
             return Holds::NotTold;
@@ -176,9 +181,9 @@ impl<'a> Cells<'a> {
         (-lowest * cell.fast.hi).next_up().max(0.0)
     }
 
-    /// S = f(F) − g(F) m S, f = (T_p − 1)/2 and g = U_(p−1)/2 at 1 − t F/2, in the middle of the cell, and how far it is elsewhere, entry by
-    /// entry: f' = −p U_(p−1)/4 in s = t λ, and errors of Λ move f and g by T_p'(ξ)/4 and U_(p−1)'(ξ)/4 times them (`beyond`), p²/4 and
-    /// p (p² − 1)/12 where all s are in \[0, 4\].
+    /// S = f(F) − g(F) m S, f = (T_p − 1)/2 and g = U_(p−1)/2 at 1 − t F/2, in the middle of the cell, and
+    /// how far it is elsewhere, entry by entry: f' = −p U_(p−1)/4 in s = t λ, and errors of Λ move f and g by
+    /// T_p'(ξ)/4 and U_(p−1)'(ξ)/4 times them (`beyond`), p²/4 and p (p² − 1)/12 where all s are in \[0, 4\].
     fn spectrum(&self, cell: &Cell) -> Option<(Spectrum, Mat<f64>)> {
         let (kernel, p, m) = (self.kernel, cell.inner_steps as f64, self.kernel.size());
         let (shift, middle) = (self.shifts[0], Interval::point(cell.fast.mid()));
@@ -241,8 +246,8 @@ impl<'a> Cells<'a> {
         Some((Spectrum::of(s, Some(1.02 * (f_slope * error + kicked)))?, off))
     }
 
-    /// Values of s = 1 + μ between modes of one of Krein's signs and of the other; `None` where some are off \[−1, 0\]. Whatever they are,
-    /// counts at them prove what they prove.
+    /// Values of s = 1 + μ between modes of one of Krein's signs and of the other; `None` where some are off
+    /// \[−1, 0\]. Whatever they are, counts at them prove what they prove.
     fn twists(&self, cell: &Cell, spectrum: &Spectrum) -> Option<Vec<f64>> {
         let (kernel, m) = (self.kernel, self.kernel.size());
         if spectrum.mu.iter().any(|mu| mu.im != 0.0 || !(-1.0..=0.0).contains(&mu.re)) {

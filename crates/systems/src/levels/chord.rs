@@ -1,9 +1,10 @@
 //! A verdict without an eigenbasis: four factorizations.
 //!
-//! In the first stable region condition (1) of proofs/REGION.md is a/b(h² F) − (p/2) h² S > 0, with a/b of one mode as a function of
-//! s = h² w². As a/b is concave where the odd solution is positive (section 7 there), it lies above its chord over any interval that
-//! holds the spectrum of h² F, and so does the matrix: α − β h² F − (p/2) h² S > 0 proves (1). Condition (2) asks only for the highest
-//! s, and (3) follows from (1) where F + S > 0.
+//! In the first stable region condition (1) of proofs/REGION.md is a/b(h² F) − (p/2) h² S > 0, with a/b of
+//! one mode as a function of s = h² w². As a/b is concave where the odd solution is positive (section 7
+//! there), it lies above its chord over any interval that holds the spectrum of h² F, and so does the matrix:
+//! α − β h² F − (p/2) h² S > 0 proves (1). Condition (2) asks only for the highest s, and (3) follows from
+//! (1) where F + S > 0.
 
 use faer::{Mat, Side};
 
@@ -19,23 +20,26 @@ use number::U;
 use number::error::Result;
 use number::parallel::both;
 
-/// Steps of Lanczos's recursion for the ends of the spectrum: where it is dense at its ends, they are found to some hundredths.
+/// Steps of Lanczos's recursion for the ends of the spectrum: where it is dense at its ends, they are found
+/// to some hundredths.
 const STEPS: usize = 24;
 
 /// How much wider than these estimates the interval is that is then proven, relative to ‖F‖.
 const ROOM: f64 = 0.02;
 
-/// How far below 0 the interval begins for a positive F, relative to ‖F‖: Cholesky's criterion proves that for thousands of rows.
+/// How far below 0 the interval begins for a positive F, relative to ‖F‖: Cholesky's criterion proves that
+/// for thousands of rows.
 const ZERO: f64 = 1e-6;
 
 /// Below so many rows the eigenbasis costs as little.
 const FEW: usize = 32;
 
 impl Hessians {
-    /// The verdict that is proven at one outer step. Where many steps are asked for, [`Kernel`] serves them all.
+    /// The verdict that is proven at one outer step. Where many steps are asked for, [`Kernel`] serves them
+    /// all.
     ///
-    /// Cost: four Cholesky factorizations, side by side in pairs, where [`Hessians::is_stable_by_chord`] holds: a tenth of the eigenbasis that is
-    /// made where it does not.
+    /// Cost: four Cholesky factorizations, side by side in pairs, where [`Hessians::is_stable_by_chord`]
+    /// holds: a tenth of the eigenbasis that is made where it does not.
     ///
     /// ```
     /// use kickdrift_systems::Holds;
@@ -60,8 +64,9 @@ impl Hessians {
         Ok(Kernel::new(self)?.verdict_within(outer, 0.0))
     }
 
-    /// Whether the system is proven to be in the first stable region at this outer step, without the eigenvalues of F. `false` says nothing:
-    /// near the end of the region the chord lies below a/b by more than there is room for.
+    /// Whether the system is proven to be in the first stable region at this outer step, without the
+    /// eigenvalues of F. `false` says nothing: near the end of the region the chord lies below a/b by more
+    /// than there is room for.
     pub fn is_stable_by_chord(&self, outer: &Outer) -> bool {
         let side_by_side = self.size() >= SIDE_BY_SIDE;
         let sizes = [&self.fast, &self.slow].map(norm::frobenius);
@@ -97,13 +102,15 @@ impl Hessians {
             sum[(j, j)] += c;
         }
         let [fast, slow] = [0, 1].map(|k| ([a, b][k].abs(), sizes[k], self.errors[k]));
-        // Two products and two sums an entry beside the factors' own errors; c on the diagonal, in the 2-norm.
+        // Two products and two sums an entry beside the factors' own errors; c on the diagonal, in the
+        // 2-norm.
         let rounding = 2.0 * STEP_ERROR * (fast.0 * fast.1 + slow.0 * slow.1) + 4.0 * U * c.abs();
         is_definite(sum, 1.01 * (rounding + fast.0 * fast.2 + slow.0 * slow.2))
     }
 }
 
-/// α and β of a line α − β s that is no higher than a/b between the ends of the spectrum of h² F; `None` where p θ < π is not certain up to there.
+/// α and β of a line α − β s that is no higher than a/b between the ends of the spectrum of h² F; `None`
+/// where p θ < π is not certain up to there.
 pub(super) fn chord(outer: &Outer, low: f64, high: f64) -> Option<[f64; 2]> {
     let ends = [outer.scaled_down(low), outer.scaled_up(high)];
     let halves = ends.map(|s| Half::new(s, outer.inner_steps));
@@ -121,8 +128,8 @@ pub(super) fn chord(outer: &Outer, low: f64, high: f64) -> Option<[f64; 2]> {
     (slope.is_finite() && offset.is_finite()).then_some([offset, slope])
 }
 
-/// The lowest and the highest eigenvalue of a symmetric matrix of n rows, given by what it takes a vector to, from within: so many steps of
-/// Lanczos's recursion, rounded.
+/// The lowest and the highest eigenvalue of a symmetric matrix of n rows, given by what it takes a vector to,
+/// from within: so many steps of Lanczos's recursion, rounded.
 pub(super) fn ends(n: usize, steps: usize, times: impl Fn(&Mat<f64>) -> Mat<f64>) -> [f64; 2] {
     let values = recursion(n, steps.min(n), times, |_| false).eigenvalues();
     [values.first().copied().unwrap_or(0.0), values.last().copied().unwrap_or(0.0)]

@@ -1,7 +1,8 @@
-//! Verdicts by counting negative eigenvalues, wherever the step lies: no eigenvector, no gap between eigenvalues is asked for.
+//! Verdicts by counting negative eigenvalues, wherever the step lies: no eigenvector, no gap between
+//! eigenvalues is asked for.
 //!
-//! With neg J the number of negative eigenvalues of the action under each pair of ends, and i(s) that of the period whose ends
-//! are twisted by e^(iφ), 2 cos φ = 4 s − 2 (`proofs/REGION.md`, section 3):
+//! With neg J the number of negative eigenvalues of the action under each pair of ends, and i(s) that of the
+//! period whose ends are twisted by e^(iφ), 2 cos φ = 4 s − 2 (`proofs/REGION.md`, section 3):
 //!
 //! ```text
 //!     #{μ < −1} ≥ |neg J_fh − neg J_hf|,        #{μ > 0} ≥ |n + neg J_hh − neg J_ff|,
@@ -57,7 +58,8 @@ impl Counts {
         Some(Counts { less, more, slow, slack, hh, hf })
     }
 
-    /// Bounds for diag(twisted) − M: for all kicks at least the first number of its eigenvalues are negative, at most the second are negative or 0.
+    /// Bounds for diag(twisted) − M: for all kicks at least the first number of its eigenvalues are negative,
+    /// at most the second are negative or 0.
     fn bounds(&self, s: f64) -> (usize, usize) {
         let form = |slow: &Mat<f64>, diagonal: &dyn Fn(usize) -> f64| {
             let m = self.less.len();
@@ -98,10 +100,12 @@ impl Counts {
     }
 }
 
-/// Twists between modes of both of Krein's signs, as the values s of modes place them: these alternate more often in no molecule seen.
+/// Twists between modes of both of Krein's signs, as the values s of modes place them: these alternate more
+/// often in no molecule seen.
 const MOST_BETWEEN: usize = 64;
 
-/// Values of s between modes of one of Krein's signs and of the other, decreasing; `None` where signs change too often.
+/// Values of s between modes of one of Krein's signs and of the other, decreasing; `None` where signs change
+/// too often.
 pub(super) fn between_signs(mut modes: Vec<(f64, bool)>) -> Option<Vec<f64>> {
     modes.sort_by(|x, y| y.0.total_cmp(&x.0));
     let changes = modes.windows(2).filter(|pair| pair[0].1 != pair[1].1);
@@ -116,7 +120,8 @@ impl Kernel {
         Counts::new([shifted.less, shifted.more], [slow.clone(), slow], shifted.slow_slack)
     }
 
-    /// Whether all F + E₁, S + E₂, ‖E₁‖₂ ≤ ε ‖F‖₂, ‖E₂‖₂ ≤ ε ‖S‖₂, are proven by counts to have a real multiplier off the circle.
+    /// Whether all F + E₁, S + E₂, ‖E₁‖₂ ≤ ε ‖F‖₂, ‖E₂‖₂ ≤ ε ‖S‖₂, are proven by counts to have a real
+    /// multiplier off the circle.
     pub fn has_real_unstable_mode(&self, outer: &Outer, epsilon: f64) -> bool {
         self.counts(outer, epsilon).is_some_and(|counts| counts.tell_instability())
     }

@@ -1,21 +1,23 @@
-//! Friction on two levels: where the spectral radius of the period lies, proven, for all stiffnesses within their errors.
+//! Friction on two levels: where the spectral radius of the period lies, proven, for all stiffnesses within
+//! their errors.
 //!
-//! With γ the friction and c = exp(−γ h), an inner step in (x, h v) is half a fast kick, the drift with v → c v in its middle, and half
-//! a kick: G = H D H, for each mode of Λ
+//! With γ the friction and c = exp(−γ h), an inner step in (x, h v) is half a fast kick, the drift with v → c
+//! v in its middle, and half a kick: G = H D H, for each mode of Λ
 //!
 //! ```text
 //!     H = [[1, 0], [−s/2, 1]],     D = [[1, (1 + c)/2], [0, c]],     ‖H‖ ≤ 1 + |s|/2,  ‖D‖ ≤ √3.
 //! ```
 //!
-//! Let X_k be the computed k-th power, X_(k+1) = G X_k + ρ_k with ‖ρ_k‖ ≤ η ‖X_k‖, and T the true step, no longer mode by mode, ‖T − G‖ ≤ δ.
-//! Then Z_k = T^k − X_k obeys Z_(k+1) = T Z_k + (T − G) X_k − ρ_k, so that
+//! Let X_k be the computed k-th power, X_(k+1) = G X_k + ρ_k with ‖ρ_k‖ ≤ η ‖X_k‖, and T the true step, no
+//! longer mode by mode, ‖T − G‖ ≤ δ. Then Z_k = T^k − X_k obeys Z_(k+1) = T Z_k + (T − G) X_k − ρ_k, so that
 //!
 //! ```text
 //!     ‖Z_p‖ ≤ (δ + η) Σ_(k<p) (‖X_(p−1−k)‖ + ‖Z_(p−1−k)‖) ‖X_k‖:
 //! ```
 //!
-//! sums of products of two powers' norms instead of powers of norms. Between two halves of the slow kick that is the period; its
-//! eigenvalues lie in discs about the computed ones (Bauer and Fike), or it shrinks a form (Stein).
+//! sums of products of two powers' norms instead of powers of norms. Between two halves of the slow kick that
+//! is the period; its eigenvalues lie in discs about the computed ones (Bauer and Fike), or it shrinks a form
+//! (Stein).
 
 use faer::Mat;
 use num_complex::Complex64;
@@ -55,14 +57,15 @@ struct Fast {
 }
 
 impl Kernel {
-    /// Where the spectral radius of a period with friction γ per unit time lies, v → exp(−γ t) v in the middle of every drift;
-    /// `None`: doubles cannot decide.
+    /// Where the spectral radius of a period with friction γ per unit time lies, v → exp(−γ t) v in the
+    /// middle of every drift; `None`: doubles cannot decide.
     pub fn damping(&self, outer: &Outer, friction: f64) -> Option<Damping> {
         let (q, error) = self.damped_period(outer, friction)?;
         damping(&q, error, Radius::of(&q, error))
     }
 
-    /// The effect of friction of the rate γ per unit time, and the friction that masks the growth without it: both proven.
+    /// The effect of friction of the rate γ per unit time, and the friction that masks the growth without it:
+    /// both proven.
     pub fn friction(&self, outer: &Outer, rate: &Rational) -> Friction {
         let period = self.damped_period(outer, to_f64(rate));
         let pair = period.map(|(q, error)| {
@@ -120,8 +123,8 @@ impl Kernel {
         eigenvalues.map_or(f64::NAN, |all| all.into_iter().map(Complex64::norm).fold(0.0, f64::max))
     }
 
-    /// A friction that is proven to mask, where the radius is above 1 without one: at most a thirtieth above the least that does so in doubles. `None`
-    /// where none was found.
+    /// A friction that is proven to mask, where the radius is above 1 without one: at most a thirtieth above
+    /// the least that does so in doubles. `None` where none was found.
     pub fn masking_friction(&self, outer: &Outer) -> Option<f64> {
         let proven = |friction: f64| self.damping(outer, friction) == Some(Damping::Damped);
         least_masking(self.growth(outer), outer.step, |friction| self.rounded_radius(outer, friction), proven)
@@ -209,7 +212,8 @@ fn kicked(modes: &Modes, k: &Mat<f64>, bk: &Mat<f64>) -> Mat<f64> {
     })
 }
 
-/// About the least friction that is proven to mask what grows at this rate without one, bisected by the rounded spectral radius of an outer step.
+/// About the least friction that is proven to mask what grows at this rate without one, bisected by the
+/// rounded spectral radius of an outer step.
 pub(super) fn least_masking(
     growth: f64,
     step: f64,

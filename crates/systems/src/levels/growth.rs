@@ -1,5 +1,5 @@
-//! Growth past the first stable region, in doubles: where it is fastest, where it ends. Sampled and rounded but for the step that is proven
-//! stable again.
+//! Growth past the first stable region, in doubles: where it is fastest, where it ends. Sampled and rounded
+//! but for the step that is proven stable again.
 
 use faer::Mat;
 use num_complex::Complex64;
@@ -14,7 +14,8 @@ use number::error::Result;
 pub struct Growing {
     /// Where it begins,
     pub lower: f64,
-    /// and the last step of those sampled that grows, none between being still; `None` up to 1.3 times the first.
+    /// and the last step of those sampled that grows, none between being still; `None` up to 1.3 times the
+    /// first.
     pub upper: Option<f64>,
     /// The first step above it that is proven stable, as near as doubles can decide.
     pub stable_again: Option<f64>,
@@ -35,7 +36,8 @@ const SAMPLES: usize = 12;
 const THIN: f64 = 1e-3;
 const MOST_STRETCHES: usize = 4;
 
-/// ln |λ| of a period below which roundings may have made it: a double eigenvalue moves by the square root of 10^-16 times its condition.
+/// ln |λ| of a period below which roundings may have made it: a double eigenvalue moves by the square root of
+/// 10^-16 times its condition.
 const STILL: f64 = 1e-5;
 
 impl Kernel {
@@ -52,8 +54,9 @@ impl Kernel {
         period.eigenvalues().map_or(f64::NAN, |mu| mu.into_iter().map(rate).fold(0.0, f64::max)) / outer.step
     }
 
-    /// Stretches from an unstable outer step `from` on, as many inner ones in it, the first samples `width` apart, relative: up to the first
-    /// one that is not thin, as a thin one shows little of those that follow.
+    /// Stretches from an unstable outer step `from` on, as many inner ones in it, the first samples `width`
+    /// apart, relative: up to the first one that is not thin, as a thin one shows little of those that
+    /// follow.
     ///
     /// # Errors
     /// As [`Outer::new`].

@@ -2,18 +2,21 @@
 
 use super::interval::Interval;
 
-/// a, b, c, d of p velocity-Verlet steps, over half of them, in the time unit h: for s = h² w² = 4 sin²(θ/2) and even p
-/// a = d = cos(p θ/2), b = sin(p θ/2)/sin θ, c = −sin(p θ/2) sin θ; for odd p the half ends in the middle of a drift,
-/// a = cos(p θ/2) cos(θ/2), b = sin(p θ/2)/(2 sin(θ/2)), c = −2 sin(p θ/2) sin(θ/2), d = cos(p θ/2)/cos(θ/2).
+/// a, b, c, d of p velocity-Verlet steps, over half of them, in the time unit h: for s = h² w² = 4 sin²(θ/2)
+/// and even p a = d = cos(p θ/2), b = sin(p θ/2)/sin θ, c = −sin(p θ/2) sin θ; for odd p the half ends in the
+/// middle of a drift, a = cos(p θ/2) cos(θ/2), b = sin(p θ/2)/(2 sin(θ/2)), c = −2 sin(p θ/2) sin(θ/2), d =
+/// cos(p θ/2)/cos(θ/2).
 ///
-/// Kicks and drifts are followed as they come: their intervals widen by exp(√s p/2) roundings, a factor e^(π/2) up to p θ = π.
+/// Kicks and drifts are followed as they come: their intervals widen by exp(√s p/2) roundings, a factor
+/// e^(π/2) up to p θ = π.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Half {
     pub a: Interval,
     pub b: Interval,
     pub c: Interval,
     pub d: Interval,
-    /// How often the odd solution changes its sign up to the end, of those at kicks and there; `None` where one is not certain.
+    /// How often the odd solution changes its sign up to the end, of those at kicks and there; `None` where
+    /// one is not certain.
     pub changes: Option<usize>,
 }
 

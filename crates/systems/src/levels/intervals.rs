@@ -11,17 +11,19 @@ use number::error::{Error, Result};
 const WIDEST: f64 = 0.05;
 
 impl Kernel {
-    /// The largest growth rate ln |λ|/H at an outer step H, per unit time, rounded; `None` where the period is beyond doubles.
+    /// The largest growth rate ln |λ|/H at an outer step H, per unit time, rounded; `None` where the period
+    /// is beyond doubles.
     pub fn growth_rate(&self, outer: &Outer) -> Option<f64> {
         let (_, spectrum) = self.spectrum(outer, false)?;
         Some(spectrum.mu.iter().map(|&mu| exponent(mu).re).fold(0.0, f64::max) / outer.step)
     }
 
-    /// The verdicts that are proven for all stiffnesses within `accuracy` of their norms on all outer steps of `inner_steps` inner ones from `lo`
-    /// to `hi`, as stretches that cover them. No interval wider than `width` times the larger end is missed that the accuracy resolves.
+    /// The verdicts that are proven for all stiffnesses within `accuracy` of their norms on all outer steps
+    /// of `inner_steps` inner ones from `lo` to `hi`, as stretches that cover them. No interval wider than
+    /// `width` times the larger end is missed that the accuracy resolves.
     ///
-    /// Cost: the first stable region is one bisection; beyond it two factorizations and, where these cannot decide, the eigenvalues for each
-    /// cell (file `cell`), more cells where intervals are thin.
+    /// Cost: the first stable region is one bisection; beyond it two factorizations and, where these cannot
+    /// decide, the eigenvalues for each cell (file `cell`), more cells where intervals are thin.
     ///
     /// # Errors
     /// A range that is empty or not positive, a width outside \[10^-9, 1/10\].
@@ -47,8 +49,9 @@ impl Kernel {
         Ok(merged(known.into_iter().chain(rest)))
     }
 
-    /// The step up to which every outer one from `at` on, as many inner ones in it, is proven by counts to have a real multiplier off the
-    /// circle: up to where the step by which a verdict is carried on falls to `least`, relative, or 1.5 `at`.
+    /// The step up to which every outer one from `at` on, as many inner ones in it, is proven by counts to
+    /// have a real multiplier off the circle: up to where the step by which a verdict is carried on falls to
+    /// `least`, relative, or 1.5 `at`.
     ///
     /// # Errors
     /// As [`Outer::new`].

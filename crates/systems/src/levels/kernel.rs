@@ -107,8 +107,8 @@ impl Outer {
 }
 
 impl Kernel {
-    /// One eigendecomposition and four products, or as many small ones as the fast stiffness has blocks: molecules that no bond joins, as
-    /// long as no rigid motion of all of them was projected out.
+    /// One eigendecomposition and four products, or as many small ones as the fast stiffness has blocks:
+    /// molecules that no bond joins, as long as no rigid motion of all of them was projected out.
     ///
     /// # Errors
     /// Where the eigenvalue iteration fails: never seen, but not excluded.
@@ -152,8 +152,8 @@ impl Kernel {
         Kernel { method, ..self }
     }
 
-    /// Upper bounds of the 2-norms of both stiffnesses, of sums of potentials that share a clock those of the sums of their norms: what all are
-    /// known relative to.
+    /// Upper bounds of the 2-norms of both stiffnesses, of sums of potentials that share a clock those of the
+    /// sums of their norms: what all are known relative to.
     pub fn norms(&self) -> [f64; 2] {
         let slow = || spectral_norm(&self.slow, self.slow_error).max(self.slow_size);
         [self.fast_norm, *self.slow_norm.get_or_init(slow)]
@@ -168,7 +168,8 @@ impl Kernel {
         [self.fast_error + epsilon * fast, self.slow_error + epsilon * slow]
     }
 
-    /// How far (2-norm) h² Λ, computed, is from that of a fast stiffness within `shift`: that, and the rounding of h² and of the product.
+    /// How far (2-norm) h² Λ, computed, is from that of a fast stiffness within `shift`: that, and the
+    /// rounding of h² and of the product.
     pub(super) fn moved(&self, outer: &Outer, shift: f64) -> f64 {
         1.01 * (outer.inner_square * shift + 2.0 * STEP_ERROR * outer.inner_square * self.fast_norm)
     }
@@ -184,7 +185,8 @@ impl Kernel {
         self.values.first().map_or(0.0, |lowest| (-outer.scaled_down(lowest - shift)).max(0.0))
     }
 
-    /// The slow stiffness as it kicks, filtered, and how far (2-norm) that may be off, both stiffnesses being within these shifts.
+    /// The slow stiffness as it kicks, filtered, and how far (2-norm) that may be off, both stiffnesses being
+    /// within these shifts.
     pub(super) fn filtered(&self, outer: &Outer, [fast, slow]: [f64; 2]) -> (Cow<'_, Mat<f64>>, f64) {
         if !self.method.has_filter() {
             return (Cow::Borrowed(&self.slow), slow);
@@ -202,7 +204,8 @@ impl Kernel {
         (Cow::Owned(kicks), 1.01 * (2.0 * off * largest * size + largest * largest * slow + rounding))
     }
 
-    /// Half an outer kick, and upper bounds of the norm of the true one and of its distance, the stiffnesses being within these shifts.
+    /// Half an outer kick, and upper bounds of the norm of the true one and of its distance, the stiffnesses
+    /// being within these shifts.
     pub(super) fn half_kick(&self, outer: &Outer, shifts: [f64; 2]) -> (Mat<f64>, [f64; 2]) {
         let (m, factor, [_, slow_norm]) = (self.size(), outer.half_kick(), self.norms());
         let (slow, shift) = self.filtered(outer, shifts);

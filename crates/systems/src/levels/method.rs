@@ -1,8 +1,9 @@
 //! How two levels are integrated: three functions of the fast frequency.
 //!
-//! With x = H w over the outer step H and y = x/2, a method of fast angle Θ, impedance Z and filter φ has the half period
-//! a = d = cos(Θ/2), b = sin(Θ/2)/Z, c = −Z sin(Θ/2) in every mode of F, and kicks by φ(F) S φ(F). Only a d, b d, b c and the ratios a/b, c/d
-//! enter, so (a, b) may be multiplied by any number and (c, d) divided by it. In the time unit H:
+//! With x = H w over the outer step H and y = x/2, a method of fast angle Θ, impedance Z and filter φ has the
+//! half period a = d = cos(Θ/2), b = sin(Θ/2)/Z, c = −Z sin(Θ/2) in every mode of F, and kicks by φ(F) S
+//! φ(F). Only a d, b d, b c and the ratios a/b, c/d enter, so (a, b) may be multiplied by any number and (c,
+//! d) divided by it. In the time unit H:
 //!
 //! | method | a, b, c, d | φ |
 //! |---|---|---|
@@ -11,8 +12,9 @@
 //! | midpoint rule: implicit-explicit | 1, 1/2, −(x²/2)/(1 + y²), 1/(1 + y²) | 1 |
 //! | x₊ − 2 cos(x) x + x₋ = −H² ψ S φ x | cos² y, 1/2, −2 sin² y, 1 | γ, γ² = ψ φ: sinc y (Gautschi), sinc x (Hairer, Lubich) |
 //!
-//! The last is similar to −H² γ S γ where ψ φ is a square, whose trace is 2 + 4 b (c − d M) as that of any method is. Source: proofs/REGION.md, section 8.
-//! `proofs/REGION.md`, section 8, has these as functions of matrices, and bounds on how they move with F.
+//! The last is similar to −H² γ S γ where ψ φ is a square, whose trace is 2 + 4 b (c − d M) as that of any
+//! method is. Source: proofs/REGION.md, section 8. `proofs/REGION.md`, section 8, has these as functions of
+//! matrices, and bounds on how they move with F.
 
 use super::half::Half;
 use super::interval::Interval;
@@ -97,7 +99,8 @@ impl Method {
         self.powers().is_some()
     }
 
-    /// A little more than the H w of the fastest mode at which the first region ends at the latest; `None` where the slow force alone ends it.
+    /// A little more than the H w of the fastest mode at which the first region ends at the latest; `None`
+    /// where the slow force alone ends it.
     pub(super) fn highest_angle(self, p: u64) -> Option<f64> {
         let pi = std::f64::consts::PI;
         match self {
@@ -107,8 +110,9 @@ impl Method {
         }
     }
 
-    /// The H w of the fastest mode up to which a stable step proves all smaller ones stable (`proofs/REGION.md`, section 8): there
-    /// Z cot(Θ/2)/(H φ²) decreases in H in every mode, of the exact flow filtered by sinc x up to 1.7 only.
+    /// The H w of the fastest mode up to which a stable step proves all smaller ones stable
+    /// (`proofs/REGION.md`, section 8): there Z cot(Θ/2)/(H φ²) decreases in H in every mode, of the exact
+    /// flow filtered by sinc x up to 1.7 only.
     pub(super) fn first_region_ends(self) -> f64 {
         match self {
             Method::Trigonometric(Trigonometric::Long) => 1.7,
@@ -119,9 +123,11 @@ impl Method {
         }
     }
 
-    /// How far, at most, a, b, c, d and the filter move for each unit that the matrix s does, no s being below −`below`, of other methods than r-RESPA.
+    /// How far, at most, a, b, c, d and the filter move for each unit that the matrix s does, no s being
+    /// below −`below`, of other methods than r-RESPA.
     ///
-    /// cos(t √s) solves y'' = −s y, so it moves by t²/2; its mean over t, sinc, by t²/6; its slope −√s sin(t √s) by t.
+    /// cos(t √s) solves y'' = −s y, so it moves by t²/2; its mean over t, sinc, by t²/6; its slope −√s sin(t
+    /// √s) by t.
     pub(super) fn slopes(self, p: u64, below: f64) -> [f64; 5] {
         let (p, square) = (p as f64, (p as f64).powi(2));
         let room = room(below * square);
@@ -154,8 +160,8 @@ impl Method {
         [0.25, size * other].map(|x| 1.01 * room * square * x)
     }
 
-    /// The half periods that bound those of all s within `off` of one, in Loewner's order as functions of matrices: with less fast stiffness,
-    /// with more.
+    /// The half periods that bound those of all s within `off` of one, in Loewner's order as functions of
+    /// matrices: with less fast stiffness, with more.
     pub(super) fn around(self, (less, more): (f64, f64), p: u64) -> [Half; 2] {
         if !self.is_two_step() {
             return [less, more].map(|s| self.half(Interval::point(s), p));
@@ -186,7 +192,8 @@ impl std::fmt::Display for Method {
     }
 }
 
-/// By how much slopes at s ≥ −`below` may exceed those at s ≥ 0: all grow by no more than cosh² √below, and 1/(1 + s/4)² by less.
+/// By how much slopes at s ≥ −`below` may exceed those at s ≥ 0: all grow by no more than cosh² √below, and
+/// 1/(1 + s/4)² by less.
 fn room(below: f64) -> f64 {
     if below <= 1.0 { 1.01 * (2.0 * below.sqrt()).exp() } else { f64::INFINITY }
 }
@@ -218,7 +225,8 @@ fn turn(s: Interval) -> [Interval; 2] {
     [interval(y.cos(BITS)), sinc.map_or(nothing, interval)]
 }
 
-/// Σ (−s/4)^n/(2n + first)!, the rest of which is less than its last term: terms fall by more than two from the tenth on.
+/// Σ (−s/4)^n/(2n + first)!, the rest of which is less than its last term: terms fall by more than two from
+/// the tenth on.
 fn series(s: Interval, first: f64) -> Interval {
     let (square, one) = (-s.half().half(), Interval::point(1.0));
     let (mut term, mut sum) = (one, one);

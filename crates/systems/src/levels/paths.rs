@@ -1,5 +1,6 @@
-//! A second route to the first region and to growth: the action of the half period as one matrix over the paths, and the full period kick by
-//! kick. No eigenvector of the fast stiffness enters, so it can be held against the kernel.
+//! A second route to the first region and to growth: the action of the half period as one matrix over the
+//! paths, and the full period kick by kick. No eigenvector of the fast stiffness enters, so it can be held
+//! against the kernel.
 
 use faer::{Mat, Scale};
 
@@ -24,7 +25,8 @@ impl Near {
 }
 
 impl Hessians {
-    /// Nodes of a half period of p inner steps behind the first: the last drift is half a step where p is odd.
+    /// Nodes of a half period of p inner steps behind the first: the last drift is half a step where p is
+    /// odd.
     fn nodes(inner_steps: u64) -> usize {
         inner_steps.div_ceil(2) as usize
     }
@@ -34,7 +36,8 @@ impl Hessians {
         self.size().saturating_mul(Hessians::nodes(inner_steps)) <= MOST_ROWS
     }
 
-    /// The products that [`Hessians::growth_of_period`] costs, about: two matrices a step, and eigenvalues of twice the size.
+    /// The products that [`Hessians::growth_of_period`] costs, about: two matrices a step, and eigenvalues of
+    /// twice the size.
     pub fn cost_of_period(&self, inner_steps: u64) -> u64 {
         let cubes = inner_steps.saturating_mul(2).saturating_add(100);
         (self.size() as u64).saturating_pow(3).saturating_mul(cubes)
@@ -46,7 +49,8 @@ impl Hessians {
         rows.saturating_pow(3).saturating_mul(20)
     }
 
-    /// J of `proofs/REGION.md`, section 1, in the time unit h, over x_0 … x_(N−1) (x_N = 0) or x_1 … x_N (x_0 = 0), and how far it may be off.
+    /// J of `proofs/REGION.md`, section 1, in the time unit h, over x_0 … x_(N−1) (x_N = 0) or x_1 … x_N
+    /// (x_0 = 0), and how far it may be off.
     fn action(&self, step: f64, inner_steps: u64, start_held: bool, near: Near) -> (Mat<f64>, f64) {
         let (n, last) = (self.size(), Hessians::nodes(inner_steps));
         let is_odd = !inner_steps.is_multiple_of(2);
@@ -87,7 +91,8 @@ impl Hessians {
         (Mat::from_fn(n * last, n * last, entry), 1.01 * (off(0, fast) + off(1, slow)) + 16.0 * U)
     }
 
-    /// Whether the action proves that all such matrices are stable at an outer step of p inner ones and at every smaller one.
+    /// Whether the action proves that all such matrices are stable at an outer step of p inner ones and at
+    /// every smaller one.
     pub fn paths_prove_stable(&self, step: f64, inner_steps: u64, near: Near) -> bool {
         let [fast, slow] = near.factors;
         let total = &self.fast * Scale(fast) + &self.slow * Scale(slow);
@@ -102,7 +107,8 @@ impl Hessians {
             })
     }
 
-    /// Whether the counts of negative eigenvalues of both actions differ, so that a real multiplier is off the circle.
+    /// Whether the counts of negative eigenvalues of both actions differ, so that a real multiplier is off
+    /// the circle.
     pub fn paths_prove_unstable(&self, step: f64, inner_steps: u64) -> bool {
         let counts = [false, true].map(|start_held| {
             let (form, off) = self.action(step, inner_steps, start_held, Near::EXACTLY);

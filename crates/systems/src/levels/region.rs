@@ -60,7 +60,8 @@ impl Kernel {
         form
     }
 
-    /// Whether all F + E₁, S + E₂, ‖E₁‖₂ ≤ ε ‖F‖₂, ‖E₂‖₂ ≤ ε ‖S‖₂, are proven to be in the first stable region.
+    /// Whether all F + E₁, S + E₂, ‖E₁‖₂ ≤ ε ‖F‖₂, ‖E₂‖₂ ≤ ε ‖S‖₂, are proven to be in the first stable
+    /// region.
     pub fn is_in_first_region(&self, outer: &Outer, epsilon: f64) -> bool {
         let shifted = self.shifted(outer, epsilon);
         if !shifted.more.iter().all(|half| half.rises()) || !shifted.less.iter().all(|half| half.d.lo > 0.0) {
@@ -74,8 +75,8 @@ impl Kernel {
         is_definite(-1.0, &stretch) && is_definite(1.0, &restoring)
     }
 
-    /// The largest ε, within a percent (in the first stable region) or a tenth, for which [`Kernel::is_stable`] holds; `None` where
-    /// it does not for 0.
+    /// The largest ε, within a percent (in the first stable region) or a tenth, for which
+    /// [`Kernel::is_stable`] holds; `None` where it does not for 0.
     pub fn margin(&self, outer: &Outer) -> Option<f64> {
         let is_in_region = self.is_in_first_region(outer, 0.0);
         let stable = if is_in_region { Kernel::is_in_first_region } else { Kernel::is_stable_by_index };
@@ -83,9 +84,10 @@ impl Kernel {
         largest(width, |epsilon| stable(self, outer, epsilon))
     }
 
-    /// The first unstable outer step of p inner ones, [lo, hi]: every step in (0, lo] is proven stable, hi is proven unstable.
-    /// `None` where F + S is not proven definite, so that the region does not begin at 0, and where no step is unstable as far as the region is
-    /// known to be one interval ([`Method::first_region_ends`](super::method::Method)).
+    /// The first unstable outer step of p inner ones, [lo, hi]: every step in (0, lo] is proven stable, hi is
+    /// proven unstable. `None` where F + S is not proven definite, so that the region does not begin at 0,
+    /// and where no step is unstable as far as the region is known to be one interval
+    /// ([`Method::first_region_ends`](super::method::Method)).
     pub fn first_unstable(&self, inner_steps: u64) -> Option<(f64, f64)> {
         let (lo, hi) = self.first_region_end(inner_steps, 0.0)?;
         // Where the forms are near 0 doubles cannot decide; a little farther they can.
@@ -95,8 +97,9 @@ impl Kernel {
         steps.find(|&step| unstable(step)).map(|step| (lo, step))
     }
 
-    /// Two outer steps, 1e-8 apart, relative: all stiffnesses within `epsilon` of their norms are proven stable at every step in (0, lo], and not
-    /// proven to be in the first region at hi. `None` where no such step is found, or F + S is not proven definite.
+    /// Two outer steps, 1e-8 apart, relative: all stiffnesses within `epsilon` of their norms are proven
+    /// stable at every step in (0, lo], and not proven to be in the first region at hi. `None` where no such
+    /// step is found, or F + S is not proven definite.
     pub(super) fn first_region_end(&self, inner_steps: u64, epsilon: f64) -> Option<(f64, f64)> {
         let outer = |step: f64| Outer::new(step, inner_steps).ok();
         if !self.is_total_definite_within(epsilon) || self.highest_frequency() == 0.0 {

@@ -16,7 +16,8 @@ pub struct Hessians {
     pub(super) slow: Mat<f64>,
     /// How far (2-norm) these are from the exact restrictions of the matrices given.
     pub(super) errors: [f64; 2],
-    /// No less than what each is known relative to: its norm, or the sum of those of potentials that share its clock; 0 where that is its norm.
+    /// No less than what each is known relative to: its norm, or the sum of those of potentials that share
+    /// its clock; 0 where that is its norm.
     pub(super) sizes: [f64; 2],
     /// The coordinates kept, as orthonormal columns in those given; `None`: all.
     pub(super) basis: Option<Mat<f64>>,
@@ -36,8 +37,8 @@ impl Hessians {
     /// From mass-weighted matrices, M^-½ K M^-½, of one size.
     ///
     /// # Errors
-    /// Names the matrix that is empty, not square, of another size, not finite, or farther from symmetric than
-    /// `accuracy` times its norm. What asymmetry there is is split evenly.
+    /// Names the matrix that is empty, not square, of another size, not finite, or farther from symmetric
+    /// than `accuracy` times its norm. What asymmetry there is is split evenly.
     pub fn new(fast: &DMatrix<f64>, slow: &DMatrix<f64>, accuracy: f64) -> Result<Hessians> {
         let n = fast.nrows();
         let [fast, slow] = [("fast", fast), ("slow", slow)].map(|(name, k)| symmetric(name, k, n, accuracy));
@@ -112,7 +113,8 @@ impl Hessians {
         Hessians { fast, slow, errors, basis: Some(kept), removed: Some(removed), ..self }
     }
 
-    /// Another mass-weighted stiffness in the coordinates kept, what asymmetry there is split evenly, and how far (2-norm) it is from the exact restriction.
+    /// Another mass-weighted stiffness in the coordinates kept, what asymmetry there is split evenly, and how
+    /// far (2-norm) it is from the exact restriction.
     pub(super) fn restricted(&self, k: &DMatrix<f64>) -> (Mat<f64>, f64) {
         let whole = halved(MatRef::from_column_major_slice(k.as_slice(), k.nrows(), k.ncols()));
         // The rounding of two roots, their product, the quotient and the mean of both triangles.
@@ -122,8 +124,8 @@ impl Hessians {
         (matrix, weights + error)
     }
 
-    /// These Hessians where one level, 0 the fast one, is a sum of mass-weighted stiffnesses: each of these is known to its own norm, though
-    /// they may cancel.
+    /// These Hessians where one level, 0 the fast one, is a sum of mass-weighted stiffnesses: each of these
+    /// is known to its own norm, though they may cancel.
     #[must_use]
     pub fn of_shares(mut self, level: usize, shares: &[DMatrix<f64>]) -> Hessians {
         let size = |k: &DMatrix<f64>| {
@@ -184,7 +186,8 @@ fn is_symmetric(k: &[f64], n: usize) -> bool {
     })
 }
 
-/// Vᵀ k V for orthonormal columns V but for this defect, and how far (2-norm) it is from that of exactly orthonormal ones.
+/// Vᵀ k V for orthonormal columns V but for this defect, and how far (2-norm) it is from that of exactly
+/// orthonormal ones.
 pub fn projected(k: &Mat<f64>, kept: &Mat<f64>, defect: f64) -> (Mat<f64>, f64) {
     let image = kept.transpose() * k * kept;
     let size = norm::frobenius(k);
@@ -197,8 +200,9 @@ pub(super) fn halved(m: MatRef<'_, f64>) -> Mat<f64> {
     Mat::from_fn(m.nrows(), m.ncols(), |i, j| m[(i, j)] / 2.0 + m[(j, i)] / 2.0)
 }
 
-/// Translations and rotations of particles at `positions` (one triple each) with `masses` (one each), in mass-weighted
-/// coordinates x_1, y_1, z_1, x_2, ...: orthonormal columns, 6 of them, 5 for particles on a line, 3 for one.
+/// Translations and rotations of particles at `positions` (one triple each) with `masses` (one each), in
+/// mass-weighted coordinates x_1, y_1, z_1, x_2, ...: orthonormal columns, 6 of them, 5 for particles on a
+/// line, 3 for one.
 pub fn rigid_motions(positions: &[[f64; 3]], masses: &[f64]) -> Mat<f64> {
     Motions::of_particles(positions, masses).columns
 }

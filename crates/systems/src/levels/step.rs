@@ -1,5 +1,5 @@
-//! One outer step of a method as one matrix, by series and squarings: no eigenvector of the fast stiffness enters, so it can be held against
-//! the kernel.
+//! One outer step of a method as one matrix, by series and squarings: no eigenvector of the fast stiffness
+//! enters, so it can be held against the kernel.
 
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Scale};

@@ -54,8 +54,8 @@ pub fn alternating_chain(n: usize, stiffness: [&Rational; 2], steps: [&Rational;
     periodic_chain(n, &stiffness.map(Clone::clone), &steps.map(Clone::clone))
 }
 
-/// The linear part of the Fermi-Pasta-Ulam chain with alternating stiff and soft springs: `pairs` stiff springs of
-/// stiffness w² joined by soft ones of stiffness 1, soft walls, unit masses; steps (stiff, soft).
+/// The linear part of the Fermi-Pasta-Ulam chain with alternating stiff and soft springs: `pairs` stiff
+/// springs of stiffness w² joined by soft ones of stiffness 1, soft walls, unit masses; steps (stiff, soft).
 ///
 /// # Errors
 /// No pair; and as [`System::new`].
@@ -65,8 +65,8 @@ pub fn stiff_soft_chain(pairs: usize, stiff: &Rational, steps: [&Rational; 2]) -
     alternating_chain(2 * pairs, [&one, stiff], [steps[1], steps[0]])
 }
 
-/// A bar of linear finite elements with the lengths `lengths`, fixed at its left end: stiffness 1/length, lumped
-/// masses of half the lengths beside a node, and each element its own step.
+/// A bar of linear finite elements with the lengths `lengths`, fixed at its left end: stiffness 1/length,
+/// lumped masses of half the lengths beside a node, and each element its own step.
 ///
 /// # Errors
 /// No element, a length ≤ 0, as many steps as lengths are not given; and as [`System::new`].
@@ -91,8 +91,8 @@ pub fn bar(lengths: &[Rational], steps: &[Rational]) -> Result<System> {
     System::new(Symmetric::diagonal(&masses), (0..n).map(element).collect())
 }
 
-/// A bar of n elements in `classes` groups of equal length, from coarse at the wall to fine: the length (and the
-/// step, a constant fraction `courant` of it) of class c is (classes − c)/n.
+/// A bar of n elements in `classes` groups of equal length, from coarse at the wall to fine: the length (and
+/// the step, a constant fraction `courant` of it) of class c is (classes − c)/n.
 ///
 /// # Errors
 /// As [`bar`].

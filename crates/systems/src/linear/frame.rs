@@ -1,10 +1,10 @@
 //! Rigid modes set apart, exactly: the coordinates in which they are not seen.
 //!
-//! Let N be the common null space of all K_k, with the basis n_J in reduced form (n_J is 1 at the coordinate J,
-//! where the others are 0). No kick sees a shift x + n, so positions count modulo N: y_i = x_i − Σ_J n_J\[i\] x_J
-//! for the other coordinates i. No kick changes n_Jᵀ p, so momenta with n_Jᵀ p = 0 stay among themselves:
-//! p_J = −Σ n_J\[i\] p_i. The half period maps these (y, p) to themselves and stays symplectic there. The
-//! propagation itself runs in the full coordinates, where matrices are sparse.
+//! Let N be the common null space of all K_k, with the basis n_J in reduced form (n_J is 1 at the coordinate
+//! J, where the others are 0). No kick sees a shift x + n, so positions count modulo N: y_i = x_i − Σ_J
+//! n_J\[i\] x_J for the other coordinates i. No kick changes n_Jᵀ p, so momenta with n_Jᵀ p = 0 stay among
+//! themselves: p_J = −Σ n_J\[i\] p_i. The half period maps these (y, p) to themselves and stays symplectic
+//! there. The propagation itself runs in the full coordinates, where matrices are sparse.
 
 use nalgebra::DMatrix;
 use num_bigint::BigInt;

@@ -1,14 +1,15 @@
 //! Meshes of linear finite elements, each element kicking with a step of its own: what AVI were made for.
 //!
-//! Bars, triangles in the plane and tetrahedra of isotropic linear elasticity with lumped masses. With the gradients g_a of the
-//! shape functions of a simplex of volume V and Lamé's λ, μ (in plane stress 2λμ/(λ + 2μ) for λ),
+//! Bars, triangles in the plane and tetrahedra of isotropic linear elasticity with lumped masses. With the
+//! gradients g_a of the shape functions of a simplex of volume V and Lamé's λ, μ (in plane stress 2λμ/(λ +
+//! 2μ) for λ),
 //!
 //! ```text
 //!     K_(ai)(bj) = V (λ g_ai g_bj + μ (g_aj g_bi + δ_ij g_a·g_b)),      a bar: E A/L³ Δ Δᵀ,
 //! ```
 //!
-//! exact over ℚ, but for the length of a bar whose square is no square of a rational: that one is rounded to a double.
-//! Elements of equal steps share a clock; a kick moves the nodes of its elements alone.
+//! exact over ℚ, but for the length of a bar whose square is no square of a rational: that one is rounded to
+//! a double. Elements of equal steps share a clock; a kick moves the nodes of its elements alone.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -40,7 +41,8 @@ pub struct Material {
 pub struct Mesh {
     /// 1 to 3 coordinates each.
     pub nodes: Vec<Vec<Rational>>,
-    /// The nodes of each element, and its step: 2 nodes are a bar, 3 a triangle in the plane, 4 a tetrahedron.
+    /// The nodes of each element, and its step: 2 nodes are a bar, 3 a triangle in the plane, 4 a
+    /// tetrahedron.
     pub elements: Vec<(Vec<usize>, Rational)>,
     /// (node, axis) pairs that do not move.
     pub fixed: BTreeSet<(usize, usize)>,
@@ -51,8 +53,8 @@ impl Mesh {
     /// The system of all (node, axis) pairs that move, and these.
     ///
     /// # Errors
-    /// Names the element: too many or too few nodes for the space, one that is not there, no volume; a material that is none;
-    /// a node that moves but belongs to no element; and as [`System::new`].
+    /// Names the element: too many or too few nodes for the space, one that is not there, no volume; a
+    /// material that is none; a node that moves but belongs to no element; and as [`System::new`].
     pub fn system(&self) -> Result<(System, Vec<(usize, usize)>)> {
         self.check()?;
         let axes = self.nodes.first().map_or(0, Vec::len);

@@ -1,4 +1,5 @@
-//! A linear system over ℚ: masses, potentials with their clocks, and what is exact about it before anything is decided.
+//! A linear system over ℚ: masses, potentials with their clocks, and what is exact about it before anything
+//! is decided.
 //!
 //! | file | what |
 //! |---|---|

@@ -28,9 +28,11 @@ pub struct Symmetric {
 #[derive(Clone, Debug)]
 struct Entries {
     rows: OnceLock<Vec<BTreeMap<usize, Rational>>>,
-    /// The matrix that it is a multiple of, and the factor, not 0: products are computed once someone asks for them.
+    /// The matrix that it is a multiple of, and the factor, not 0: products are computed once someone asks
+    /// for them.
     multiple: Option<(Symmetric, Rational)>,
-    /// The rows in two doubles, once they are asked for: rounding them costs more than a small system's verdict.
+    /// The rows in two doubles, once they are asked for: rounding them costs more than a small system's
+    /// verdict.
     doubles: OnceLock<Vec<Vec<(usize, Twofold)>>>,
 }
 
@@ -258,12 +260,14 @@ impl Symmetric {
         DMatrix::from_fn(self.size(), self.size(), |i, j| self.get(i, j))
     }
 
-    /// Whether xᵀ self x ≥ 0 for all x, exactly: by an inertia in doubles where that proves it, else by elimination over ℚ.
+    /// Whether xᵀ self x ≥ 0 for all x, exactly: by an inertia in doubles where that proves it, else by
+    /// elimination over ℚ.
     pub fn is_positive_semidefinite(&self) -> bool {
         is_sum_semidefinite(&[self], || self.clone())
     }
 
-    /// Whether xᵀ self x > 0 for all x ≠ 0, exactly: by its entries where it is diagonal, else as for semidefinite ones.
+    /// Whether xᵀ self x > 0 for all x ≠ 0, exactly: by its entries where it is diagonal, else as for
+    /// semidefinite ones.
     pub fn is_positive_definite(&self) -> bool {
         if self.is_diagonal() {
             return (0..self.size()).all(|i| self.get(i, i).is_positive());
@@ -350,7 +354,8 @@ fn add(row: &mut BTreeMap<usize, Rational>, j: usize, x: &Rational) {
     }
 }
 
-/// Whether xᵀ (Σ X_k) x ≥ 0 for all x, exactly: by an inertia in doubles where that proves it, else by elimination over ℚ.
+/// Whether xᵀ (Σ X_k) x ≥ 0 for all x, exactly: by an inertia in doubles where that proves it, else by
+/// elimination over ℚ.
 pub(crate) fn is_sum_semidefinite(parts: &[&Symmetric], sum: impl FnOnce() -> Symmetric) -> bool {
     match inertia_of_sum(parts) {
         Inertia { negative: 1.., .. } => false,
@@ -359,8 +364,8 @@ pub(crate) fn is_sum_semidefinite(parts: &[&Symmetric], sum: impl FnOnce() -> Sy
     }
 }
 
-/// The signs of the eigenvalues of Σ X_k, as far as doubles prove them; nothing where it is large and nearly a chain (three
-/// entries a row): there exact elimination fills in little and costs less.
+/// The signs of the eigenvalues of Σ X_k, as far as doubles prove them; nothing where it is large and nearly
+/// a chain (three entries a row): there exact elimination fills in little and costs less.
 pub(crate) fn inertia_of_sum(parts: &[&Symmetric]) -> Inertia {
     const SMALL: usize = 64;
     let n = parts.first().map_or(0, |symmetric| symmetric.size());
@@ -374,8 +379,8 @@ pub(crate) fn inertia_of_sum(parts: &[&Symmetric]) -> Inertia {
         sum += &rounded;
         size += norm::frobenius(&rounded);
     }
-    // Each entry of each part within u of its size, or within the smallest double, and a rounding for each sum, each at most u
-    // times the sum of the parts' sizes: Frobenius's norm of all that.
+    // Each entry of each part within u of its size, or within the smallest double, and a rounding for each
+    // sum, each at most u times the sum of the parts' sizes: Frobenius's norm of all that.
     let terms = parts.len() as f64;
     let slack = 1.01 * terms * (U * size + n as f64 * f64::MIN_POSITIVE);
     if slack.is_finite() { proven(&sum, slack) } else { unknown }
@@ -410,9 +415,11 @@ impl TryFrom<&DMatrix<f64>> for Symmetric {
     }
 }
 
-/// A basis of {x : rows x = 0}: (free coordinate, vector) pairs, each vector 1 there and 0 at the other free ones.
+/// A basis of {x : rows x = 0}: (free coordinate, vector) pairs, each vector 1 there and 0 at the other free
+/// ones.
 ///
-/// For rows with many entries it is empty where they are independent modulo a prime: elimination over ℚ makes numbers of n times their length.
+/// For rows with many entries it is empty where they are independent modulo a prime: elimination over ℚ makes
+/// numbers of n times their length.
 pub(crate) fn null_space(mut rows: Vec<BTreeMap<usize, Rational>>, n: usize) -> Vec<(usize, Vec<Rational>)> {
     if 8 * rows.iter().map(BTreeMap::len).sum::<usize>() > n * n && modular::rank_of(&rows, n) == Some(n) {
         return Vec::new();

@@ -1,11 +1,12 @@
 //! Systems split exactly into rational subspaces that all potentials leave invariant.
 //!
-//! Where the M⁻¹ K_k commute, they share their eigenspaces, and each common eigenvector v is an oscillator with the
-//! stiffnesses vᵀ K_k v/vᵀ M v. One combination of the M⁻¹ K_k separates them; its rational eigenvalues are found
-//! exactly, and what has irrational ones stays together, M-orthogonal to the rest.
+//! Where the M⁻¹ K_k commute, they share their eigenspaces, and each common eigenvector v is an oscillator
+//! with the stiffnesses vᵀ K_k v/vᵀ M v. One combination of the M⁻¹ K_k separates them; its rational
+//! eigenvalues are found exactly, and what has irrational ones stays together, M-orthogonal to the rest.
 //!
-//! Where they do not commute, an X that commutes with each of them, self-adjoint in the metric of M, has eigenspaces that all
-//! leave invariant: a mirror of a molecule splits it into symmetric and antisymmetric motions. With X = M⁻¹ Y that is
+//! Where they do not commute, an X that commutes with each of them, self-adjoint in the metric of M, has
+//! eigenspaces that all leave invariant: a mirror of a molecule splits it into symmetric and antisymmetric
+//! motions. With X = M⁻¹ Y that is
 //!
 //! ```text
 //!     Y = Yᵀ,      Y M⁻¹ K_k = K_k M⁻¹ Y for all k,
@@ -31,8 +32,8 @@ use number::{Polynomial, Rational, U};
 /// Columns that span an invariant subspace.
 pub(crate) type Subspace = Vec<Vec<Rational>>;
 
-/// Invariant subspaces of commuting potentials, M-orthogonal to each other: lines where they are rational, and
-/// at most one rest; `None` where potentials do not commute.
+/// Invariant subspaces of commuting potentials, M-orthogonal to each other: lines where they are rational,
+/// and at most one rest; `None` where potentials do not commute.
 pub(crate) fn invariant_subspaces(system: &System, stiffnesses: &[&Symmetric]) -> Option<Vec<Subspace>> {
     let n = system.size();
     if !may_split(system, stiffnesses) {
@@ -67,8 +68,8 @@ pub(crate) fn invariant_subspaces(system: &System, stiffnesses: &[&Symmetric]) -
 
 /// Whether the M⁻¹ K_k may all commute; `false` where doubles prove that two of them do not.
 ///
-/// An entry of the rounded matrices is within 2 u of its size of the true one, a product of three of them summed over n²
-/// terms within (n² + 12) u of the sum of their absolute values.
+/// An entry of the rounded matrices is within 2 u of its size of the true one, a product of three of them
+/// summed over n² terms within (n² + 12) u of the sum of their absolute values.
 pub(crate) fn may_split(system: &System, stiffnesses: &[&Symmetric]) -> bool {
     let n = system.size();
     let dense = |rounded: Mat<f64>| DMatrix::from_fn(n, n, |i, j| rounded[(i, j)]);
@@ -93,14 +94,16 @@ pub(crate) fn may_split(system: &System, stiffnesses: &[&Symmetric]) -> bool {
 
 /// How motions of different symmetry come apart.
 pub(crate) enum Symmetry {
-    /// Invariant subspaces, M-orthogonal to each other: the eigenspaces of a symmetry with rational eigenvalues and what is left of it.
+    /// Invariant subspaces, M-orthogonal to each other: the eigenspaces of a symmetry with rational
+    /// eigenvalues and what is left of it.
     Subspaces(Vec<Subspace>),
-    /// An operator M⁻¹ Y that commutes with all M⁻¹ K_k and with all symmetries of these; its eigenspaces need not be rational: the ring of five
-    /// has two pairs of them over ℚ(√5).
+    /// An operator M⁻¹ Y that commutes with all M⁻¹ K_k and with all symmetries of these; its eigenspaces
+    /// need not be rational: the ring of five has two pairs of them over ℚ(√5).
     Central(DMatrix<Rational>),
 }
 
-/// The symmetry of potentials that need not commute; `None` where all that commutes with them is a multiple of the identity.
+/// The symmetry of potentials that need not commute; `None` where all that commutes with them is a multiple
+/// of the identity.
 pub fn symmetry(system: &System, stiffnesses: &[&Symmetric]) -> Option<Symmetry> {
     let inverse = dense_inverse(system);
     let mut operators: Vec<_> = stiffnesses.iter().map(|k| &inverse * k.to_dense()).collect();
@@ -120,8 +123,8 @@ pub fn symmetry(system: &System, stiffnesses: &[&Symmetric]) -> Option<Symmetry>
     (central.len() > 1).then(|| Symmetry::Central(inverse * sum))
 }
 
-/// A basis of the symmetric Y with Y A = Aᵀ Y for all these A; empty where it has but one element, by its rank modulo a prime, which is
-/// no larger than the true one.
+/// A basis of the symmetric Y with Y A = Aᵀ Y for all these A; empty where it has but one element, by its
+/// rank modulo a prime, which is no larger than the true one.
 fn symmetries(operators: &[DMatrix<Rational>]) -> Vec<DMatrix<Rational>> {
     let n = operators.first().map_or(0, DMatrix::nrows);
     let unknown = |i: usize, j: usize| i.max(j) * (i.max(j) + 1) / 2 + i.min(j);
@@ -168,8 +171,8 @@ fn times(a: &DMatrix<Rational>, v: &[Rational]) -> Vec<Rational> {
     a.row_iter().map(|row| row.iter().zip(v).fold(Rational::zero(), |sum, (x, y)| sum + x * y)).collect()
 }
 
-/// The invariant `space` as the eigenspaces of its rational eigenvalues under `operator` and what is M-orthogonal
-/// to them there.
+/// The invariant `space` as the eigenspaces of its rational eigenvalues under `operator` and what is
+/// M-orthogonal to them there.
 fn eigenspaces(system: &System, operator: &DMatrix<Rational>, space: Subspace) -> Vec<Subspace> {
     let (local, in_space) = restrict(system, operator, &space);
     let mut found: Vec<Subspace> = Vec::new();

@@ -52,7 +52,8 @@ pub struct System {
     clocks: Vec<Potential>,
     schedule: Schedule,
     tick: Rational,
-    /// What holds a motion, where the potentials are effective ones: these may vanish at one step along what their own parts hold.
+    /// What holds a motion, where the potentials are effective ones: these may vanish at one step along what
+    /// their own parts hold.
     holding: Option<Vec<Symmetric>>,
 }
 
@@ -60,8 +61,8 @@ impl System {
     /// From a mass matrix and potentials of its size.
     ///
     /// # Errors
-    /// Names the entry: a mass matrix that is not positive definite (a mass ≤ 0), a stiffness of another size,
-    /// a step ≤ 0, a phase other than 0 and 1/2, a period of 2^62 ticks and more, nothing at all.
+    /// Names the entry: a mass matrix that is not positive definite (a mass ≤ 0), a stiffness of another
+    /// size, a step ≤ 0, a phase other than 0 and 1/2, a period of 2^62 ticks and more, nothing at all.
     pub fn new(mass: Symmetric, potentials: Vec<Potential>) -> Result<Self> {
         check_mass(&mass)?;
         for (k, potential) in potentials.iter().enumerate() {
@@ -84,7 +85,8 @@ impl System {
         Ok(System { mass, potentials, clocks, schedule, tick, holding: None })
     }
 
-    /// This system, whose potentials are effective ones, with the stiffnesses that they come from: rigid is what none of these holds.
+    /// This system, whose potentials are effective ones, with the stiffnesses that they come from: rigid is
+    /// what none of these holds.
     #[must_use]
     pub(crate) fn held_by(self, plain: &System) -> System {
         System { holding: Some(plain.holding().cloned().collect()), ..self }
@@ -112,8 +114,8 @@ impl System {
         &self.potentials
     }
 
-    /// The sums of the potentials that share a step and a phase, by increasing step; sums that vanish are left out,
-    /// unless all do.
+    /// The sums of the potentials that share a step and a phase, by increasing step; sums that vanish are
+    /// left out, unless all do.
     pub fn clocks(&self) -> &[Potential] {
         &self.clocks
     }
@@ -146,7 +148,8 @@ impl System {
         Ok(System { holding: self.holding.clone(), ..changed })
     }
 
-    /// This system with every clock, also those whose sum vanishes: with friction a kick of strength 0 parts a drift in two.
+    /// This system with every clock, also those whose sum vanishes: with friction a kick of strength 0 parts
+    /// a drift in two.
     pub(crate) fn with_silent_clocks(&self) -> System {
         let (mass, potentials) = (self.mass.clone(), self.potentials.clone());
         let all = System::on(merged(&potentials), mass, potentials).expect("the clocks of a checked system");
@@ -196,10 +199,10 @@ impl System {
         self.clocks.iter().map(|clock| &clock.stiffness).collect()
     }
 
-    /// The common null vectors of all potentials as they were given, which move freely: (coordinate where it alone is
-    /// 1, vector) pairs. A direction in which potentials of one clock cancel is none of them: it drifts, but only as
-    /// long as they cancel, and is called what it is, parabolic. Nor is one along which an effective stiffness vanishes at
-    /// this step alone, as after a full turn.
+    /// The common null vectors of all potentials as they were given, which move freely: (coordinate where it
+    /// alone is 1, vector) pairs. A direction in which potentials of one clock cancel is none of them: it
+    /// drifts, but only as long as they cancel, and is called what it is, parabolic. Nor is one along which
+    /// an effective stiffness vanishes at this step alone, as after a full turn.
     pub fn rigid_modes(&self) -> Vec<(usize, Vec<Rational>)> {
         // Common null vectors are null vectors of the sum: look among those.
         if inertia_of_sum(&self.stiffnesses()).unknown == 0 {

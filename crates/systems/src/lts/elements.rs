@@ -1,5 +1,5 @@
-//! AVI (Lew, Marsden, Ortiz and West 2003) on levels of elements: those of a level share a clock, and the kick is that of their stiffness, which is
-//! symmetric. So the system of these clocks decides.
+//! AVI (Lew, Marsden, Ortiz and West 2003) on levels of elements: those of a level share a clock, and the
+//! kick is that of their stiffness, which is symmetric. So the system of these clocks decides.
 
 use super::scheme::{Level, Scheme, SchemeSummary, plain_limit};
 use crate::linear::system::System;
@@ -15,7 +15,8 @@ pub struct ElementSteps {
 }
 
 impl ElementSteps {
-    /// Those of `size` elements. `clocks` is the system in which the elements of each level kick with their own step.
+    /// Those of `size` elements. `clocks` is the system in which the elements of each level kick with their
+    /// own step.
     ///
     /// # Errors
     /// As [`ElementSteps::substeps`].

@@ -1,12 +1,14 @@
 //! All unstable intervals of dt: between real roots of two determinants one step decides.
 //!
-//! K(X) = f/X is a polynomial in X = dt². Its signature and that of 4 M − X K(X), off the rigid motions, change only at the real roots of
+//! K(X) = f/X is a polynomial in X = dt². Its signature and that of 4 M − X K(X), off the rigid motions,
+//! change only at the real roots of
 //!
 //! ```text
 //!     det Zᵀ K(X) Z,      det Zᵀ (4 M − X K(X)) Z,
 //! ```
 //!
-//! Z a basis of what is M-orthogonal to them. At a root the scheme is unstable: a multiplier 1 or −1 has a Jordan block.
+//! Z a basis of what is M-orthogonal to them. At a root the scheme is unstable: a multiplier 1 or −1 has a
+//! Jordan block.
 
 use num_bigint::BigInt;
 use num_traits::{One, Zero};
@@ -31,14 +33,15 @@ use number::{Polynomial, Rational};
 const WORDS: f64 = 500.0;
 
 impl LocalSteps {
-    /// The verdicts on all steps from lo > 0 to hi: the end of a stretch and the beginning of the next are neighbouring doubles with one edge
-    /// or more between them, or one stretch holds the edge, a double.
+    /// The verdicts on all steps from lo > 0 to hi: the end of a stretch and the beginning of the next are
+    /// neighbouring doubles with one edge or more between them, or one stretch holds the edge, a double.
     ///
     /// # Errors
     /// A budget error where the determinants would cost more; as [`decide_system`].
     pub fn stretches(&self, range: (f64, f64), limits: &Limits) -> Result<Vec<Stretch>> {
         let verdict = |x: &Rational| Ok(decide_system(self.at(x)?.system(), limits)?.holds());
-        // At a simple root one eigenvalue passes an end. On the side where it is within both, others are unstable, and stay so.
+        // At a simple root one eigenvalue passes an end. On the side where it is within both, others are
+        // unstable, and stay so.
         let within = |gap: &Gap, around: Holds| {
             Ok(if gap.is_simple() && around == Holds::Unstable { around } else { Holds::NotTold })
         };
@@ -62,7 +65,8 @@ impl LocalSteps {
         self.plain().size()
     }
 
-    /// A bound on the degree in X of both determinants: what depends on X in K(X) has the rank of the fine part.
+    /// A bound on the degree in X of both determinants: what depends on X in K(X) has the rank of the fine
+    /// part.
     fn degree(&self) -> usize {
         let (n, fine) = (self.size(), self.levels().first().map_or(0, |level| level.fine.len()));
         n + fine.min(n) * self.substeps() as usize

@@ -25,7 +25,8 @@ named! {
     pub enum Scheme {
         /// Leapfrog with local time steps: forces on what is not fine stand still (Diaz and Grote 2009).
         Lts = "lts",
-        /// Asynchronous variational integrators: elements kick with steps of their own (Lew, Marsden, Ortiz and West 2003).
+        /// Asynchronous variational integrators: elements kick with steps of their own (Lew, Marsden, Ortiz
+        /// and West 2003).
         Avi = "avi",
     }
 }
@@ -40,7 +41,8 @@ pub struct SchemeSummary {
     pub levels: Vec<(usize, u32)>,
     /// As [`LocalSteps::plain_limit`].
     pub plain_limit: Option<(f64, f64)>,
-    /// \[lo, hi\]: every step in (0, lo] is proven stable, some step up to hi is proven unstable; `None` where that is not known.
+    /// \[lo, hi\]: every step in (0, lo] is proven stable, some step up to hi is proven unstable; `None`
+    /// where that is not known.
     pub first_unstable: Option<(f64, f64)>,
 }
 
@@ -164,7 +166,8 @@ impl LocalSteps {
     /// The scheme for a system of one clock.
     ///
     /// # Errors
-    /// A mass matrix that is not diagonal, several clocks, a phase, levels that are no parts of the ones above, too many substeps.
+    /// A mass matrix that is not diagonal, several clocks, a phase, levels that are no parts of the ones
+    /// above, too many substeps.
     pub fn new(plain: System, levels: Vec<Level>) -> Result<LocalSteps> {
         let product = Level::of_one_clock(&plain, &levels)?;
         let work = work(&plain, &levels);
@@ -214,8 +217,9 @@ impl LocalSteps {
         Ok(LocalSteps { plain, levels: self.levels.clone(), system })
     }
 
-    /// Where plain leapfrog, all with the step of the whole, becomes unstable: \[lo, hi\] holds 2/√λ of the largest λ of K x = λ M x, within
-    /// 10^-9 of itself or as near as doubles can decide; `None` where no λ is positive.
+    /// Where plain leapfrog, all with the step of the whole, becomes unstable: \[lo, hi\] holds 2/√λ of the
+    /// largest λ of K x = λ M x, within 10^-9 of itself or as near as doubles can decide; `None` where no λ
+    /// is positive.
     pub fn plain_limit(&self) -> Option<(f64, f64)> {
         plain_limit(&self.plain)
     }
@@ -281,8 +285,9 @@ fn work(plain: &System, levels: &[Level]) -> f64 {
     work
 }
 
-/// W_p(1 − S P M⁻¹) S, `weights` the diagonal of P M⁻¹: all polynomials in S P M⁻¹ times S are symmetric. Those of k and k + 1 substeps become those
-/// of 2k and 2k + 1 or 2k + 2 by T_2k = 2 T_k² − 1 and T_2k+1 = 2 T_k T_k+1 − T_1: p substeps take 2 log₂ p products, whose numbers are p times as long.
+/// W_p(1 − S P M⁻¹) S, `weights` the diagonal of P M⁻¹: all polynomials in S P M⁻¹ times S are symmetric.
+/// Those of k and k + 1 substeps become those of 2k and 2k + 1 or 2k + 2 by T_2k = 2 T_k² − 1 and T_2k+1 = 2
+/// T_k T_k+1 − T_1: p substeps take 2 log₂ p products, whose numbers are p times as long.
 fn substeps(symmetric: &Symmetric, weights: &[Rational], substeps: u32) -> Symmetric {
     let [two, minus, minus_two] = [2, -1, -2].map(|n| ratio(n, 1));
     // 1 − T_a+b plus 1 − T_a−b of those of a and b.

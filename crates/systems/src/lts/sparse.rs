@@ -1,4 +1,5 @@
-//! Local time steps of many thousands of degrees of freedom: f = Σ C_j dt^2j, every C_j sparse, in doubles within proven bounds.
+//! Local time steps of many thousands of degrees of freedom: f = Σ C_j dt^2j, every C_j sparse, in doubles
+//! within proven bounds.
 
 use faer::Mat;
 
@@ -13,7 +14,8 @@ use number::error::{Error, Result};
 use number::rational::from_f64_exact;
 use number::{Rational, U, bisected};
 
-/// A diagonal mass, a sparse stiffness, levels from the coarsest to the finest one. Its verdicts are two factorizations each.
+/// A diagonal mass, a sparse stiffness, levels from the coarsest to the finest one. Its verdicts are two
+/// factorizations each.
 ///
 /// ```
 /// use kickdrift_systems::{Holds, Level, SparseSteps};
@@ -66,13 +68,15 @@ struct Block {
 }
 
 impl Block {
-    /// Its largest eigenvalue, enclosed to `within` of itself or as near as doubles can decide; `None` where it is not positive.
+    /// Its largest eigenvalue, enclosed to `within` of itself or as near as doubles can decide; `None` where
+    /// it is not positive.
     fn largest(&self, within: f64) -> Option<(f64, f64)> {
         self.pattern.largest(&self.values, self.error, within)
     }
 }
 
-/// Sums of rows so small beside those of |entries| are the rounding of each entry: then all may move together.
+/// Sums of rows so small beside those of |entries| are the rounding of each entry: then all may move
+/// together.
 const RIGID: f64 = 8.0 * U;
 
 /// Sums of rows that are small and no rounding: all together are neither clearly free nor clearly held.
@@ -87,7 +91,8 @@ const ROUNDS: usize = 12;
 /// The most times that these begin anew, nearer to what they seek.
 const MOST_ROUNDS: usize = 12;
 
-/// How sharply eigenvalues are enclosed that limit steps, and the relative width within which the first unstable one is sought.
+/// How sharply eigenvalues are enclosed that limit steps, and the relative width within which the first
+/// unstable one is sought.
 const LIMIT: f64 = 1e-6;
 const WIDTH: f64 = 1e-5;
 
@@ -95,11 +100,12 @@ const WIDTH: f64 = 1e-5;
 const SHARP: f64 = 0.02;
 
 impl SparseSteps {
-    /// From K, each pair of entries once or both alike, and the mass of each degree of freedom. Where the rows of K sum to 0, all may move together
-    /// and that motion is set apart.
+    /// From K, each pair of entries once or both alike, and the mass of each degree of freedom. Where the
+    /// rows of K sum to 0, all may move together and that motion is set apart.
     ///
     /// # Errors
-    /// Masses that are not positive, numbers that are not finite, indices beyond the rows, pairs of entries that differ; levels as [`LocalSteps::new`].
+    /// Masses that are not positive, numbers that are not finite, indices beyond the rows, pairs of entries
+    /// that differ; levels as [`LocalSteps::new`].
     pub fn new(masses: &[f64], stiffness: &Triplets, levels: Vec<Level>) -> Result<SparseSteps> {
         let n = masses.len();
         if let Some((i, mass)) = masses.iter().enumerate().find(|(_, m)| !(m.is_finite() && **m > 0.0)) {
@@ -162,12 +168,14 @@ impl SparseSteps {
         self.rigid.ncols()
     }
 
-    /// The largest sum of a row of K relative to that of its |entries|, where that is small and yet no rounding: whether all together are free is not clear.
+    /// The largest sum of a row of K relative to that of its |entries|, where that is small and yet no
+    /// rounding: whether all together are free is not clear.
     pub fn nearly_free(&self) -> Option<f64> {
         (self.rigid.ncols() == 0 && self.sums <= NEARLY).then_some(self.sums)
     }
 
-    /// The same scheme with this step in rational numbers, of some dozen degrees of freedom at most; `None` of more.
+    /// The same scheme with this step in rational numbers, of some dozen degrees of freedom at most; `None`
+    /// of more.
     pub fn exactly(&self, step: &Rational) -> Option<Result<LocalSteps>> {
         let (masses, stiffness) = self.given.as_ref()?;
         let exact = |x: f64| from_f64_exact(x).expect("finite");
@@ -191,7 +199,8 @@ impl SparseSteps {
         (values, 1.01 * off)
     }
 
-    /// The verdict at a step, the nearest double of it: both factorizations run to their end, or one counts what lies beyond.
+    /// The verdict at a step, the nearest double of it: both factorizations run to their end, or one counts
+    /// what lies beyond.
     pub fn verdict(&self, dt: f64) -> Holds {
         let (values, off) = self.at(dt * dt);
         match (self.above(&values, off), self.below(&values, off, 4.0)) {
@@ -241,8 +250,9 @@ impl SparseSteps {
         self.beyond(values, off, (a, c), false).map_or(Holds::NotTold, |_| Holds::Unstable)
     }
 
-    /// Of the motion that grows fastest at an unstable step: an enclosure of the largest ln |λ| of a step, and positions, rounded, the longest
-    /// entry 1. With the largest λ of f, or of 4 − f, 2 asinh √(λ/4 − 1): a step multiplies by as much. `None` where nothing is proven to grow.
+    /// Of the motion that grows fastest at an unstable step: an enclosure of the largest ln |λ| of a step,
+    /// and positions, rounded, the longest entry 1. With the largest λ of f, or of 4 − f, 2 asinh √(λ/4 − 1):
+    /// a step multiplies by as much. `None` where nothing is proven to grow.
     pub fn growth(&self, dt: f64) -> Option<Growth> {
         let (values, off) = self.at(dt * dt);
         let above = self.beyond(&values, off, (-1.0, 4.0), true);
@@ -267,8 +277,8 @@ impl SparseSteps {
         })
     }
 
-    /// The largest eigenvalue of −(c + a f), enclosed, where it is proven to be above 0: below by the quotient of the vector that inverse iteration
-    /// finds, above by a factorization.
+    /// The largest eigenvalue of −(c + a f), enclosed, where it is proven to be above 0: below by the
+    /// quotient of the vector that inverse iteration finds, above by a factorization.
     fn beyond(&self, values: &[f64], off: f64, (a, c): (f64, f64), is_sharp: bool) -> Option<Beyond> {
         let (n, size) = (self.size() as f64, self.pattern.size_of(values).0);
         let factors = |by: f64| self.pattern.factored(c + by, &[(a, values)], off);
@@ -299,17 +309,21 @@ impl SparseSteps {
         (lo > 0.0).then_some(Beyond { lo, hi, along: x })
     }
 
-    /// Where plain leapfrog, all with the step of the whole, becomes unstable, as [`LocalSteps::plain_limit`].
+    /// Where plain leapfrog, all with the step of the whole, becomes unstable, as
+    /// [`LocalSteps::plain_limit`].
     pub fn plain_limit(&self) -> Option<(f64, f64)> {
         let (lo, hi) = self.plain.largest(LIMIT)?;
         Some((2.0 / hi.sqrt() * (1.0 - 4.0 * U), 2.0 / lo.sqrt() * (1.0 + 4.0 * U)))
     }
 
-    /// \[lo, hi\]: every step in (0, lo] is proven stable, some step up to hi is proven unstable; `None` where nothing is proven, or with several levels.
+    /// \[lo, hi\]: every step in (0, lo] is proven stable, some step up to hi is proven unstable; `None`
+    /// where nothing is proven, or with several levels.
     ///
-    /// With the fine part F of A, y its eigenvalues and θ of the substep, 4 sin²(θ/2) = (dt/p)² y, stable steps are one interval up to where the fastest fine
-    /// motion has p θ = π (proofs/LOCAL_STEPS.md). There f has an eigenvalue of 4 or more, however weakly that motion is coupled: where every step up to there
-    /// is stable, hi is no more than the resonance itself is known to, and no factorization could see what lies beyond.
+    /// With the fine part F of A, y its eigenvalues and θ of the substep, 4 sin²(θ/2) = (dt/p)² y, stable
+    /// steps are one interval up to where the fastest fine motion has p θ = π (proofs/LOCAL_STEPS.md). There
+    /// f has an eigenvalue of 4 or more, however weakly that motion is coupled: where every step up to there
+    /// is stable, hi is no more than the resonance itself is known to, and no factorization could see what
+    /// lies beyond.
     pub fn first_unstable(&self) -> Option<(f64, f64)> {
         let [level] = &self.levels[..] else { return None };
         let (low, high) = self.fine.as_ref()?.largest(LIMIT)?;
@@ -374,8 +388,8 @@ const TRIES: u32 = 3;
 /// The least room above what is sought, relative to ‖f‖: below that factorizations prove nothing.
 const LEAST: f64 = 1e-11;
 
-/// The mass-weighted motion of all together, where the rows of K, given by its lower triangle, sum to 0 within the rounding of their entries; and the largest
-/// of these sums, relative to those of |entries|.
+/// The mass-weighted motion of all together, where the rows of K, given by its lower triangle, sum to 0
+/// within the rounding of their entries; and the largest of these sums, relative to those of |entries|.
 fn rigid(stiffness: &Triplets, roots: &[f64]) -> (Mat<f64>, f64) {
     let n = roots.len();
     let (mut sums, mut sizes, mut counts) = (vec![0.0; n], vec![0.0f64; n], vec![0.0; n]);
@@ -428,7 +442,8 @@ fn substeps(sparses: &[Sparse], is_fine: &[bool], substeps: u32) -> Vec<Sparse> 
     now
 }
 
-/// A sparse matrix by columns, and how far it is from the one that is meant, by sums of |entries| of rows and of columns alike.
+/// A sparse matrix by columns, and how far it is from the one that is meant, by sums of |entries| of rows and
+/// of columns alike.
 #[derive(Clone, Debug)]
 struct Sparse {
     ends: Vec<usize>,

@@ -16,7 +16,8 @@ use number::Rational;
 use number::error::Result;
 use number::rational::{from_f64_exact, to_f64};
 
-/// A stretch that is open at an accuracy and decided at one so many times as good is left open by the accuracy.
+/// A stretch that is open at an accuracy and decided at one so many times as good is left open by the
+/// accuracy.
 const BETTER: f64 = 1e3;
 
 /// A number that is varied.
@@ -30,8 +31,8 @@ pub enum Number<'a> {
 }
 
 impl Model {
-    /// The verdicts on all values of a number in a range, no interval wider than `width` times its larger end missed. Of measured stiffnesses they
-    /// hold for all stiffnesses within their accuracy.
+    /// The verdicts on all values of a number in a range, no interval wider than `width` times its larger end
+    /// missed. Of measured stiffnesses they hold for all stiffnesses within their accuracy.
     ///
     /// # Errors
     /// As [`Family::stretches`]; a width outside \[10^-9, 1/10\].
@@ -58,8 +59,9 @@ impl Model {
         }
     }
 
-    /// How many of `stretches`, which are those of [`Model::stretches`], the accuracy of the data leaves open: data a thousand times as
-    /// accurate decide most of such a stretch. `None` where stretches hold for the numbers given alone.
+    /// How many of `stretches`, which are those of [`Model::stretches`], the accuracy of the data leaves
+    /// open: data a thousand times as accurate decide most of such a stretch. `None` where stretches hold for
+    /// the numbers given alone.
     ///
     /// # Errors
     /// As [`Model::stretches`].
@@ -141,7 +143,8 @@ impl Model {
         self.refused("the intervals of a step")
     }
 
-    /// The unstable intervals of the outer step next to its own, all steps in their ratios: between half of it and twice it.
+    /// The unstable intervals of the outer step next to its own, all steps in their ratios: between half of
+    /// it and twice it.
     ///
     /// # Errors
     /// As [`Model::stretches`] and [`Model::decide`].
@@ -184,8 +187,8 @@ impl Model {
         }
     }
 
-    /// The largest growth rate at each outer step, all steps in their ratios, per unit time, rounded; `None` where it is not known to a quarter, nor
-    /// to be less than 10^-3 a step.
+    /// The largest growth rate at each outer step, all steps in their ratios, per unit time, rounded; `None`
+    /// where it is not known to a quarter, nor to be less than 10^-3 a step.
     ///
     /// # Errors
     /// As [`Model::decide`].

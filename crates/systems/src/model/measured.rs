@@ -29,9 +29,11 @@ pub struct Body {
     pub is_weighted: bool,
     /// Whether rotations are no rigid motions, as in a periodic box.
     pub is_periodic: bool,
-    /// The mass-weighted gradients of the distances that are held, a column each; by these the stiffnesses are bent.
+    /// The mass-weighted gradients of the distances that are held, a column each; by these the stiffnesses
+    /// are bent.
     pub held: Option<DMatrix<f64>>,
-    /// The rigid motions where these are known, mass-weighted and independent, a column each; `None`: they are looked for.
+    /// The rigid motions where these are known, mass-weighted and independent, a column each; `None`: they
+    /// are looked for.
     pub rigid: Option<DMatrix<f64>>,
 }
 
@@ -69,17 +71,19 @@ pub struct ManyLevels<'a> {
     pub accuracy: f64,
 }
 
-/// The accuracy of rational stiffnesses in doubles, relative to their norms: more than (√n + 4) 2⁻⁵³ of n = 4096 rows, from half a unit in the last place
-/// of each entry and each mass, and enough for rigid motions to be found.
+/// The accuracy of rational stiffnesses in doubles, relative to their norms: more than (√n + 4) 2⁻⁵³ of n =
+/// 4096 rows, from half a unit in the last place of each entry and each mass, and enough for rigid motions to
+/// be found.
 const ROUNDED: f64 = 1e-12;
 
-/// A cell of a range of n degrees of freedom takes n² (n + this) products, as measured for 81 to 1,080 of them: eigenvalues, factorizations and
-/// norms in wide cells that decide much, and in narrow ones; what goes by entries is slower than products of matrices.
+/// A cell of a range of n degrees of freedom takes n² (n + this) products, as measured for 81 to 1,080 of
+/// them: eigenvalues, factorizations and norms in wide cells that decide much, and in narrow ones; what goes
+/// by entries is slower than products of matrices.
 const CELL: f64 = 1100.0;
 
 impl MeasuredSystem {
-    /// From the step and the stiffness of each potential, at least one, all n x n finite doubles; masses and positions, where they are given,
-    /// fit them.
+    /// From the step and the stiffness of each potential, at least one, all n x n finite doubles; masses and
+    /// positions, where they are given, fit them.
     ///
     /// # Errors
     /// Steps as those of [`System::new`]; an accuracy as for [`MeasuredSystem::at_accuracy`].
@@ -188,8 +192,8 @@ impl MeasuredSystem {
         }
     }
 
-    /// Takes over the accuracy and the method of another of the same body, whether it keeps rigid motions, and its eigenbasis where the stiffnesses are the
-    /// same.
+    /// Takes over the accuracy and the method of another of the same body, whether it keeps rigid motions,
+    /// and its eigenbasis where the stiffnesses are the same.
     pub fn follow(&mut self, other: &MeasuredSystem) {
         (self.accuracy, self.keeps_rigid, self.method) = (other.accuracy, other.keeps_rigid, other.method);
         if self.potentials.iter().map(|(_, k)| k).eq(other.potentials.iter().map(|(_, k)| k)) {
@@ -252,8 +256,8 @@ impl MeasuredSystem {
         Ok(Analysis { clocks: self.potentials.len(), ..analysis })
     }
 
-    /// The verdict that is proven for the doubles given: of two levels in the eigenbasis, where it is known, else at the least cost for this one
-    /// verdict.
+    /// The verdict that is proven for the doubles given: of two levels in the eigenbasis, where it is known,
+    /// else at the least cost for this one verdict.
     pub(super) fn verdict(&self, limits: &Limits) -> Result<Holds> {
         let Some((outer, _)) = self.outer() else {
             return Ok(self.decide_projected(Route::Cheapest, limits)?.holds());
@@ -303,12 +307,14 @@ impl MeasuredSystem {
         limits.allow_dense(self.cost(), || format!("eigenvalues and factorizations of {} rows", self.size()))
     }
 
-    /// The products that a verdict costs, roughly: two eigenvalue problems, changes of basis, some fifty factorizations.
+    /// The products that a verdict costs, roughly: two eigenvalue problems, changes of basis, some fifty
+    /// factorizations.
     pub(super) fn cost(&self) -> u64 {
         (self.size() as u64).saturating_pow(3).saturating_mul(60)
     }
 
-    /// What is proven of all stiffnesses within an accuracy on a range of outer steps, all steps in their ratios.
+    /// What is proven of all stiffnesses within an accuracy on a range of outer steps, all steps in their
+    /// ratios.
     pub(super) fn stretches(&self, range: (f64, f64), width: f64, accuracy: f64) -> Result<Vec<Stretch>> {
         if self.is_of_two_levels() {
             return self.kernel()?.stretches(self.inner_steps(), range, width, accuracy);
@@ -331,7 +337,8 @@ impl MeasuredSystem {
         ask(&many.levels, &self.steps())
     }
 
-    /// The verdicts on a range of factors of one level, 0 the fast one, of the present value `factor`, all else as it is.
+    /// The verdicts on a range of factors of one level, 0 the fast one, of the present value `factor`, all
+    /// else as it is.
     pub(super) fn stretches_of_scale(
         &self,
         level: usize,
@@ -355,7 +362,8 @@ impl MeasuredSystem {
         steps.iter().map(|&step| Ok(kernel.growth_rate(&Outer::new(step, inner_steps)?))).collect()
     }
 
-    /// The largest ln |λ|/T over the eigenvalues of the dense full period, rounded; `None` where it is not of two levels.
+    /// The largest ln |λ|/T over the eigenvalues of the dense full period, rounded; `None` where it is not of
+    /// two levels.
     pub(super) fn growth_of_period(&self, limits: &Limits) -> Result<Option<f64>> {
         let Some((outer, _)) = self.outer() else { return Ok(None) };
         let (hessians, inner_steps) = (self.hessians()?, outer.inner_steps());
@@ -415,7 +423,8 @@ impl MeasuredSystem {
         Ok(self.kernel.get_or_init(|| kernel))
     }
 
-    /// The stiffness of the shortest step and the sum of the others, rigid motions and held distances projected out.
+    /// The stiffness of the shortest step and the sum of the others, rigid motions and held distances
+    /// projected out.
     pub(super) fn hessians(&self) -> Result<Hessians> {
         let whole = self.summed_hessians()?;
         Ok(self.shares.iter().fold(whole, |whole, (step, matrixes)| {

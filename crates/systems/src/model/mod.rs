@@ -39,7 +39,8 @@ pub use sparse::SparseSystem;
 pub enum Model {
     /// Rational masses, stiffnesses and steps, few entries or many.
     Rational(System),
-    /// Several degrees of freedom with π in the stiffnesses, by the rational system beside it ([`beside_pi`](crate::beside_pi)).
+    /// Several degrees of freedom with π in the stiffnesses, by the rational system beside it
+    /// ([`beside_pi`](crate::beside_pi)).
     Pi(System),
     /// One oscillator over ℚ\[π, 1/π\].
     Oscillator(Oscillator),
@@ -60,10 +61,12 @@ pub enum Model {
 }
 
 impl Model {
-    /// The rational system that stands for it: itself; with π in the stiffnesses of several degrees of freedom within 2^-150 of every
-    /// entry, of one within 2^-60 (where steps are irrational in the unit of time of the shortest one); of doubles these doubles; of local
-    /// steps Verlet's with its effective stiffness, of the midpoint rule Verlet's with its effective masses, both exactly. Forces that are no
-    /// gradient, Hessians along an orbit, and sparse stiffnesses, have none: what is returned has their size and their clocks, no more.
+    /// The rational system that stands for it: itself; with π in the stiffnesses of several degrees of
+    /// freedom within 2^-150 of every entry, of one within 2^-60 (where steps are irrational in the unit of
+    /// time of the shortest one); of doubles these doubles; of local steps Verlet's with its effective
+    /// stiffness, of the midpoint rule Verlet's with its effective masses, both exactly. Forces that are no
+    /// gradient, Hessians along an orbit, and sparse stiffnesses, have none: what is returned has their size
+    /// and their clocks, no more.
     pub fn system(&self) -> &System {
         match self {
             Model::Rational(system) | Model::Pi(system) | Model::Elements(system, _) => system,
@@ -131,7 +134,8 @@ impl Model {
         }
     }
 
-    /// The verdict and the growth, which is what a scan shows of each point: of sparse levels without the margin.
+    /// The verdict and the growth, which is what a scan shows of each point: of sparse levels without the
+    /// margin.
     ///
     /// # Errors
     /// As [`Model::decide`].
@@ -142,7 +146,8 @@ impl Model {
         }
     }
 
-    /// The proven verdict and nothing else: for two measured levels without an eigenbasis, where it is proven without one.
+    /// The proven verdict and nothing else: for two measured levels without an eigenbasis, where it is proven
+    /// without one.
     ///
     /// # Errors
     /// As [`Model::decide`].
@@ -179,8 +184,8 @@ impl Model {
         }
     }
 
-    /// The kind by exact arithmetic alone: by characteristic polynomials, part by part; of an oscillator with π by the four signs, of several
-    /// degrees of freedom with π that of [`Model::system`].
+    /// The kind by exact arithmetic alone: by characteristic polynomials, part by part; of an oscillator with
+    /// π by the four signs, of several degrees of freedom with π that of [`Model::system`].
     ///
     /// # Errors
     /// A budget error, before the work on the part that exceeds it.
@@ -226,7 +231,8 @@ impl Model {
         }
     }
 
-    /// The error for questions without an answer: about forces that are no gradient, or about sparse stiffnesses.
+    /// The error for questions without an answer: about forces that are no gradient, or about sparse
+    /// stiffnesses.
     fn refused(&self, what: &str) -> Error {
         match self {
             Model::Sparse(_) => {
@@ -246,11 +252,12 @@ impl Model {
         }
     }
 
-    /// This system under another integrator of two levels: measured ones as they are; rational ones exactly where the fast force is solved for, else
-    /// in doubles, their entries known within the rounding of these.
+    /// This system under another integrator of two levels: measured ones as they are; rational ones exactly
+    /// where the fast force is solved for, else in doubles, their entries known within the rounding of these.
     ///
     /// # Errors
-    /// Where there are not two levels; π, irrational steps, and what is no gradient, sparse or of local steps.
+    /// Where there are not two levels; π, irrational steps, and what is no gradient, sparse or of local
+    /// steps.
     pub fn with_method(self, method: Method) -> Result<Model> {
         let refused = |remedy: &str| Err(Error::input("method", method, remedy));
         match self {
@@ -316,8 +323,8 @@ impl Model {
         if let Model::Along(along) = self { Some(along) } else { None }
     }
 
-    /// The summary of local time steps, where some degrees of freedom take substeps: computed when it is asked for, for sparse systems by some
-    /// dozen factorizations.
+    /// The summary of local time steps, where some degrees of freedom take substeps: computed when it is
+    /// asked for, for sparse systems by some dozen factorizations.
     pub fn local_steps_summary(&self) -> Option<SchemeSummary> {
         match self {
             Model::LocalSteps(local_steps) => Some(local_steps.summary()),
@@ -403,8 +410,8 @@ impl Model {
         self.of_two()?.hessians()
     }
 
-    /// The largest ln |λ|/T of two levels of measured stiffnesses, or of Hessians along an orbit, by the dense full period, rounded; `None` of any
-    /// other system.
+    /// The largest ln |λ|/T of two levels of measured stiffnesses, or of Hessians along an orbit, by the
+    /// dense full period, rounded; `None` of any other system.
     ///
     /// # Errors
     /// As [`Model::decide`]; a budget error before the work.

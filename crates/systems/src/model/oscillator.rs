@@ -23,8 +23,8 @@ pub struct Oscillator {
     pub clocks: ManyClocks<Laurent>,
     /// h_1.
     pub unit: Laurent,
-    /// The oscillator with every stiffness/mass rounded to a rational of some 60 bits; in the unit of time h_1 where
-    /// steps are irrational.
+    /// The oscillator with every stiffness/mass rounded to a rational of some 60 bits; in the unit of time
+    /// h_1 where steps are irrational.
     pub rounded: System,
     pub has_rational_steps: bool,
     mass: Laurent,

@@ -1,4 +1,5 @@
-//! What moves of measured stiffnesses: rigid motions and held distances projected out. On any clocks the doubles that are left decide.
+//! What moves of measured stiffnesses: rigid motions and held distances projected out. On any clocks the
+//! doubles that are left decide.
 
 use std::borrow::Cow;
 
@@ -68,7 +69,8 @@ impl MeasuredSystem {
         }
     }
 
-    /// What positions say is rigid, or a box, with the mass of each particle; `None` where neither does, and where rigid motions are kept.
+    /// What positions say is rigid, or a box, with the mass of each particle; `None` where neither does, and
+    /// where rigid motions are kept.
     fn motions(&self) -> Option<(Motions, Vec<f64>)> {
         let masses =
             self.body.masses.as_ref().filter(|_| !self.keeps_rigid && self.size().is_multiple_of(3))?;
@@ -141,7 +143,8 @@ impl MeasuredSystem {
         damped_system(self.moving()?.as_ref(), rate, limits)
     }
 
-    /// These doubles as a rational system, rigid motions and held distances projected out where there are any.
+    /// These doubles as a rational system, rigid motions and held distances projected out where there are
+    /// any.
     pub(super) fn moving(&self) -> Result<Cow<'_, System>> {
         self.refuse_method("a rational system")?;
         match self.hessians()?.basis() {
@@ -168,7 +171,8 @@ fn warning(how: &str) -> String {
     )
 }
 
-/// Degrees of freedom and shapes in the mass-weighted coordinates given, of an analysis in those of the columns of `basis`.
+/// Degrees of freedom and shapes in the mass-weighted coordinates given, of an analysis in those of the
+/// columns of `basis`.
 fn lift(analysis: &mut Analysis, basis: &Mat<f64>) {
     let n = basis.nrows();
     let up = |y: &[f64]| -> Vec<f64> {

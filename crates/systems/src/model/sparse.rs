@@ -1,4 +1,5 @@
-//! Sparse stiffnesses of thousands of degrees of freedom: the first stable region of two levels; local time steps of one.
+//! Sparse stiffnesses of thousands of degrees of freedom: the first stable region of two levels; local time
+//! steps of one.
 
 use std::sync::Arc;
 
@@ -60,15 +61,17 @@ const FACTORIZATIONS: f64 = 6.0;
 /// Those that one of two levels takes.
 const OF_LEVELS: f64 = 3.0;
 
-/// By so many times a product of theirs, in dense blocks, is faster than one of an eigenvalue iteration, as measured on droplets of 500 and 2,000 waters.
+/// By so many times a product of theirs, in dense blocks, is faster than one of an eigenvalue iteration, as
+/// measured on droplets of 500 and 2,000 waters.
 const FASTER: f64 = 100.0;
 
 impl SparseSystem {
-    /// From two levels with an inner step and a multiple of it, each stiffness known to `accuracy` times its norm; answers name the motions
-    /// that were set apart.
+    /// From two levels with an inner step and a multiple of it, each stiffness known to `accuracy` times its
+    /// norm; answers name the motions that were set apart.
     ///
     /// # Errors
-    /// An outer step that is no multiple of the inner one, an accuracy that is not in (0, 1/10), motions set apart that a stiffness holds.
+    /// An outer step that is no multiple of the inner one, an accuracy that is not in (0, 1/10), motions set
+    /// apart that a stiffness holds.
     pub fn new(
         levels: SparseLevels,
         steps: [&Rational; 2],
@@ -178,7 +181,8 @@ impl SparseSystem {
         }
     }
 
-    /// Both levels with other steps; what is known of their stiffnesses stays known. `None` for local time steps.
+    /// Both levels with other steps; what is known of their stiffnesses stays known. `None` for local time
+    /// steps.
     pub fn with_steps(&self, steps: [&Rational; 2]) -> Option<Result<SparseSystem>> {
         let Of::Levels { levels, accuracy, removed, .. } = &self.of else { return None };
         Some(SparseSystem::of_levels(Arc::clone(levels), steps, *accuracy, removed.clone()))

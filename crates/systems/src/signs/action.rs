@@ -1,16 +1,18 @@
 //! The signs of the action: stability of large sparse systems without the half period.
 //!
-//! A path over the half period, a straight line for each degree of freedom between the kicks that touch it, has the action
+//! A path over the half period, a straight line for each degree of freedom between the kicks that touch it,
+//! has the action
 //!
 //! ```text
 //!     J[x] = Σ_i m_i Σ |Δx_i|²/Δt − Σ_kicks xᵀ k x,      half kicks at t = 0 and T/2.
 //! ```
 //!
-//! J is a sparse matrix over the positions at kick times. `proofs/REGION.md`, sections 1, 3 and 5: for Σ K_k > 0 the period is stable
-//! where J is positive definite on paths held at x = 0 at either end, the other end free; and where it is so for one of the
-//! ends, and for the other it has a negative eigenvalue, the period is hyperbolic. An entry of J is a few roundings from the data: no
-//! product of kicks, no norm of a propagator enters the proof. Where some mode makes more than half a turn in
-//! a period, J is negative whatever end is held; then the numbers of negative eigenvalues prove real multipliers off the circle.
+//! J is a sparse matrix over the positions at kick times. `proofs/REGION.md`, sections 1, 3 and 5: for Σ
+//! K_k > 0 the period is stable where J is positive definite on paths held at x = 0 at either end, the other
+//! end free; and where it is so for one of the ends, and for the other it has a negative eigenvalue, the
+//! period is hyperbolic. An entry of J is a few roundings from the data: no product of kicks, no norm of a
+//! propagator enters the proof. Where some mode makes more than half a turn in a period, J is negative
+//! whatever end is held; then the numbers of negative eigenvalues prove real multipliers off the circle.
 
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
@@ -45,8 +47,8 @@ impl Held {
 /// Roundings in a term: mass and tick, their quotient, the coefficient of a kick.
 const ROUNDINGS: usize = 4;
 
-/// Whether the system is stable, as far as the signs of its action prove it; `None` where they do not, where the mass matrix is not
-/// diagonal, and where elimination would cost more than n³ products.
+/// Whether the system is stable, as far as the signs of its action prove it; `None` where they do not, where
+/// the mass matrix is not diagonal, and where elimination would cost more than n³ products.
 pub fn is_stable(system: &System, frame: &Frame) -> Option<bool> {
     match signs(system)? {
         [Some(Sign::Positive), Some(Sign::Positive)] => is_total_definite(system, frame).then_some(true),
@@ -73,7 +75,8 @@ fn has_real_unstable_mode(system: &System, frame: &Frame) -> bool {
     Counts::new(system).is_some_and(|new| differ([&new, &new], n) && are_regular(&new))
 }
 
-/// Bounds on the number of negative eigenvalues of the action for each pair of ends, each computed when it is first asked for.
+/// Bounds on the number of negative eigenvalues of the action for each pair of ends, each computed when it is
+/// first asked for.
 pub struct Counts {
     action: Action,
     /// The terms of an entry: two drifts meet in it, and each clock once.
@@ -105,9 +108,10 @@ impl Counts {
     }
 }
 
-/// Whether neg J_fh and neg J_hf differ, or n + neg J_hh and neg J_ff, for all kicks between those of two systems, the softer one
-/// first: every count grows with the kicks. f: free, h: x = 0, the first letter for t = 0. The latter is asked where n is given: where no
-/// rigid mode is at μ = 0 (`proofs/REGION.md`, sections 3 and 5).
+/// Whether neg J_fh and neg J_hf differ, or n + neg J_hh and neg J_ff, for all kicks between those of two
+/// systems, the softer one first: every count grows with the kicks. f: free, h: x = 0, the first letter for
+/// t = 0. The latter is asked where n is given: where no rigid mode is at μ = 0 (`proofs/REGION.md`, sections
+/// 3 and 5).
 pub fn differ([softer, stiffer]: [&Counts; 2], n: Option<usize>) -> bool {
     let exceeds = |[low, high]: [Held; 2], [more, other]: [usize; 2]| {
         let (low, high) = both(true, || softer.count(low, Bound::Least), || stiffer.count(high, Bound::Most));
@@ -280,8 +284,8 @@ fn cost(first: &[usize]) -> f64 {
 /// An elimination that is cheap whatever the system.
 const CHEAP: f64 = 1e7;
 
-/// The sum of the terms, each unknown in a scale, a power of two, in which its diagonal is near 1; `None` where elimination would cost
-/// more than n³ products.
+/// The sum of the terms, each unknown in a scale, a power of two, in which its diagonal is near 1; `None`
+/// where elimination would cost more than n³ products.
 fn assembled(unknowns: usize, terms: &[Term], n: usize) -> Option<Envelope> {
     let first = first(unknowns, terms);
     if cost(&first) > CHEAP + (n as f64).powi(3) {

@@ -7,10 +7,10 @@ use num_traits::{One, Signed, Zero};
 
 /// The inertia of a symmetric matrix.
 ///
-/// Bareiss's elimination with pivots on the diagonal: after k steps every entry is a minor of the matrix (of one that is
-/// congruent to it by permutations and unimodular additions), so divisions are exact and numbers stay as short as
-/// determinants are. The signs of d_k = Δ_k/Δ_(k−1) in L D Lᵀ are the inertia (Sylvester). Where no diagonal entry is left
-/// but m_ij ≠ 0, row and column j are added to i, which makes m_ii = 2 m_ij.
+/// Bareiss's elimination with pivots on the diagonal: after k steps every entry is a minor of the matrix (of
+/// one that is congruent to it by permutations and unimodular additions), so divisions are exact and numbers
+/// stay as short as determinants are. The signs of d_k = Δ_k/Δ_(k−1) in L D Lᵀ are the inertia (Sylvester).
+/// Where no diagonal entry is left but m_ij ≠ 0, row and column j are added to i, which makes m_ii = 2 m_ij.
 ///
 /// Cost: n³/3 products of integers of up to n times the entries' length.
 pub fn inertia(mut m: DMatrix<BigInt>) -> Inertia {

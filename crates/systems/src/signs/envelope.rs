@@ -1,7 +1,8 @@
-//! Sparse symmetric matrices of doubles, each row kept from its first entry on, and the signs that Cholesky's factorization proves.
+//! Sparse symmetric matrices of doubles, each row kept from its first entry on, and the signs that Cholesky's
+//! factorization proves.
 //!
-//! Elimination does not leave the envelope. Its cost is N w² for N rows of w entries: small where unknowns that meet stand close
-//! together in the order, as [`narrow`] finds one (Cuthill and McKee, reversed).
+//! Elimination does not leave the envelope. Its cost is N w² for N rows of w entries: small where unknowns
+//! that meet stand close together in the order, as [`narrow`] finds one (Cuthill and McKee, reversed).
 
 use std::collections::VecDeque;
 
@@ -13,12 +14,14 @@ use faer::{Accum, Mat};
 
 use number::U;
 
-/// The lower triangle by rows, row i from the column `first[i]` to the diagonal, and what its entries are made of.
+/// The lower triangle by rows, row i from the column `first[i]` to the diagonal, and what its entries are
+/// made of.
 #[derive(Clone, Debug)]
 pub(crate) struct Envelope {
     first: Vec<usize>,
     rows: Vec<Vec<f64>>,
-    /// For each row the sum of the sizes of all terms that were added to its entries, on both sides of the diagonal.
+    /// For each row the sum of the sizes of all terms that were added to its entries, on both sides of the
+    /// diagonal.
     sizes: Vec<f64>,
 }
 
@@ -53,12 +56,14 @@ impl Envelope {
         }
     }
 
-    /// The sign of the true matrix, as far as it is proven. Its entries are sums of at most `terms` terms, each added here within `roundings` u.
+    /// The sign of the true matrix, as far as it is proven. Its entries are sums of at most `terms` terms,
+    /// each added here within `roundings` u.
     ///
-    /// Definite: Rump's criterion (BIT 46, 2006). Where L Lᵀ of m − c I runs to its end, it differs from it by at most
-    /// γ (m_ii m_jj)^½ at each place of the envelope, γ for w + 1 roundings: in norm by γ tr m, and by γ max m_ii times the most
-    /// entries of a row. Not: where a pivot is not positive, the elimination itself gives a z with zᵀ (m − c I) z no greater;
-    /// the number zᵀ m z, computed with a bound, is a proof for any z.
+    /// Definite: Rump's criterion (BIT 46, 2006). Where L Lᵀ of m − c I runs to its end, it differs from it
+    /// by at most γ (m_ii m_jj)^½ at each place of the envelope, γ for w + 1 roundings: in norm by γ tr m,
+    /// and by γ max m_ii times the most entries of a row. Not: where a pivot is not positive, the elimination
+    /// itself gives a z with zᵀ (m − c I) z no greater; the number zᵀ m z, computed with a bound, is a proof
+    /// for any z.
     pub fn sign(&self, terms: usize, roundings: usize) -> Option<Sign> {
         let slack = self.slack(terms, roundings);
         match self.stopped(self.shift(slack)) {
@@ -67,8 +72,8 @@ impl Envelope {
         }
     }
 
-    /// Whether that is proven positive, of rows in blocks of n of which each meets only itself and the one before: the same criterion, by products of
-    /// blocks, which no order of summation matters to.
+    /// Whether that is proven positive, of rows in blocks of n of which each meets only itself and the one
+    /// before: the same criterion, by products of blocks, which no order of summation matters to.
     pub fn is_positive_in_blocks(&self, n: usize, terms: usize, roundings: usize) -> bool {
         let shift = self.shift(self.slack(terms, roundings));
         let entry = |i: usize, j: usize| {
@@ -114,21 +119,25 @@ impl Envelope {
         1.01 * (slack + (width as f64 + 24.0) * U * norm) + f64::MIN_POSITIVE * (n + 1.0).powi(2)
     }
 
-    /// How far (2-norm) the true matrix can be: ‖E‖₂ ≤ ‖E‖_∞ for symmetric E; a sum of k terms makes k − 1 roundings.
+    /// How far (2-norm) the true matrix can be: ‖E‖₂ ≤ ‖E‖_∞ for symmetric E; a sum of k terms makes k − 1
+    /// roundings.
     fn slack(&self, terms: usize, roundings: usize) -> f64 {
         1.01 * (terms + roundings) as f64 * U * self.sizes.iter().copied().fold(0.0, f64::max)
     }
 
-    /// A bound on the number of negative eigenvalues of the true matrix, as in [`Envelope::sign`]: no fewer than the least are negative, no
-    /// more than the other one negative or 0; `None` where elimination without exchanges is too far from the matrix.
+    /// A bound on the number of negative eigenvalues of the true matrix, as in [`Envelope::sign`]: no fewer
+    /// than the least are negative, no more than the other one negative or 0; `None` where elimination
+    /// without exchanges is too far from the matrix.
     ///
-    /// L D Lᵀ of m ± c I that runs to its end differs from it by at most γ |L| |D| |Lᵀ|, γ for two roundings more than a row has entries
-    /// (Higham, Accuracy and Stability, section 10.1): where that and the errors of m are within c, Sylvester's law gives the count.
+    /// L D Lᵀ of m ± c I that runs to its end differs from it by at most γ |L| |D| |Lᵀ|, γ for two roundings
+    /// more than a row has entries (Higham, Accuracy and Stability, section 10.1): where that and the errors
+    /// of m are within c, Sylvester's law gives the count.
     pub fn negatives(&self, terms: usize, roundings: usize, is_least: bool) -> Option<usize> {
         self.pivots(self.slack(terms, roundings), if is_least { 1.0 } else { -1.0 })
     }
 
-    /// The negative pivots of the matrix moved by c I of this sign, c more than all errors; `None` where no c tried is.
+    /// The negative pivots of the matrix moved by c I of this sign, c more than all errors; `None` where no c
+    /// tried is.
     fn pivots(&self, slack: f64, sign: f64) -> Option<usize> {
         let width = self.rows.iter().map(Vec::len).max().unwrap_or(0) as f64;
         let gamma = 1.01 * (width + 8.0) * U;
@@ -147,7 +156,8 @@ impl Envelope {
         None
     }
 
-    /// The negative pivots of L D Lᵀ = m + shift I, and the largest sum of a row of |L| |D| |Lᵀ|; `None` where a pivot vanishes.
+    /// The negative pivots of L D Lᵀ = m + shift I, and the largest sum of a row of |L| |D| |Lᵀ|; `None`
+    /// where a pivot vanishes.
     fn eliminated(&self, shift: f64) -> Option<(usize, f64)> {
         let n = self.rows.len();
         let (mut factor, mut d): (Vec<Vec<f64>>, Vec<f64>) = (Vec::with_capacity(n), Vec::with_capacity(n));
@@ -195,8 +205,8 @@ impl Envelope {
         self.rows.iter().enumerate().map(count).max().unwrap_or(0)
     }
 
-    /// `None` where Cholesky's factorization of the matrix less `shift` I runs to its end; else a vector on which the form is what the
-    /// pivot is that stopped it.
+    /// `None` where Cholesky's factorization of the matrix less `shift` I runs to its end; else a vector on
+    /// which the form is what the pivot is that stopped it.
     fn stopped(&self, shift: f64) -> Option<Vec<f64>> {
         let mut factor: Vec<Vec<f64>> = Vec::with_capacity(self.rows.len());
         for (i, values) in self.rows.iter().enumerate() {
@@ -233,8 +243,8 @@ impl Envelope {
         z
     }
 
-    /// Whether zᵀ m z < 0 for all m within `slack`: each product makes two roundings, each row and their sum as many more as
-    /// they have terms.
+    /// Whether zᵀ m z < 0 for all m within `slack`: each product makes two roundings, each row and their sum
+    /// as many more as they have terms.
     fn is_negative(&self, z: &[f64], slack: f64) -> bool {
         let (mut value, mut size) = (0.0, 0.0);
         let mut width = 0;
@@ -264,8 +274,8 @@ fn dot(x: &[f64], y: &[f64]) -> f64 {
     rest + sums.iter().sum::<f64>()
 }
 
-/// An order of the vertices of a graph in which neighbours stand close together: breadth first from a vertex at its rim, those of few
-/// neighbours first, all reversed (Cuthill and McKee 1969; George 1971).
+/// An order of the vertices of a graph in which neighbours stand close together: breadth first from a vertex
+/// at its rim, those of few neighbours first, all reversed (Cuthill and McKee 1969; George 1971).
 pub fn narrow(graph: &[Vec<usize>]) -> Vec<usize> {
     let (mut order, mut seen) = (Vec::with_capacity(graph.len()), vec![false; graph.len()]);
     for start in 0..graph.len() {
@@ -299,7 +309,8 @@ fn breadth(graph: &[Vec<usize>], start: usize, seen: &mut [bool]) -> Vec<usize> 
 mod tests {
     use super::*;
 
-    /// The second difference on a ring of n points, its diagonal `middle`: eigenvalues middle − 2 cos(2π k/n).
+    /// The second difference on a ring of n points, its diagonal `middle`: eigenvalues middle − 2 cos(2π
+    /// k/n).
     fn ring(n: usize, middle: f64) -> Envelope {
         let graph: Vec<Vec<usize>> = (0..n).map(|i| vec![(i + n - 1) % n, (i + 1) % n]).collect();
         let order = narrow(&graph);

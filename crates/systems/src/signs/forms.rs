@@ -48,8 +48,8 @@ pub(crate) fn judge(forms: &mut impl Inertias) -> Option<Kind> {
     }
 }
 
-/// Whether the number of negative eigenvalues of P or R is known and differs from that of W or Z: as many μ are real and outside
-/// \[−1, 0\].
+/// Whether the number of negative eigenvalues of P or R is known and differs from that of W or Z: as many μ
+/// are real and outside \[−1, 0\].
 fn counts_differ(ends: [Inertia; 2], others: [Option<Inertia>; 2]) -> bool {
     let known = |inertia: Inertia| (inertia.unknown + inertia.zero == 0).then_some(inertia.negative);
     let others: Vec<usize> = others.into_iter().flatten().filter_map(known).collect();
@@ -82,8 +82,9 @@ impl<'a> Forms<'a> {
         Some(Forms { a, b, c, d, error, blocks })
     }
 
-    /// The inertia of the symmetric matrix that `product` is but for rounding, `x` and `y` being its factors: each is off
-    /// by at most e, so the product by e (‖x‖ + ‖y‖ + e), and by (m + 2) u ‖x‖_F ‖y‖_F in being computed.
+    /// The inertia of the symmetric matrix that `product` is but for rounding, `x` and `y` being its factors:
+    /// each is off by at most e, so the product by e (‖x‖ + ‖y‖ + e), and by (m + 2) u ‖x‖_F ‖y‖_F in being
+    /// computed.
     fn inertia(&self, product: Mat<f64>, (x, y): (&Mat<f64>, &Mat<f64>), sign: i8) -> Inertia {
         let (m, e) = (self.blocks.m, self.error);
         let (size_x, size_y) = (norm::frobenius(x), norm::frobenius(y));

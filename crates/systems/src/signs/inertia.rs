@@ -36,17 +36,18 @@ impl Inertia {
     }
 }
 
-/// Whether every symmetric matrix within `slack` (2-norm) of the symmetric m is positive definite, by Rump's criterion
-/// (Verification of positive definiteness, BIT 46, 2006): if Cholesky's factorization of m − c I runs to its end in
-/// doubles, m + c' I is positive definite for c' = γ/(1 − γ) tr m − c; no order of summation or fused product matters.
-/// Only the lower triangle of m is read, and m is where it is factored.
+/// Whether every symmetric matrix within `slack` (2-norm) of the symmetric m is positive definite, by Rump's
+/// criterion (Verification of positive definiteness, BIT 46, 2006): if Cholesky's factorization of m − c I
+/// runs to its end in doubles, m + c' I is positive definite for c' = γ/(1 − γ) tr m − c; no order of
+/// summation or fused product matters. Only the lower triangle of m is read, and m is where it is factored.
 pub(crate) fn is_definite(mut m: Mat<f64>, slack: f64) -> bool {
     let n = m.nrows();
     if n == 0 {
         return true;
     }
     let trace: f64 = (0..n).map(|i| m[(i, i)].abs()).sum();
-    // γ_(n+1), with room for the reciprocals of pivots, the rounding of the shifted diagonal and of the sums here.
+    // γ_(n+1), with room for the reciprocals of pivots, the rounding of the shifted diagonal and of the sums
+    // here.
     let shift = 1.01 * (slack + (n as f64 + 24.0) * U * trace) + f64::MIN_POSITIVE * (n as f64 + 1.0).powi(2);
     if !shift.is_finite() || (0..n).any(|i| m[(i, i)] <= shift) {
         return false;
@@ -58,8 +59,8 @@ pub(crate) fn is_definite(mut m: Mat<f64>, slack: f64) -> bool {
     cholesky_in_place(m.as_mut(), none, threads, MemStack::new(&mut room), Default::default()).is_ok()
 }
 
-/// The inertia that every symmetric matrix within `slack` (2-norm) of the symmetric m has: of a definite one by Cholesky, else by
-/// L B Lᵀ, or, where that does not decide all signs, by eigenvalues.
+/// The inertia that every symmetric matrix within `slack` (2-norm) of the symmetric m has: of a definite one
+/// by Cholesky, else by L B Lᵀ, or, where that does not decide all signs, by eigenvalues.
 pub fn proven(m: &Mat<f64>, slack: f64) -> Inertia {
     let n = m.nrows();
     if is_definite(m.clone(), slack) {
@@ -77,8 +78,8 @@ pub fn proven(m: &Mat<f64>, slack: f64) -> Inertia {
 }
 
 /// The inertia by the computed eigenvectors V and eigenvalues Λ, ‖Vᵀ V − I‖ ≤ η: for the
-/// orthogonal factor Q of V, ‖Q − V‖ ≤ η, Qᵀ m Q = Λ + E with ‖E‖ ≤ ‖m V − V Λ‖ + η (‖m‖ + ‖Λ‖), and no eigenvalue is
-/// farther than ‖E‖ + slack from its place in Λ (Weyl).
+/// orthogonal factor Q of V, ‖Q − V‖ ≤ η, Qᵀ m Q = Λ + E with ‖E‖ ≤ ‖m V − V Λ‖ + η (‖m‖ + ‖Λ‖), and no
+/// eigenvalue is farther than ‖E‖ + slack from its place in Λ (Weyl).
 fn by_eigenvalues(m: &Mat<f64>, slack: f64) -> Inertia {
     let n = m.nrows();
     let unknown = Inertia { unknown: n, ..Inertia::default() };
@@ -91,8 +92,9 @@ fn by_eigenvalues(m: &Mat<f64>, slack: f64) -> Inertia {
     Inertia { positive, negative, zero: 0, unknown: n - positive - negative }
 }
 
-/// Bounds for every symmetric matrix within `slack` (2-norm) of one between `low` ≤ `high` in Loewner's order: at least the first number of
-/// its eigenvalues are negative, at most the second number are negative or 0.
+/// Bounds for every symmetric matrix within `slack` (2-norm) of one between `low` ≤ `high` in Loewner's
+/// order: at least the first number of its eigenvalues are negative, at most the second number are negative
+/// or 0.
 pub(crate) fn negative_bounds(low: &Mat<f64>, high: &Mat<f64>, slack: f64) -> (usize, usize) {
     let (least, most) = by_factors(low, high, slack);
     (
@@ -103,15 +105,17 @@ pub(crate) fn negative_bounds(low: &Mat<f64>, high: &Mat<f64>, slack: f64) -> (u
 
 /// These numbers, each where a factorization gives it.
 ///
-/// L B Lᵀ (Bunch and Kaufman 1977) of a matrix moved by c I has the inertia of B (Sylvester), and where it is within c − `slack` of that it
-/// lies above, or below, all of them. No eigenvector and no gap between eigenvalues is asked for.
+/// L B Lᵀ (Bunch and Kaufman 1977) of a matrix moved by c I has the inertia of B (Sylvester), and where it is
+/// within c − `slack` of that it lies above, or below, all of them. No eigenvector and no gap between
+/// eigenvalues is asked for.
 fn by_factors(low: &Mat<f64>, high: &Mat<f64>, slack: f64) -> (Option<usize>, Option<usize>) {
     let least = moved(high, slack, 1.0).map(|inertia| inertia.negative);
     let most = moved(low, slack, -1.0).map(|inertia| inertia.negative + inertia.zero);
     (least, most)
 }
 
-/// The inertia of some matrix that is no smaller (sign 1), or no greater (−1), than all within `slack` of m; `None` where the factorization is too far from it.
+/// The inertia of some matrix that is no smaller (sign 1), or no greater (−1), than all within `slack` of m;
+/// `None` where the factorization is too far from it.
 fn moved(m: &Mat<f64>, slack: f64, sign: f64) -> Option<Inertia> {
     let (n, size) = (m.nrows(), norm::frobenius(m));
     let mut shift = 1.02 * slack + 8.0 * (n as f64 + 16.0) * U * size + f64::MIN_POSITIVE;
@@ -138,8 +142,8 @@ fn moved(m: &Mat<f64>, slack: f64, sign: f64) -> Option<Inertia> {
     None
 }
 
-/// The Frobenius norm of X − L B Lᵀ, X being `own` in the order given and `product` L B, rounded: column by column of the lower triangle,
-/// which needs as many columns of L as the last of them has rows.
+/// The Frobenius norm of X − L B Lᵀ, X being `own` in the order given and `product` L B, rounded: column by
+/// column of the lower triangle, which needs as many columns of L as the last of them has rows.
 fn lower_residual(matrix: &Mat<f64>, order: &[usize], product: &Mat<f64>, l: &Mat<f64>) -> f64 {
     const PANEL: usize = 32;
     let (n, threads) = (matrix.nrows(), faer::get_global_parallelism());
@@ -187,8 +191,8 @@ fn times_blocks(
     (product, 1.01 * f64::sqrt(squares))
 }
 
-/// The inertia of a block-diagonal B of 1 x 1 and 2 x 2 blocks, the latter where the entry below the diagonal is not 0; `None` where one of
-/// these is not indefinite for sure.
+/// The inertia of a block-diagonal B of 1 x 1 and 2 x 2 blocks, the latter where the entry below the diagonal
+/// is not 0; `None` where one of these is not indefinite for sure.
 fn of_blocks(diagonal: &dyn Fn(usize) -> f64, next: &dyn Fn(usize) -> f64, n: usize) -> Option<Inertia> {
     let (mut found, mut i) = (Inertia::default(), 0);
     while i < n {
@@ -210,8 +214,8 @@ fn of_blocks(diagonal: &dyn Fn(usize) -> f64, next: &dyn Fn(usize) -> f64, n: us
     Some(found)
 }
 
-/// More than ‖E‖₂, Qᵀ m Q = Λ + E for the orthogonal Q nearest to the computed eigenvectors V, and the defect of these; `None` where they
-/// are not nearly orthogonal.
+/// More than ‖E‖₂, Qᵀ m Q = Λ + E for the orthogonal Q nearest to the computed eigenvectors V, and the defect
+/// of these; `None` where they are not nearly orthogonal.
 pub(crate) fn backward_error(m: &Mat<f64>, v: &Mat<f64>, values: &[f64]) -> Option<(f64, f64)> {
     let defect = orthogonality(v)?;
     let n = m.nrows();
@@ -254,8 +258,8 @@ pub(crate) fn spectral_norm(m: &Mat<f64>, slack: f64) -> f64 {
 /// From so many rows on eigenvalues cost more than they give.
 const LARGE: usize = 256;
 
-/// A proven b ≥ 0 with m + b I ≥ 0 for every symmetric matrix within `slack` of m: close to the least, of large matrices by sums of rows
-/// (Gershgorin); infinite where doubles find none.
+/// A proven b ≥ 0 with m + b I ≥ 0 for every symmetric matrix within `slack` of m: close to the least, of
+/// large matrices by sums of rows (Gershgorin); infinite where doubles find none.
 pub(crate) fn lack(m: &Mat<f64>, slack: f64) -> f64 {
     let n = m.nrows();
     if n > LARGE {

@@ -6,10 +6,12 @@
 //!     P = A Bᵀ,     R = −C Dᵀ,     W = Bᵀ D,     Z = −Aᵀ C
 //! ```
 //!
-//! are symmetric. For n = 1 the verdict is the signs of P and R. For any n (μ the eigenvalues of Bᵀ C, λ + 1/λ = 2 + 4 μ):
+//! are symmetric. For n = 1 the verdict is the signs of P and R. For any n (μ the eigenvalues of Bᵀ C, λ +
+//! 1/λ = 2 + 4 μ):
 //!
-//! * P and R both definite of one sign: stable, all μ real, semisimple and in (−1, 0). With N = C A⁻¹ (symmetric),
-//!   C Bᵀ = N P and R = −(N + N P N); for P > 0 and S = P^½ N P^½, similar to C Bᵀ, P^½ R P^½ = −(S + S²).
+//! * P and R both definite of one sign: stable, all μ real, semisimple and in (−1, 0). With N = C A⁻¹
+//!   (symmetric), C Bᵀ = N P and R = −(N + N P N); for P > 0 and S = P^½ N P^½, similar to C Bᵀ, P^½ R P^½ =
+//!   −(S + S²).
 //! * One of the four definite (say > 0; else change every sign): all μ are real, and
 //!
 //! | definite | μ outside \[−1, 0\] | μ < −1 | μ > 0 |
@@ -20,8 +22,9 @@
 //! | Z | both together | those of R | those of P |
 //!
 //!   A zero eigenvalue of P or R beside a definite form is an edge: a Jordan block at λ = ±1, linear growth.
-//! * None definite: #{μ < −1} ≥ |neg P − neg W|, |neg R − neg Z| and #{μ > 0} ≥ |neg R − neg W|, |neg P − neg Z| for regular forms
-//!   (neg: the number of negative eigenvalues). Where these agree two modes may have collided, and other means decide.
+//! * None definite: #{μ < −1} ≥ |neg P − neg W|, |neg R − neg Z| and #{μ > 0} ≥ |neg R − neg W|, |neg P − neg
+//!   Z| for regular forms (neg: the number of negative eigenvalues). Where these agree two modes may have
+//!   collided, and other means decide.
 //!
 //! Source: proofs/SIGNS.md and proofs/REGION.md.
 //!

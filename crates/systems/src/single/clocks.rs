@@ -119,9 +119,9 @@ impl<S: ExactSign> ManyClocks<S> {
 
     /// m, the half turns of the growing solution in one period; `None` unless hyperbolic.
     ///
-    /// The sign changes n of the even solution over the half period (x is straight between kicks) give it: m = 2n where
-    /// Tr > 2; where Tr < −2, m = 2n ± 1, + if x and v differ in sign at T/2, that is if it is past its n-th zero by
-    /// less than a quarter turn.
+    /// The sign changes n of the even solution over the half period (x is straight between kicks) give it:
+    /// m = 2n where Tr > 2; where Tr < −2, m = 2n ± 1, + if x and v differ in sign at T/2, that is if it is
+    /// past its n-th zero by less than a quarter turn.
     pub fn label(&self) -> Option<u64> {
         let (mut nodes, mut last) = (0, Sign::Positive);
         let m = self.lead(|x| {
@@ -184,8 +184,8 @@ pub fn families(m: i64, strikes: &[u64], bound: i64) -> Vec<Vec<i64>> {
     (-bound..=bound).flat_map(with).collect()
 }
 
-/// The shortest families of the resonance m by Σ |a_k|, at most `count`: with |a_k| a little beyond those of the
-/// shortest, and for many clocks that one alone.
+/// The shortest families of the resonance m by Σ |a_k|, at most `count`: with |a_k| a little beyond those of
+/// the shortest, and for many clocks that one alone.
 pub fn shortest_families(m: i64, strikes: &[u64], count: usize) -> Vec<Vec<i64>> {
     let Some(shortest) = shortest_family(m, strikes) else { return Vec::new() };
     let bound = shortest.iter().map(|a| a.abs()).max().unwrap_or(0) + 3;

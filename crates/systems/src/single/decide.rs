@@ -63,8 +63,8 @@ pub fn decide(system: &System, limits: &Limits) -> Result<Part> {
 
 /// The verdict on K clocks with stiffnesses that may involve π, as the one part of a system.
 ///
-/// `rounded` is the same oscillator with each stiffness/mass rounded to a rational of 64 bits, mass 1; `unit` is h_1, the
-/// unit of time of `clocks`.
+/// `rounded` is the same oscillator with each stiffness/mass rounded to a rational of 64 bits, mass 1; `unit`
+/// is h_1, the unit of time of `clocks`.
 ///
 /// # Errors
 /// A budget error where the decision would exceed the limits.
@@ -88,7 +88,8 @@ pub fn decide_oscillator(
     Ok(Analysis::of_part(part, clocks.strikes().len(), warnings))
 }
 
-/// The products of machine words that exact signs cost over ℚ\[π\], whose numbers grow with each kick in length and in degree.
+/// The products of machine words that exact signs cost over ℚ\[π\], whose numbers grow with each kick in
+/// length and in degree.
 pub fn with_pi(kicks: f64) -> f64 {
     0.15 * kicks.powi(4)
 }
@@ -154,7 +155,8 @@ fn by_ladder<S: Decidable>(clocks: &ManyClocks<S>, limits: &Limits) -> Result<Op
     found().map(Some).map_err(Limits::in_products)
 }
 
-/// Any clocks: the signs that doubles prove. The bound of [`float`] has room for one more rounding of each stiffness.
+/// Any clocks: the signs that doubles prove. The bound of [`float`] has room for one more rounding of each
+/// stiffness.
 fn by_doubles<S: Decidable>(rounded: &System, clocks: &ManyClocks<S>) -> Option<Scalar> {
     let blocks = float::half_period(rounded, &Frame::whole(1));
     let error = blocks.error?;

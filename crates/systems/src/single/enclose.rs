@@ -1,4 +1,5 @@
-//! K clocks on one oscillator in balls: enclosures that widen with every kick, and as many bits as that takes.
+//! K clocks on one oscillator in balls: enclosures that widen with every kick, and as many bits as that
+//! takes.
 
 use crate::ManyClocks;
 use clocks::schedule::{KickDrift, Kicks};

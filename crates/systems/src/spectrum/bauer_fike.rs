@@ -82,7 +82,8 @@ impl Residual {
         self.plus(1.01 * (norm::spectral(&moved) + rest), rows)
     }
 
-    /// For all S + Σ L E R, too: they add V⁻¹ L E R V to F, whose i-th row is no longer than |row i of V⁻¹ L| ‖E‖ ‖R V‖.
+    /// For all S + Σ L E R, too: they add V⁻¹ L E R V to F, whose i-th row is no longer than |row i of V⁻¹ L|
+    /// ‖E‖ ‖R V‖.
     pub fn with_terms(self, v: &Mat<f64>, terms: &[Term]) -> Option<Residual> {
         let (w, y) = inverse(v)?;
         let (m, [nv, nw]) = (v.ncols(), [v, &w].map(norm::frobenius));
@@ -110,7 +111,8 @@ impl Residual {
 
 /// Those for the true S, which is within `delta` of the given one, and a normal D of blocks of size 1 and 2.
 ///
-/// With W V = I − Y, F = (I − Y)⁻¹ W (S V − V D), and the rows of (I − Y)⁻¹ W are within ‖Y‖ ‖W‖/(1 − ‖Y‖) of those of W.
+/// With W V = I − Y, F = (I − Y)⁻¹ W (S V − V D), and the rows of (I − Y)⁻¹ W are within ‖Y‖ ‖W‖/(1 − ‖Y‖) of
+/// those of W.
 pub(crate) fn bauer_fike(s: &Mat<f64>, delta: f64, v: &Mat<f64>, d: &Mat<f64>) -> Option<Residual> {
     let m = v.ncols();
     let vd = times_blocks(v, d);

@@ -1,18 +1,19 @@
 //! Stability in doubles where eigenvalues of S are multiple, as in every symmetric system.
 //!
-//! S = Bᵀ C is self-adjoint for the symmetric form Y = Aᵀ C (A Bᵀ is symmetric, so Sᵀ Y = Cᵀ (B Aᵀ) C is). Let the
-//! eigenvalues fall into clusters about means d_c, orthonormal bases of the computed eigenvectors of each side by
-//! side in V, D the means, V⁻¹ S V = D + F with ‖F‖₂ ≤ r as in [`spectrum`](crate::spectrum::discs). For a cluster of k at
-//! the distance δ from all others
+//! S = Bᵀ C is self-adjoint for the symmetric form Y = Aᵀ C (A Bᵀ is symmetric, so Sᵀ Y = Cᵀ (B Aᵀ) C is).
+//! Let the eigenvalues fall into clusters about means d_c, orthonormal bases of the computed eigenvectors of
+//! each side by side in V, D the means, V⁻¹ S V = D + F with ‖F‖₂ ≤ r as in
+//! [`spectrum`](crate::spectrum::discs). For a cluster of k at the distance δ from all others
 //!
-//! * the columns V (I, P)ᵀ, ‖P‖_F ≤ p = 2 √k r/(δ − 2r), span an invariant subspace if √k r² < (δ − 2r)²/4 (Stewart
-//!   1973; D is normal, so the separation in Frobenius's norm is δ), and with δ > r (2 + p) it is that of the k
-//!   eigenvalues in the cluster's disc;
-//! * on it the form is that of (Vᵀ Y V)_cc up to ‖Vᵀ Y V‖ (2p + p²). If that is definite, S is self-adjoint there in
-//!   an inner product: its k eigenvalues are real and semisimple, and with the disc inside (−1, 0) stable.
+//! * the columns V (I, P)ᵀ, ‖P‖_F ≤ p = 2 √k r/(δ − 2r), span an invariant subspace if √k r² < (δ − 2r)²/4
+//!   (Stewart 1973; D is normal, so the separation in Frobenius's norm is δ), and with δ > r (2 + p) it is
+//!   that of the k eigenvalues in the cluster's disc;
+//! * on it the form is that of (Vᵀ Y V)_cc up to ‖Vᵀ Y V‖ (2p + p²). If that is definite, S is self-adjoint
+//!   there in an inner product: its k eigenvalues are real and semisimple, and with the disc inside (−1, 0)
+//!   stable.
 //!
-//! The sign of the form is Krein's: clusters of one sign cannot be driven off the unit circle, however close. A
-//! cluster of both signs is left to exact arithmetic.
+//! The sign of the form is Krein's: clusters of one sign cannot be driven off the unit circle, however close.
+//! A cluster of both signs is left to exact arithmetic.
 
 use faer::{Mat, Side, c64};
 
@@ -34,8 +35,8 @@ struct Cluster {
     mean: f64,
 }
 
-/// How close, relative to the largest entry of D, eigenvalues are taken together; from nothing but roundoff to far
-/// beyond what a well-conditioned double eigenvalue splits into.
+/// How close, relative to the largest entry of D, eigenvalues are taken together; from nothing but roundoff
+/// to far beyond what a well-conditioned double eigenvalue splits into.
 const CLOSE: [f64; 3] = [1e-13, 1e-11, 1e-9];
 
 /// Whether all eigenvalues are proven to be real, semisimple and in (−1, 0).
@@ -88,7 +89,8 @@ fn clusters(mu: &[c64], order: &[usize], close: f64) -> Vec<Cluster> {
     clusters
 }
 
-/// For each cluster an orthonormal basis of the space of its computed eigenvectors; `None` where they are dependent.
+/// For each cluster an orthonormal basis of the space of its computed eigenvectors; `None` where they are
+/// dependent.
 fn bases(mu: &[c64], vectors: &Mat<c64>, order: &[usize], clusters: &[Cluster]) -> Option<Mat<f64>> {
     let m = mu.len();
     let mut v = Mat::<f64>::zeros(m, m);
@@ -148,8 +150,8 @@ fn is_certain(cluster: &Cluster, gap: f64, r: f64, form: &Form) -> bool {
     invariant && is_definite(cluster, form, form.error + form.norm * (2.0 * p + p * p))
 }
 
-/// Whether every matrix within `slack` of the cluster's block is definite: Gershgorin's discs after a congruence with
-/// its computed eigenvectors Z, which a definite Zᵀ K Z shows to be regular.
+/// Whether every matrix within `slack` of the cluster's block is definite: Gershgorin's discs after a
+/// congruence with its computed eigenvectors Z, which a definite Zᵀ K Z shows to be regular.
 fn is_definite(cluster: &Cluster, form: &Form, slack: f64) -> bool {
     let k = cluster.size;
     let at = |i: usize, j: usize| form.k[(cluster.first + i, cluster.first + j)];

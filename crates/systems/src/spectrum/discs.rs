@@ -1,17 +1,17 @@
 //! Eigenvalues of S = Bᵀ C in doubles, each with a disc that is proven to hold it.
 //!
-//! For the computed eigenvectors V (Re v and Im v of pairs), an approximate inverse W of V, and D the computed
-//! eigenvalues (real 2 x 2 blocks for pairs, so that D is normal),
-//! V⁻¹ S V = D + F, F = (I − Y)⁻¹ W (S V − V D) with Y = I − W V. The discs of radius ‖F‖₂ about the entries of D hold
-//! the eigenvalues (Bauer and Fike), as many in each connected component as it has discs, since no eigenvalue of
-//! D + tF leaves them for 0 ≤ t ≤ 1. Since S is real, an isolated disc about a real number holds one real
-//! eigenvalue. So
+//! For the computed eigenvectors V (Re v and Im v of pairs), an approximate inverse W of V, and D the
+//! computed eigenvalues (real 2 x 2 blocks for pairs, so that D is normal), V⁻¹ S V = D + F, F = (I − Y)⁻¹ W
+//! (S V − V D) with Y = I − W V. The discs of radius ‖F‖₂ about the entries of D hold the eigenvalues (Bauer
+//! and Fike), as many in each connected component as it has discs, since no eigenvalue of D + tF leaves them
+//! for 0 ≤ t ≤ 1. Since S is real, an isolated disc about a real number holds one real eigenvalue. So
 //!
 //! * a component of discs that does not meet the segment [−1, 0] proves instability;
-//! * isolated discs about real numbers, all inside (−1, 0), prove stability: all multipliers are distinct and lie
-//!   on the unit circle.
+//! * isolated discs about real numbers, all inside (−1, 0), prove stability: all multipliers are distinct and
+//!   lie on the unit circle.
 //!
-//! Multiple eigenvalues, of symmetric systems say, are taken together in [`clusters`](crate::spectrum::clusters).
+//! Multiple eigenvalues, of symmetric systems say, are taken together in
+//! [`clusters`](crate::spectrum::clusters).
 
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Scale, c64};
@@ -43,7 +43,8 @@ pub(crate) struct Spectrum {
 }
 
 impl Spectrum {
-    /// The spectrum of the half period; `None` where the eigenvalue iteration fails: never seen, but not excluded.
+    /// The spectrum of the half period; `None` where the eigenvalue iteration fails: never seen, but not
+    /// excluded.
     pub fn new(blocks: &FloatBlocks) -> Option<Spectrum> {
         let (s, s_error) = product(blocks);
         Spectrum::of(s, s_error)
@@ -87,14 +88,15 @@ impl Spectrum {
         })
     }
 
-    /// The discs where the half period is known as well as these blocks, which differ from its own in their error alone. There are none
-    /// where the error of the blocks is unbounded.
+    /// The discs where the half period is known as well as these blocks, which differ from its own in their
+    /// error alone. There are none where the error of the blocks is unbounded.
     pub fn known_to(&self, blocks: &FloatBlocks) -> Spectrum {
         let found = product(blocks).1.and_then(|error| self.with_error(error));
         found.unwrap_or_else(|| Spectrum { radius: None, rows: Vec::new(), s_error: None, ..self.clone() })
     }
 
-    /// Every multiplier with an enclosure of its growth: that of all discs which meet its own, and of the largest one no more than the rows of F allow.
+    /// Every multiplier with an enclosure of its growth: that of all discs which meet its own, and of the
+    /// largest one no more than the rows of F allow.
     pub fn multipliers(&self) -> Vec<Multiplier> {
         let Some(radius) = self.radius.map(|radius| 1.01 * radius) else {
             return self.mu.iter().map(|&mu| Multiplier::new(mu, None, None)).collect();
@@ -111,7 +113,8 @@ impl Spectrum {
         self.mu.iter().zip(growth).map(multiplier).collect()
     }
 
-    /// No ln |λ| is larger: as (D − z) y = −F y has |d_j − z| |y_j| ≤ ρ_j, each eigenvalue z is within √m ρ_j of some d_j.
+    /// No ln |λ| is larger: as (D − z) y = −F y has |d_j − z| |y_j| ≤ ρ_j, each eigenvalue z is within √m ρ_j
+    /// of some d_j.
     fn largest_growth(&self) -> f64 {
         let root = (self.mu.len() as f64).sqrt();
         let of = |(&mu, row): (&c64, &f64)| rate::about(mu, 1.01 * root * row).1;
@@ -161,7 +164,8 @@ impl Spectrum {
         self.certified_with(form)
     }
 
-    /// As [`Spectrum::certified`], with Y = Aᵀ C and a bound on its error (2-norm), which only clusters ask for.
+    /// As [`Spectrum::certified`], with Y = Aᵀ C and a bound on its error (2-norm), which only clusters ask
+    /// for.
     pub fn certified_with(&self, form: impl FnOnce() -> (Mat<f64>, Option<f64>)) -> Option<Kind> {
         self.by_discs().or_else(|| self.by_clusters(form()).then_some(Kind::Elliptic))
     }
@@ -196,8 +200,9 @@ impl Spectrum {
         untold.next().is_none().then_some(Kind::Elliptic)
     }
 
-    /// Whether some circle about a real μ_i, within (−1, 0) and at most half as wide as the nearest other μ is far, is free of eigenvalues as in
-    /// [`Spectrum::is_encircled`]: one eigenvalue of S is in it, real, and in no other such circle.
+    /// Whether some circle about a real μ_i, within (−1, 0) and at most half as wide as the nearest other μ
+    /// is far, is free of eigenvalues as in [`Spectrum::is_encircled`]: one eigenvalue of S is in it, real,
+    /// and in no other such circle.
     fn is_alone(&self, i: usize) -> bool {
         let z = self.mu[i];
         let others =
@@ -206,11 +211,13 @@ impl Spectrum {
         z.im == 0.0 && room > 0.0 && self.is_free(i, room)
     }
 
-    /// Whether some circle about μ_i that does not meet \[−1, 0\] is free of eigenvalues of D + tF, 0 ≤ t ≤ 1, so that it holds as many of S as of D.
+    /// Whether some circle about μ_i that does not meet \[−1, 0\] is free of eigenvalues of D + tF, 0 ≤ t ≤
+    /// 1, so that it holds as many of S as of D.
     ///
-    /// (D − z) y = −F y with |y| = 1 gives |d_j − z| |y_j| ≤ ρ_j, so an eigenvalue z has Σ (ρ_j/|d_j − z|)² ≥ 1 (for both rows of
-    /// a conjugate pair the nearer of the two). Rows differ where some eigenvectors are nearly dependent: those that are not keep
-    /// their small discs. The radii tried go down by fifths, to a hundredth of the distance.
+    /// (D − z) y = −F y with |y| = 1 gives |d_j − z| |y_j| ≤ ρ_j, so an eigenvalue z has Σ (ρ_j/|d_j − z|)² ≥
+    /// 1 (for both rows of a conjugate pair the nearer of the two). Rows differ where some eigenvectors are
+    /// nearly dependent: those that are not keep their small discs. The radii tried go down by fifths, to a
+    /// hundredth of the distance.
     fn is_encircled(&self, i: usize) -> bool {
         let off = 0.99 * from_segment(self.mu[i]);
         if self.rows.get(i).is_none_or(|value| *value >= off) {
@@ -261,8 +268,8 @@ pub(crate) fn from_segment(z: c64) -> f64 {
     (z.re - nearest).hypot(z.im)
 }
 
-/// Eigenvectors as real columns, Re v and Im v for a conjugate pair, and the real normal D with S V ≈ V D: the
-/// numbers themselves and the blocks ((a, b), (−b, a)).
+/// Eigenvectors as real columns, Re v and Im v for a conjugate pair, and the real normal D with S V ≈ V D:
+/// the numbers themselves and the blocks ((a, b), (−b, a)).
 pub(crate) fn real_form(mu: &[c64], v: &Mat<c64>) -> Option<(Mat<f64>, Mat<f64>)> {
     let m = mu.len();
     let (mut real, mut d) = (Mat::<f64>::zeros(m, m), Mat::<f64>::zeros(m, m));
@@ -289,9 +296,10 @@ const ROUNDED: f64 = 1e3;
 /// Eigenvectors improved: their factorizations cost no more than the eigenvalues.
 const MOST_IMPROVED: usize = 16;
 
-/// Two steps of inverse iteration for each complex eigenvector that is off by more than rounding: where two pairs nearly meet, as in
-/// symmetric systems, faer's S v − μ v was seen to be 4e-3. The shift is off the eigenvalue by m u ‖S‖: it favours all of a cluster
-/// alike, so that independent vectors stay independent. Nothing rests on this: the bound on F takes whatever vectors come.
+/// Two steps of inverse iteration for each complex eigenvector that is off by more than rounding: where two
+/// pairs nearly meet, as in symmetric systems, faer's S v − μ v was seen to be 4e-3. The shift is off the
+/// eigenvalue by m u ‖S‖: it favours all of a cluster alike, so that independent vectors stay independent.
+/// Nothing rests on this: the bound on F takes whatever vectors come.
 fn improved(s: &Mat<f64>, mu: &[c64], mut vectors: Mat<c64>) -> Mat<c64> {
     let (m, off) = (s.nrows(), s.nrows() as f64 * U * norm::frobenius(s));
     let s = Mat::from_fn(m, m, |i, j| c64::new(s[(i, j)], 0.0));

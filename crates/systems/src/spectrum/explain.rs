@@ -23,8 +23,8 @@ pub(crate) fn by_place(a: &c64, b: &c64) -> Ordering {
     a.re.total_cmp(&b.re).then(a.im.total_cmp(&b.im))
 }
 
-/// All multipliers over a period in order, and if hyperbolic the unstable ones with the shapes of their solutions; `shape` takes the place
-/// among those given.
+/// All multipliers over a period in order, and if hyperbolic the unstable ones with the shapes of their
+/// solutions; `shape` takes the place among those given.
 pub fn explained(
     found: Vec<Multiplier>,
     shape: impl Fn(usize) -> Vec<c64>,
@@ -69,8 +69,8 @@ fn is_rough(found: &[Multiplier]) -> bool {
 }
 
 impl Piece {
-    /// All multipliers by increasing real part of μ; of a hyperbolic piece the unstable ones explained, their shapes
-    /// in the frame's coordinates.
+    /// All multipliers by increasing real part of μ; of a hyperbolic piece the unstable ones explained, their
+    /// shapes in the frame's coordinates.
     pub fn explain(
         &self,
         spectrum: &Spectrum,
@@ -92,7 +92,8 @@ impl Piece {
         explained(found, shape, kind, &period, resonance)
     }
 
-    /// The multipliers from the characteristic polynomial, each in the place of the computed one that it stands for.
+    /// The multipliers from the characteristic polynomial, each in the place of the computed one that it
+    /// stands for.
     fn refined(&self, found: &[Multiplier], limits: &Limits) -> Option<Vec<Multiplier>> {
         let mut exact = exact::multipliers(&self.system, &self.frame, limits)
             .filter(|multiplier| multiplier.len() == found.len())?;

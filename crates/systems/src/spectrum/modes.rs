@@ -1,9 +1,10 @@
 //! Unstable multipliers explained: which normal modes, how fast, near which resonance.
 //!
-//! The normal modes are those of the continuous system M x'' + Σ K_k x = 0. A real pair of multipliers is one mode
-//! w in resonance with itself, 2 w = 2π m/T; a quadruple is the collision of two modes, w_i ± w_j = 2π m/T. Every
-//! Σ a_k/h_k is such an m/T, m = Σ a_k T/h_k. Where the total stiffness is positive definite only sums destabilize to
-//! first order (Krein: multipliers of one sign of energy meet without leaving the circle), and only these are named.
+//! The normal modes are those of the continuous system M x'' + Σ K_k x = 0. A real pair of multipliers is one
+//! mode w in resonance with itself, 2 w = 2π m/T; a quadruple is the collision of two modes, w_i ± w_j = 2π
+//! m/T. Every Σ a_k/h_k is such an m/T, m = Σ a_k T/h_k. Where the total stiffness is positive definite only
+//! sums destabilize to first order (Krein: multipliers of one sign of energy meet without leaving the
+//! circle), and only these are named.
 
 use std::f64::consts::PI;
 
@@ -28,7 +29,8 @@ pub enum Origin {
 /// The resonance next to an unstable multiplier: w_i ± w_j ≈ 2π Σ a_k/h_k.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Resonance {
-    /// The frequencies w_i, w_j of the modes most present in the shape (equal for a real pair), per unit time.
+    /// The frequencies w_i, w_j of the modes most present in the shape (equal for a real pair), per unit
+    /// time.
     pub frequencies: (f64, f64),
     /// 1 for w_i + w_j, −1 for w_i − w_j.
     pub sign: i8,
@@ -75,7 +77,8 @@ fn kept_stiffness(system: &System, frame: &Frame) -> Mat<f64> {
     Mat::from_fn(m, m, |a, b| total[(frame.kept[a], frame.kept[b])])
 }
 
-/// G and Gᵀ K G: with P = (I, −N), y'' = −P M⁻¹ Pᵀ K y; let P M⁻¹ Pᵀ = G Gᵀ and y = G u, then u'' = −Gᵀ K G u.
+/// G and Gᵀ K G: with P = (I, −N), y'' = −P M⁻¹ Pᵀ K y; let P M⁻¹ Pᵀ = G Gᵀ and y = G u, then u'' = −Gᵀ K G
+/// u.
 fn symmetric_form(system: &System, frame: &Frame) -> Option<(Mat<f64>, Mat<f64>)> {
     let (n, m) = (system.size(), frame.kept.len());
     let mut projection = Mat::<f64>::zeros(m, n);

@@ -6,8 +6,8 @@
 //!     e = (|μ| + |μ + 1| − 1)/2 ≥ 0:        ln |λ| = 2 asinh √e.
 //! ```
 //!
-//! Over a disc of radius r about μ the excess moves by at most r, and since d ln λ/dμ = 1/√(μ (μ + 1)), ln |λ| by at most
-//! r/√((|μ| − r) (|μ + 1| − r)).
+//! Over a disc of radius r about μ the excess moves by at most r, and since d ln λ/dμ = 1/√(μ (μ + 1)),
+//! ln |λ| by at most r/√((|μ| − r) (|μ + 1| − r)).
 
 use num_complex::Complex64;
 
@@ -21,7 +21,8 @@ pub struct Multiplier {
     pub mu: Complex64,
     /// The true μ is within this of it (as many true ones as discs, where discs meet); `None`: not bounded.
     pub radius: Option<f64>,
-    /// An enclosure of ln |λ| for the one with |λ| ≥ 1 (of each of those whose discs meet); `None`: not bounded.
+    /// An enclosure of ln |λ| for the one with |λ| ≥ 1 (of each of those whose discs meet); `None`: not
+    /// bounded.
     pub growth: Option<(f64, f64)>,
     /// The one with |λ| ≥ 1, rounded.
     pub lambda: Complex64,
@@ -47,7 +48,8 @@ pub fn exponent(mu: Complex64) -> Complex64 {
     if z.re < 0.0 { -z } else { z }
 }
 
-/// With an excess of 2^-100, say for a pair 10^-15 beside the segment \[−1, 0\], these leave the digits of a double.
+/// With an excess of 2^-100, say for a pair 10^-15 beside the segment \[−1, 0\], these leave the digits of a
+/// double.
 const BITS: u32 = 256;
 
 /// An enclosure of ln |λ| over a period, or of a growth rate.

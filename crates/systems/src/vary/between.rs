@@ -1,9 +1,10 @@
 //! Verdicts on all systems between two: the stable and unstable intervals of one number, none left out.
 //!
-//! A number t on which masses and stiffnesses depend linearly, steps fixed, makes kicks K_k(t) between K_k⁻ and K_k⁺ in Loewner's
-//! order for t in a cell. Near the first region the signs of the action at both decide for the whole cell (`action`; the order theorem
-//! of `proofs/REGION.md`), and beyond it counts of negative eigenvalues do where many modes resonate at once. Elsewhere the half period in
-//! the middle does, its bound widened by how far kicks and drifts are from it: the forms' inertias, or discs about the eigenvalues.
+//! A number t on which masses and stiffnesses depend linearly, steps fixed, makes kicks K_k(t) between K_k⁻
+//! and K_k⁺ in Loewner's order for t in a cell. Near the first region the signs of the action at both decide
+//! for the whole cell (`action`; the order theorem of `proofs/REGION.md`), and beyond it counts of negative
+//! eigenvalues do where many modes resonate at once. Elsewhere the half period in the middle does, its bound
+//! widened by how far kicks and drifts are from it: the forms' inertias, or discs about the eigenvalues.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
@@ -36,18 +37,20 @@ pub struct Intervals {
     pub number: String,
     /// Whether only the ends of the stretches and the multiples between were decided, not all between.
     pub is_discrete: bool,
-    /// The inner steps in an outer one, where these are two levels and the number is the outer step at that ratio.
+    /// The inner steps in an outer one, where these are two levels and the number is the outer step at that
+    /// ratio.
     pub inner_steps: Option<u64>,
-    /// They cover the range, in order; where edges were isolated exactly, neighbouring doubles end one and begin the next.
+    /// They cover the range, in order; where edges were isolated exactly, neighbouring doubles end one and
+    /// begin the next.
     pub stretches: Vec<Stretch>,
-    /// How many of those that are not decided the accuracy of the data leaves open: data a thousand times as accurate decide most of each. `None`
-    /// where stretches hold for the numbers given alone.
+    /// How many of those that are not decided the accuracy of the data leaves open: data a thousand times as
+    /// accurate decide most of each. `None` where stretches hold for the numbers given alone.
     pub open: Option<usize>,
 }
 
 impl Intervals {
-    /// \[lo, hi\]: where what is proven stable before the first unstable stretch ends, and where that begins; twice the first
-    /// unstable number where only some were decided.
+    /// \[lo, hi\]: where what is proven stable before the first unstable stretch ends, and where that begins;
+    /// twice the first unstable number where only some were decided.
     pub fn first_unstable(&self) -> Option<(f64, f64)> {
         let k = self.stretches.iter().position(|stretch| stretch.verdict == Holds::Unstable)?;
         if self.is_discrete {
@@ -62,7 +65,8 @@ impl Intervals {
 pub struct Cells<'a> {
     /// The system of a number.
     at: &'a (dyn Fn(f64) -> Result<System> + Sync),
-    /// Whether they differ by a positive factor of all stiffnesses alone, growing with the number, which needs no check then.
+    /// Whether they differ by a positive factor of all stiffnesses alone, growing with the number, which
+    /// needs no check then.
     is_scaled: bool,
     /// The rigid modes of such systems, and whether Σ K_k is proven positive definite but for these.
     frame: OnceLock<Frame>,
@@ -83,8 +87,8 @@ impl<'a> Cells<'a> {
         Cells { at, is_scaled, frame, is_definite, counts: Mutex::default() }
     }
 
-    /// The verdict that is proven for all systems between two: those of both ends and their mean are given, and masses and stiffnesses
-    /// are linear in between.
+    /// The verdict that is proven for all systems between two: those of both ends and their mean are given,
+    /// and masses and stiffnesses are linear in between.
     ///
     /// # Errors
     /// Where the second system is not the mean, or steps differ.
@@ -126,8 +130,8 @@ impl<'a> Cells<'a> {
         Ok(Arc::clone(known.entry(x.to_bits()).or_insert(counts)))
     }
 
-    /// Whether counts prove all systems between two numbers unstable, every kick growing from one to the other: at both ends together, or
-    /// half by half as long as they prove the middle of each.
+    /// Whether counts prove all systems between two numbers unstable, every kick growing from one to the
+    /// other: at both ends together, or half by half as long as they prove the middle of each.
     fn differ_throughout(
         &self,
         (lo, hi): (f64, f64),
@@ -207,8 +211,8 @@ pub(crate) fn verify_line(systems: [&System; 3]) -> Result<()> {
     Ok(())
 }
 
-/// Less and more than all on the segment from a to b: with b − a + β I ≥ 0 and a − b + γ I ≥ 0 these are a − β I and b + β I, or b − γ I
-/// and a + γ I.
+/// Less and more than all on the segment from a to b: with b − a + β I ≥ 0 and a − b + γ I ≥ 0 these are a −
+/// β I and b + β I, or b − γ I and a + γ I.
 fn spread([a, b]: [&Symmetric; 2]) -> Option<[Symmetric; 2]> {
     let minus = ratio(-1, 1);
     let mut difference = b.clone();
@@ -253,8 +257,9 @@ impl Cell<'_> {
         }
     }
 
-    /// Whether all kicks grow with the number, or all fall; lighter masses act as stiffer kicks. Where they are but scaled, by a factor that
-    /// grows, all counts grow with it, whatever the signs of the kicks (`proofs/REGION.md`, section 3).
+    /// Whether all kicks grow with the number, or all fall; lighter masses act as stiffer kicks. Where they
+    /// are but scaled, by a factor that grows, all counts grow with it, whatever the signs of the kicks
+    /// (`proofs/REGION.md`, section 3).
     fn rises(&self) -> Option<bool> {
         if self.cells.is_scaled {
             return Some(true);
@@ -294,8 +299,8 @@ impl Cell<'_> {
         Ok(Some([System::new(masses(|a, b| a.max(b)), less)?, System::new(masses(|a, b| a.min(b)), more)?]))
     }
 
-    /// The verdict that is proven where all kicks lie between those of two systems, the softer one first; these are the ends of the cell where
-    /// the kicks are known to rise or fall.
+    /// The verdict that is proven where all kicks lie between those of two systems, the softer one first;
+    /// these are the ends of the cell where the kicks are known to rise or fall.
     fn between_kicks(&self, [less, more]: [&System; 2], rises: Option<bool>) -> Result<Holds> {
         // Where a kick vanishes the schedule is another, and nothing can be compared.
         if self.clocks() != more.clocks().len() || self.clocks() != less.clocks().len() {
@@ -320,8 +325,8 @@ impl Cell<'_> {
         if self.cells.is_scaled { *self.cells.is_definite.get_or_init(found) } else { found() }
     }
 
-    /// Whether counts at the least and the greatest kicks prove a real multiplier off the circle for all between; where every kick grows
-    /// from one end of the cell to the other, piece by piece.
+    /// Whether counts at the least and the greatest kicks prove a real multiplier off the circle for all
+    /// between; where every kick grows from one end of the cell to the other, piece by piece.
     fn has_real_unstable_mode(&self, kicks: [&System; 2], rises: Option<bool>) -> Result<bool> {
         let n = self.frame.rigid.is_empty() && self.is_definite(kicks[0]);
         let n = n.then(|| kicks[0].size());

@@ -1,9 +1,10 @@
 //! Stretches of a number whose edges are isolated exactly: nothing between them is left open.
 //!
-//! Masses or stiffnesses are linear in the number, or in its square (an outer step at fixed ratios: in the old steps all stiffnesses grow with
-//! its square). Where the polynomials of `critical` are within the limits, the verdict at one rational number between two neighbouring
-//! roots is that of all; a root that is no double lies between the end of one stretch and the beginning of the next, two
-//! neighbouring doubles. Else cells cover the range (`vary`).
+//! Masses or stiffnesses are linear in the number, or in its square (an outer step at fixed ratios: in the
+//! old steps all stiffnesses grow with its square). Where the polynomials of `critical` are within the
+//! limits, the verdict at one rational number between two neighbouring roots is that of all; a root that is
+//! no double lies between the end of one stretch and the beginning of the next, two neighbouring doubles.
+//! Else cells cover the range (`vary`).
 
 use crate::half::compose;
 use crate::linear::system::System;
@@ -36,11 +37,12 @@ impl Linear {
     }
 }
 
-/// Eliminations of the action that a cell takes, roughly: signs at both ends, and counts at some halvings of those that counts prove.
+/// Eliminations of the action that a cell takes, roughly: signs at both ends, and counts at some halvings of
+/// those that counts prove.
 const ELIMINATIONS: f64 = 16.0;
 
-/// A product of rationals, with what goes on around it, in products of words: of these a cell takes 3 n³ where rigid modes leave
-/// the masses of the rest dense.
+/// A product of rationals, with what goes on around it, in products of words: of these a cell takes 3 n³
+/// where rigid modes leave the masses of the rest dense.
 const RATIONAL: f64 = 1000.0;
 
 /// The systems of one number.
@@ -51,8 +53,8 @@ pub struct Family<'a> {
 }
 
 impl Family<'_> {
-    /// The verdicts on all systems with a number from lo to hi: exactly where this is within the limits, else by cells, no interval
-    /// wider than `width` times the larger end missed.
+    /// The verdicts on all systems with a number from lo to hi: exactly where this is within the limits, else
+    /// by cells, no interval wider than `width` times the larger end missed.
     ///
     /// # Errors
     /// As [`Family::exactly`]; an empty range, a width outside \[10^-9, 1/10\].
@@ -63,8 +65,9 @@ impl Family<'_> {
         }
     }
 
-    /// Between lo < hi, nothing left open: the end of a stretch and the beginning of the next are neighbouring doubles with one edge or
-    /// more between them, or one stretch holds the edge, a double. `None` where this is beyond the limits.
+    /// Between lo < hi, nothing left open: the end of a stretch and the beginning of the next are
+    /// neighbouring doubles with one edge or more between them, or one stretch holds the edge, a double.
+    /// `None` where this is beyond the limits.
     ///
     /// # Errors
     /// Where masses and stiffnesses are not linear or steps differ; as `at` and [`decide_system`].
@@ -92,7 +95,8 @@ impl Family<'_> {
         Plan::new(&Line::new([first, last]), limits)
     }
 
-    /// The products that the stretches of a range cost, roughly: those of the polynomials, else of so many cells.
+    /// The products that the stretches of a range cost, roughly: those of the polynomials, else of so many
+    /// cells.
     ///
     /// # Errors
     /// As [`Family::exactly`].
@@ -101,7 +105,8 @@ impl Family<'_> {
             return Ok(plan.cost());
         }
         let [_, (_, middle), _] = self.three(lo, hi)?;
-        // The half period with its norms, some eliminations, and rational entries: as measured on bar-resonant.json and chain200.json.
+        // The half period with its norms, some eliminations, and rational entries: as measured on
+        // bar-resonant.json and chain200.json.
         let entries = middle.clocks().iter().map(|own| own.stiffness.places().count()).sum::<usize>();
         let n = middle.size() as f64;
         let rigid = if middle.rigid_modes().is_empty() { 0.0 } else { RATIONAL * 3.0 * n.powi(3) };
@@ -131,7 +136,8 @@ impl Family<'_> {
     }
 }
 
-/// The stretches between gaps, each decided at one number; `within` is asked about a gap between two stretches of one verdict.
+/// The stretches between gaps, each decided at one number; `within` is asked about a gap between two
+/// stretches of one verdict.
 pub fn between(
     (lo, hi): (f64, f64),
     gaps: &[Gap],

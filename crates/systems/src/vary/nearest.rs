@@ -1,4 +1,5 @@
-//! The unstable intervals next to one number, from stretches that cover its neighbourhood: searched for outwards, farther and farther.
+//! The unstable intervals next to one number, from stretches that cover its neighbourhood: searched for
+//! outwards, farther and farther.
 
 use crate::vary::stretches::{self, Stretch, merged};
 use crate::verdict::measured::Holds;
@@ -53,8 +54,9 @@ impl Nearest {
         ranges.map(|range| stretches::most_cells(range, width)).sum()
     }
 
-    /// Searched for from `number` > 0 outwards, down to half of it and up to twice, `stretches` covering a range; `own` is what is proven at
-    /// the number itself, which parts what nothing is proven of on either side of it.
+    /// Searched for from `number` > 0 outwards, down to half of it and up to twice, `stretches` covering a
+    /// range; `own` is what is proven at the number itself, which parts what nothing is proven of on either
+    /// side of it.
     ///
     /// # Errors
     /// The first error of `stretches`.

@@ -15,8 +15,8 @@ pub struct Point {
     pub at: (Rational, Rational),
     /// `None`: not decided.
     pub kind: Option<Kind>,
-    /// An enclosure of the largest growth rate, per unit time, infinite above where the least alone is proven; (0, 0) if nothing grows exponentially;
-    /// `None`: not bounded.
+    /// An enclosure of the largest growth rate, per unit time, infinite above where the least alone is
+    /// proven; (0, 0) if nothing grows exponentially; `None`: not bounded.
     pub growth_rate: Option<(f64, f64)>,
     /// No more than it: what the fastest mode that is proven to grow has at least, 0 where none is.
     pub at_least: f64,
@@ -34,8 +34,8 @@ impl Point {
     }
 }
 
-/// The verdicts `decide(x, y)` for all pairs of parameters, row by row of y; in parallel, in order. `see` is called
-/// after each.
+/// The verdicts `decide(x, y)` for all pairs of parameters, row by row of y; in parallel, in order. `see` is
+/// called after each.
 ///
 /// # Errors
 /// The first error of `decide`.

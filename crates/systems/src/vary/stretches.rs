@@ -21,8 +21,9 @@ const PARTS: u32 = 16;
 /// Around an edge, how much narrower than elsewhere the cells may get.
 const FINER: f64 = 1e-4;
 
-/// The verdicts on all numbers from `lo` to `hi`, as stretches that cover them, `verdict(a, b)` being what holds for all of \[a, b\].
-/// No interval wider than `width` times the larger end is missed; the ends of those found are sharper.
+/// The verdicts on all numbers from `lo` to `hi`, as stretches that cover them, `verdict(a, b)` being what
+/// holds for all of \[a, b\]. No interval wider than `width` times the larger end is missed; the ends of
+/// those found are sharper.
 ///
 /// # Errors
 /// An empty range, a width outside \[10^-9, 1/10\], the first error of `verdict`.
@@ -59,10 +60,12 @@ pub fn check_width(width: f64) -> Result<()> {
     Ok(())
 }
 
-/// Cells that sharpen the ends of open stretches of a range: of one to three, some 24 each, as measured on data/scenes.
+/// Cells that sharpen the ends of open stretches of a range: of one to three, some 24 each, as measured on
+/// data/scenes.
 const SHARPENING: f64 = 60.0;
 
-/// The most cells that [`cover`] asks about, roughly: each as narrow as they get, and a wider one tried before it.
+/// The most cells that [`cover`] asks about, roughly: each as narrow as they get, and a wider one tried
+/// before it.
 pub fn most_cells((lo, hi): (f64, f64), width: f64) -> f64 {
     2.0 * (hi - lo) / (width * lo.abs().max(hi.abs())) + f64::from(PARTS) + SHARPENING
 }
@@ -92,7 +95,8 @@ fn cells(
     Ok(found)
 }
 
-/// An open stretch without the parts that cells down to `floor` prove at its ends: near an edge cells are as wide as they are far from it.
+/// An open stretch without the parts that cells down to `floor` prove at its ends: near an edge cells are as
+/// wide as they are far from it.
 fn shrunk(
     stretch: &Stretch,
     floor: f64,

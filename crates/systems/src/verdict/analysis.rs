@@ -51,8 +51,8 @@ pub struct Instability {
     pub origin: Origin,
     /// An enclosure of ln |λ|/T, per unit time; `None`: not bounded.
     pub growth_rate: Option<(f64, f64)>,
-    /// The positions of the growing solution at t = 0 in the system's coordinates, rounded: of the complex shape,
-    /// scaled so that its longest entry is 1, the real part,
+    /// The positions of the growing solution at t = 0 in the system's coordinates, rounded: of the complex
+    /// shape, scaled so that its longest entry is 1, the real part,
     pub shape: Vec<f64>,
     /// and the imaginary one, a quarter turn of the beat later; all 0 for a real pair.
     pub quadrature: Vec<f64>,
@@ -84,9 +84,9 @@ pub struct Part {
     pub size: usize,
     /// Its synchronization period: that of the clocks that act on it.
     pub period: Laurent,
-    /// Over that period. Coexistence: stable with a multiplier ±1 of its own. Over a multiple of its period, the system's say, a
-    /// multiplier that is a root of 1 may become ±1, too: that is a property of the other parts' clocks, and not counted.
-    /// `None`: not decided.
+    /// Over that period. Coexistence: stable with a multiplier ±1 of its own. Over a multiple of its period,
+    /// the system's say, a multiplier that is a root of 1 may become ±1, too: that is a property of the other
+    /// parts' clocks, and not counted. `None`: not decided.
     pub kind: Option<Kind>,
     pub evidence: Evidence,
     /// One for each pair of multipliers, by increasing real part of μ.
@@ -96,7 +96,8 @@ pub struct Part {
     pub roots: Option<MuCount>,
     /// The results for one oscillator beside its multiplier.
     pub oscillator: Option<Clocked>,
-    /// An enclosure of the largest ln |λ| over the period, where it is known though not every multiplier is; infinite above where only the least is proven.
+    /// An enclosure of the largest ln |λ| over the period, where it is known though not every multiplier is;
+    /// infinite above where only the least is proven.
     pub largest: Option<(f64, f64)>,
 }
 
@@ -117,7 +118,8 @@ impl Part {
         name(self.kind)
     }
 
-    /// An enclosure of the largest ln |λ|/T, per unit time, (0, 0) where nothing grows exponentially; `None`: not bounded.
+    /// An enclosure of the largest ln |λ|/T, per unit time, (0, 0) where nothing grows exponentially; `None`:
+    /// not bounded.
     pub fn growth_rate(&self) -> Option<(f64, f64)> {
         if !matches!(self.kind, Some(Kind::Hyperbolic) | None) {
             return Some((0.0, 0.0));
@@ -162,8 +164,8 @@ pub struct Analysis {
     pub clocks: usize,
     /// T, the synchronization period.
     pub period: Laurent,
-    /// Hyperbolic if any part is, else not decided (`None`) if any part is not, else parabolic, else coexistence, else elliptic; each
-    /// over its own period, by every route.
+    /// Hyperbolic if any part is, else not decided (`None`) if any part is not, else parabolic, else
+    /// coexistence, else elliptic; each over its own period, by every route.
     pub kind: Option<Kind>,
     /// The common null vectors of all potentials: they drift freely and are set apart.
     pub rigid_modes: Vec<Vec<Rational>>,
@@ -219,7 +221,8 @@ impl Analysis {
         name(self.kind)
     }
 
-    /// An enclosure of the largest growth rate per unit time, (0, 0) where nothing grows exponentially; `None`: not bounded.
+    /// An enclosure of the largest growth rate per unit time, (0, 0) where nothing grows exponentially;
+    /// `None`: not bounded.
     pub fn growth_rate(&self) -> Option<(f64, f64)> {
         let rates = self.parts.iter().map(Part::growth_rate).collect::<Option<Vec<_>>>()?;
         Some(rate::largest(rates.into_iter()))

@@ -4,12 +4,13 @@
 //!    along their rational eigenvectors.
 //! 2. A part of one degree of freedom is the scalar problem: two clocks go to the certified ladder of
 //!    [`verdict`](clocks::verdict), more of them to doubles, balls and exact signs.
-//! 3. Any other part is tried in doubles with proven discs, multiple eigenvalues in clusters; where these cannot decide,
-//!    in exact arithmetic.
+//! 3. Any other part is tried in doubles with proven discs, multiple eigenvalues in clusters; where these
+//!    cannot decide, in exact arithmetic.
 //! 4. Where exact arithmetic exceeds the budget and doubles prove nothing, the kind is not decided.
 //!
-//! The cost for n degrees of freedom: the half period ([`compose`](crate::half::compose)) and some twenty products of n x n
-//! matrices for the eigenvalues and their bound; the budget error of exact arithmetic names its cost.
+//! The cost for n degrees of freedom: the half period ([`compose`](crate::half::compose)) and some twenty
+//! products of n x n matrices for the eigenvalues and their bound; the budget error of exact arithmetic names
+//! its cost.
 
 use crate::half::compose::{self, connected_parts};
 use crate::half::norm;
@@ -41,7 +42,8 @@ pub fn decide_by(route: Route, system: &System, limits: &Limits) -> Result<Analy
     decided(system, true, (route, limits))
 }
 
-/// The verdict on all systems within 2^-150 of each entry: the kind is that of this one where doubles prove it, else not decided.
+/// The verdict on all systems within 2^-150 of each entry: the kind is that of this one where doubles prove
+/// it, else not decided.
 ///
 /// # Errors
 /// As [`decide_system`].
@@ -89,7 +91,8 @@ fn decided(system: &System, is_exact: bool, how: (Route, &Limits)) -> Result<Ana
     Ok(Analysis { size, clocks, period, kind, rigid_modes, parts, warnings, measured: None })
 }
 
-/// Whether the total stiffness has a negative direction, for all stiffnesses within the rounding of these to doubles.
+/// Whether the total stiffness has a negative direction, for all stiffnesses within the rounding of these to
+/// doubles.
 fn is_proven_indefinite(system: &System) -> bool {
     let sizes = system.stiffnesses().into_iter().map(|symmetric| norm::frobenius(&symmetric.rounded()));
     // Entries are rounded once, and added up.
@@ -97,7 +100,8 @@ fn is_proven_indefinite(system: &System) -> bool {
     inertia::proven(&system.rounded_total(), slack).negative > 0
 }
 
-/// The kind by exact arithmetic alone, over characteristic polynomials: the severest of the parts', each over its own period.
+/// The kind by exact arithmetic alone, over characteristic polynomials: the severest of the parts', each over
+/// its own period.
 ///
 /// # Errors
 /// A budget error, before the work on the part that exceeds it.
@@ -107,8 +111,9 @@ pub fn exact_kind(system: &System, limits: &Limits) -> Result<Kind> {
     Ok(kinds.into_iter().max_by_key(severity).unwrap_or(Kind::Elliptic))
 }
 
-/// The products of doubles that a verdict costs, roughly, at the pace of eigenvalue iterations: the half period, and all
-/// eigenvalues with their proof; of large systems some products of matrices, which are twenty times as fast.
+/// The products of doubles that a verdict costs, roughly, at the pace of eigenvalue iterations: the half
+/// period, and all eigenvalues with their proof; of large systems some products of matrices, which are twenty
+/// times as fast.
 pub fn verdict_cost(system: &System) -> u64 {
     let n = system.size() as u64;
     let per_cube = if system.size() < large::LARGE { 60 } else { 2 };

@@ -1,8 +1,9 @@
-//! Large sparse systems: the signs of the action decide, and a Krylov space of the period finds the mode that grows.
+//! Large sparse systems: the signs of the action decide, and a Krylov space of the period finds the mode that
+//! grows.
 //!
-//! All eigenvalues of n degrees of freedom cost 25 n³ and are asked for by nobody where n is in the thousands. Where the signs
-//! prove instability all μ are real (one end's action is definite, so that one of the forms is), and a few thousand sparse periods
-//! find the fastest.
+//! All eigenvalues of n degrees of freedom cost 25 n³ and are asked for by nobody where n is in the
+//! thousands. Where the signs prove instability all μ are real (one end's action is definite, so that one of
+//! the forms is), and a few thousand sparse periods find the fastest.
 
 use faer::Mat;
 use faer::c64;
@@ -106,8 +107,8 @@ impl State<f64> for Column {
     }
 }
 
-/// The eigenvalue farthest outside the unit circle of a linear map of `size` numbers, by more than `least` and its residual; `None` where the iteration
-/// finds none.
+/// The eigenvalue farthest outside the unit circle of a linear map of `size` numbers, by more than `least`
+/// and its residual; `None` where the iteration finds none.
 ///
 /// # Errors
 /// Where the work was stopped.
@@ -128,7 +129,8 @@ pub fn dominant(size: usize, period: impl Fn(&[f64]) -> Vec<f64>, least: f64) ->
     Ok(None)
 }
 
-/// Where a recursion for eigenvectors begins: numbers without a pattern (Weyl's sequence), some part of every mode.
+/// Where a recursion for eigenvectors begins: numbers without a pattern (Weyl's sequence), some part of every
+/// mode.
 pub fn start(n: usize) -> Vec<f64> {
     (1..=n).map(|i| (i as f64 * 0.754_877_666_246_692_7).fract() - 0.5).collect()
 }

@@ -12,7 +12,8 @@ pub enum Route {
     Exact,
 }
 
-/// Products of dense doubles are so many times as fast as others, which are of words or of few doubles at once, as measured on two machines.
+/// Products of dense doubles are so many times as fast as others, which are of words or of few doubles at
+/// once, as measured on two machines.
 pub(crate) const DENSE: u64 = 10;
 
 /// Products that a kick of the scalar ladder counts as.

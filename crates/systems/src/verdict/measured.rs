@@ -11,7 +11,8 @@ pub struct Removed {
     pub count: usize,
     /// "positions", "periodic box", "common null space" or "constraints".
     pub found_by: &'static str,
-    /// ‖K r‖₂/‖K‖₂ for the orthonormal rigid motions r, rounded: what was removed of the stiffness of each potential, by increasing step.
+    /// ‖K r‖₂/‖K‖₂ for the orthonormal rigid motions r, rounded: what was removed of the stiffness of each
+    /// potential, by increasing step.
     pub held: Vec<f64>,
     /// ‖Σ K r‖₂/Σ ‖K‖₂: 0 at a minimum.
     pub total: f64,
@@ -49,7 +50,8 @@ named! {
         Stable = "stable",
         /// Unstable for all of them.
         Unstable = "unstable",
-        /// The data cannot decide: some matrices are stable and some are not, or no verdict was proven for all.
+        /// The data cannot decide: some matrices are stable and some are not, or no verdict was proven for
+        /// all.
         NotTold = "the data do not tell",
     }
 }
@@ -76,15 +78,16 @@ impl Holds {
 pub struct Measured {
     /// The integrator: "respa", kicks and drifts, or the name of another.
     pub method: &'static str,
-    /// The stated accuracy: every stiffness is known to this times its norm (2-norm, mass-weighted), along an orbit times the largest norm of its
-    /// clock's kicks.
+    /// The stated accuracy: every stiffness is known to this times its norm (2-norm, mass-weighted), along an
+    /// orbit times the largest norm of its clock's kicks.
     pub accuracy: f64,
     /// The verdict on all matrices within it.
     pub holds: Holds,
-    /// The largest ε, rounded down, for which the verdict is proven of all stiffnesses within ε times their norms: stable or unstable;
-    /// `None` where it is not proven by the region, counts, or discs.
+    /// The largest ε, rounded down, for which the verdict is proven of all stiffnesses within ε times their
+    /// norms: stable or unstable; `None` where it is not proven by the region, counts, or discs.
     pub margin: Option<f64>,
-    /// \[lo, hi\]: every outer step in (0, lo] at this number of inner steps is proven stable, hi is proven unstable.
+    /// \[lo, hi\]: every outer step in (0, lo] at this number of inner steps is proven stable, hi is proven
+    /// unstable.
     pub first_unstable: Option<(f64, f64)>,
     /// Whether the step lies above an unstable one, on an island that no advice should rest on.
     pub is_above_unstable: bool,

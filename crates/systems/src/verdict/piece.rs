@@ -36,7 +36,8 @@ pub struct Piece {
     pub(crate) is_exact: bool,
 }
 
-/// The component itself, or what it splits into where it is exact: subspaces that are invariant under M⁻¹ times each of its stiffnesses.
+/// The component itself, or what it splits into where it is exact: subspaces that are invariant under M⁻¹
+/// times each of its stiffnesses.
 pub fn pieces(component: System, frame: Frame, is_exact: bool) -> Vec<Piece> {
     let is_whole = !is_exact || component.size() > SMALL;
     if is_whole || frame.rigid.is_empty() && !may_split(&component, &component.stiffnesses()) {

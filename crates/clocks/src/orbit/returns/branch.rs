@@ -5,7 +5,8 @@ use super::map::Map;
 use super::row;
 use number::parallel::go_on;
 
-/// A matrix function on the integers `start..start + length`, which are units of 1/q, and where it leads: x to x + stride.
+/// A matrix function on the integers `start..start + length`, which are units of 1/q, and where it leads: x
+/// to x + stride.
 #[derive(Clone)]
 pub struct Branch<T> {
     pub map: Map<T>,
@@ -28,7 +29,8 @@ impl<T: Coefficient> Branch<T> {
         if length == 0 { self.map.at(&alpha) } else { self.map.part(&alpha, &T::quotient(length, divisor)) }
     }
 
-    /// The product of n equidistant parts, or values at points, from `start` on; `None` where single products keep more digits.
+    /// The product of n equidistant parts, or values at points, from `start` on; `None` where single products
+    /// keep more digits.
     pub fn row(&self, n: usize, start: i128, length: i128) -> Option<Map<T>> {
         let first = 2 * (start - self.start) - (self.length - length);
         let divisor = self.length as u128;
@@ -51,7 +53,8 @@ impl<T: Coefficient> Branch<T> {
     }
 }
 
-/// The products of functions in doubles that may still be made, or as much work; `None` from whatever needs more.
+/// The products of functions in doubles that may still be made, or as much work; `None` from whatever needs
+/// more.
 pub struct Budget(u64);
 
 impl Budget {

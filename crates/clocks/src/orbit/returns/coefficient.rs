@@ -8,8 +8,8 @@ use super::long;
 pub use super::long::Long;
 use number::{Ball, Rational, Twofold, U};
 
-/// A floating number. Every operation returns its exact result but for [`UNIT`](Coefficient::UNIT): a product within
-/// UNIT |a b|, a sum within UNIT (|a| + |b|), as long as nothing is smaller than 2^-900.
+/// A floating number. Every operation returns its exact result but for [`UNIT`](Coefficient::UNIT): a product
+/// within UNIT |a b|, a sum within UNIT (|a| + |b|), as long as nothing is smaller than 2^-900.
 pub trait Coefficient: Copy {
     /// The type that encloses the constants of a pair.
     type Enclosure: Enclosure;
@@ -19,10 +19,11 @@ pub trait Coefficient: Copy {
     const UNIT: f64;
     /// The precision at which balls serve it.
     const BITS: u32;
-    /// So many coefficients a function has: the terms of a product of two smooth ones beyond them are as small as UNIT.
+    /// So many coefficients a function has: the terms of a product of two smooth ones beyond them are as
+    /// small as UNIT.
     const TERMS: usize;
-    /// The logarithm of the factors that are multiplied in one row, up to `row::LONGEST` of them: 0 where single products, which leave
-    /// out what is small when it is known, are cheaper.
+    /// The logarithm of the factors that are multiplied in one row, up to `row::LONGEST` of them: 0 where
+    /// single products, which leave out what is small when it is known, are cheaper.
     const ROW: u32;
     /// The cost of a product of functions, about, relative to that of doubles.
     const COST: u64;
@@ -220,7 +221,8 @@ impl Coefficient for Twofold {
     }
 
     fn ball(&self) -> Ball {
-        // Two doubles may lie far apart: a sum of exact balls within 2^-2000 of the larger is exact for those above 2^-900.
+        // Two doubles may lie far apart: a sum of exact balls within 2^-2000 of the larger is exact for those
+        // above 2^-900.
         exact(self.hi).add(&exact(self.lo), 2200)
     }
 

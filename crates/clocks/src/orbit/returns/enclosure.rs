@@ -1,4 +1,5 @@
-//! The numbers that a pair's constants are made of: balls, and for doubles two doubles with a radius, a hundred times as fast.
+//! The numbers that a pair's constants are made of: balls, and for doubles two doubles with a radius, a
+//! hundred times as fast.
 
 use num_bigint::BigUint;
 use num_traits::Float;
@@ -250,8 +251,8 @@ pub fn balanced<E: Enclosure, const N: usize>(terms: [Matrix<E>; N]) -> ([Matrix
     (terms.map(|term| term.map(|x| x.scale2(-largest))), largest)
 }
 
-/// One step's matrix to the n-th power, and the power of two that it is to be multiplied by: beyond what 128 bits hold, their
-/// largest number, which no ball takes.
+/// One step's matrix to the n-th power, and the power of two that it is to be multiplied by: beyond what 128
+/// bits hold, their largest number, which no ball takes.
 pub fn power<E: Enclosure>(step: &Matrix<E>, one: &Matrix<E>, n: &BigUint) -> (Matrix<E>, i128) {
     let digits = (0..n.bits()).rev().map(|bit| n.bit(bit));
     digits.fold((one.clone(), 0i128), |(numbers, exponent), digit| {

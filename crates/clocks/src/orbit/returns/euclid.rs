@@ -1,19 +1,21 @@
 //! Euclid's algorithm on the exchange of two intervals, and the walk from the deepest level up.
 //!
-//! Just after its kick k the slow clock stands at x = k p mod q, in units of 1/q, behind the last fast kick. Two branches lead to
-//! the next: the left one on 0..a moves by b, the right one on a..a + b by −a. Inducing on the longer interval,
+//! Just after its kick k the slow clock stands at x = k p mod q, in units of 1/q, behind the last fast kick.
+//! Two branches lead to the next: the left one on 0..a moves by b, the right one on a..a + b by −a. Inducing
+//! on the longer interval,
 //!
 //! ```text
 //!     a ≥ b:  right(x) := right(x + b) left(x)  on a − b..a,     a := a − b
 //!     a < b:  left(x)  := right(x + b) left(x)  on 0..a,         right on a..b,   b := b − a,
 //! ```
 //!
-//! and k such steps at once are a [`Run`]. Heights times widths sum to q throughout, so all branches vary alike over their
-//! intervals. The first n maps from x = 0 are a few returns of the deepest level whose heights fit, then of the next, and so on
-//! (Ostrowski's numeration). All lengths and heights are exact.
+//! and k such steps at once are a [`Run`]. Heights times widths sum to q throughout, so all branches vary
+//! alike over their intervals. The first n maps from x = 0 are a few returns of the deepest level whose
+//! heights fit, then of the next, and so on (Ostrowski's numeration). All lengths and heights are exact.
 //!
-//! An orbit of n maps passes through a level's branches some (a + b)/2 times, each of which adds its rounding. So the levels above,
-//! of many passes, want more bits than those below, and a branch is rounded as soon as what is left is known well enough so.
+//! An orbit of n maps passes through a level's branches some (a + b)/2 times, each of which adds its
+//! rounding. So the levels above, of many passes, want more bits than those below, and a branch is rounded as
+//! soon as what is left is known well enough so.
 
 use super::branch::{Branch, Budget};
 use super::coefficient::Coefficient;
@@ -34,18 +36,22 @@ pub struct Reached<P> {
     pub left: u128,
 }
 
-/// The highest sum of the roundings of all passes through a level: a result that is known less well has few digits.
+/// The highest sum of the roundings of all passes through a level: a result that is known less well has few
+/// digits.
 const ROUNDINGS: f64 = 1.0 / 32768.0;
 
-/// The terms left out of a level's products may add up to this share of the error that long products may have.
+/// The terms left out of a level's products may add up to this share of the error that long products may
+/// have.
 const LEFT_OUT: f64 = 1e-3;
 
-/// Whether a level's branches may be known to these numbers' digits, where the product is wanted to those of P.
+/// Whether a level's branches may be known to these numbers' digits, where the product is wanted to those of
+/// P.
 fn suffices<T: Coefficient, P: Coefficient>(passes: i128) -> bool {
     passes as f64 * T::UNIT <= ROUNDINGS * (P::UNIT / f64::UNIT).sqrt()
 }
 
-/// The first n maps from x = 0 after `entered`, to the digits of P; `None` where the budget or a bound does not last.
+/// The first n maps from x = 0 after `entered`, to the digits of P; `None` where the budget or a bound does
+/// not last.
 pub fn walk<T: Coefficient, P: Coefficient>(
     mut left: Branch<T>,
     mut right: Branch<T>,
@@ -89,8 +95,9 @@ pub fn walk<T: Coefficient, P: Coefficient>(
 }
 
 impl<T: Coefficient> Level<T> {
-    /// The branches of the next level; within `Some`, `None` where the new one's return does not fit into n < q maps: beyond, only
-    /// some of its factors are needed, which this level has. (The last return of all holds q of them.)
+    /// The branches of the next level; within `Some`, `None` where the new one's return does not fit into n <
+    /// q maps: beyond, only some of its factors are needed, which this level has. (The last return of all
+    /// holds q of them.)
     #[allow(clippy::option_option, clippy::type_complexity)]
     fn induced(&mut self, n: u128, budget: &mut Budget) -> Option<Option<[Branch<T>; 2]>> {
         let Level { left, right } = self;
@@ -128,7 +135,8 @@ impl<T: Coefficient> Level<T> {
         (run.branch.stride, run.branch.height)
     }
 
-    /// As many steps of the branch that holds the place reached as stay in it and fit into the maps left; `None` where none does.
+    /// As many steps of the branch that holds the place reached as stay in it and fit into the maps left;
+    /// `None` where none does.
     #[allow(clippy::type_complexity)]
     fn next<P>(&mut self, reached: &Reached<P>, budget: &mut Budget) -> Option<Option<(Map<T>, u128)>> {
         let &Reached { x, left: n, .. } = reached;

@@ -1,12 +1,14 @@
 //! Coordinates in which both branches of a level have small norms.
 //!
-//! Errors grow by the norms of what they pass through. Where orbits stay bounded there are coordinates in which all products turn, and
-//! have norm 1; the deeper the level, the less these coordinates vary along its intervals. So each level takes those that suit
-//! its branches' middles: the point of the hyperbolic plane of metrics which both move least.
+//! Errors grow by the norms of what they pass through. Where orbits stay bounded there are coordinates in
+//! which all products turn, and have norm 1; the deeper the level, the less these coordinates vary along its
+//! intervals. So each level takes those that suit its branches' middles: the point of the hyperbolic plane of
+//! metrics which both move least.
 //!
-//! With F = α + [[β, γ + δ], [γ − δ, −β]] the squares of F's entries sum to 2 (2 α² + 2 δ² − det F), and coordinates exp X/2,
-//! X = [[u, v], [v, −u]], change δ into δ + γ u − β v + δ (u² + v²)/2 up to the second order. Steps of Newton's method make Σ δ² least.
-//! No bound rests on how well they do: the coordinates are two shears, whose inverse is exact.
+//! With F = α + [[β, γ + δ], [γ − δ, −β]] the squares of F's entries sum to 2 (2 α² + 2 δ² − det F), and
+//! coordinates exp X/2, X = [[u, v], [v, −u]], change δ into δ + γ u − β v + δ (u² + v²)/2 up to the second
+//! order. Steps of Newton's method make Σ δ² least. No bound rests on how well they do: the coordinates are
+//! two shears, whose inverse is exact.
 
 use super::coefficient::Coefficient;
 use super::map::{Entries, Map};
@@ -107,7 +109,8 @@ pub fn coordinates<T: Coefficient>(left: &Map<T>, right: &Map<T>) -> Option<(Map
     Some((shears(there, rounding), shears(back, rounding)))
 }
 
-/// Two shears of (1, 0), the first of which keeps or moves it by less than a right angle, and the second by less than to the opposite.
+/// Two shears of (1, 0), the first of which keeps or moves it by less than a right angle, and the second by
+/// less than to the opposite.
 fn shears<T: Coefficient>(entries: Entries<T>, rounding: f64) -> Map<T> {
     let mut map = Map::of(vec![entries]).known_within(rounding);
     map.turn = map.direction().map(|angle| Turn { whole: 0, angle });

@@ -25,7 +25,8 @@ const FEW: u32 = 17;
 /// |σ²| below which a base beyond its own limit keeps the unit of the velocity.
 const LEAST_UNIT: f64 = 1e-3;
 
-/// p/q of the base and the other clock: `whole` + `rest`/q steps of the base from one kick of the other to the next.
+/// p/q of the base and the other clock: `whole` + `rest`/q steps of the base from one kick of the other to
+/// the next.
 #[derive(Clone, Debug)]
 pub struct Beat {
     pub whole: BigUint,
@@ -99,7 +100,8 @@ struct Rotation<E> {
 }
 
 impl<T: Coefficient> Frame<T> {
-    /// `None` where these numbers cannot decide on which side of its own limit the base is. Turns are followed where they are `wanted`.
+    /// `None` where these numbers cannot decide on which side of its own limit the base is. Turns are
+    /// followed where they are `wanted`.
     pub fn new<S: Real>(clocks: &LongClocks<S>, wanted: bool) -> Option<Self> {
         let beat = Beat::of(clocks.ratio())?;
         // Each squaring doubles the radius, and adds four of them: it loses a bit and a half.
@@ -370,7 +372,8 @@ impl<T: Coefficient> Journey<'_, T> {
     }
 }
 
-/// How often x changed its sign: at the odd quarters of the clockwise turn, which each of the steps passes in one sense.
+/// How often x changed its sign: at the odd quarters of the clockwise turn, which each of the steps passes in
+/// one sense.
 fn nodes(turn: Turn, sign: Sign) -> Option<u64> {
     let beside = if sign == Sign::Positive {
         0
@@ -382,8 +385,8 @@ fn nodes(turn: Turn, sign: Sign) -> Option<u64> {
     u64::try_from(beside - 2 * turn.whole).ok()
 }
 
-/// The sign changes of the odd solution, which ends with this sign: between two of its zeros, the one at t = 0 included, lies one of
-/// the even solution's (Sturm; their Wronskian is 1), so it has as many or one less.
+/// The sign changes of the odd solution, which ends with this sign: between two of its zeros, the one at t =
+/// 0 included, lies one of the even solution's (Sturm; their Wronskian is 1), so it has as many or one less.
 fn odd_nodes(even_nodes: u64, sign: Sign) -> Option<u64> {
     let is_as_many = (sign == Sign::Negative) == (even_nodes % 2 == 1);
     even_nodes.checked_sub(u64::from(!is_as_many))

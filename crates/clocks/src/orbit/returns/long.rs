@@ -13,7 +13,8 @@ type Mantissa = [u64; WORDS];
 
 /// ± mantissa 2^exponent; the highest bit of the mantissa is set, or it is zero.
 ///
-/// Results are truncated: a product by less than 2^-255 of itself, a sum by less than 2^-254 of the larger of the two.
+/// Results are truncated: a product by less than 2^-255 of itself, a sum by less than 2^-254 of the larger of
+/// the two.
 #[derive(Clone, Copy, Debug)]
 pub struct Long {
     is_negative: bool,

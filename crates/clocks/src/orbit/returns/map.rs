@@ -1,22 +1,25 @@
 //! A 2 × 2 matrix as a function on an interval: Taylor coefficients and a bound on all that they lack.
 //!
-//! M(t) = 2^e (Σ M_j t^j + E(t)), −1 ≤ t ≤ 1, |E(t)| ≤ ε in the spectral norm. With |M| the largest norm of Σ M_j t^j the product has
+//! M(t) = 2^e (Σ M_j t^j + E(t)), −1 ≤ t ≤ 1, |E(t)| ≤ ε in the spectral norm. With |M| the largest norm of Σ
+//! M_j t^j the product has
 //!
 //! ```text
 //!     ε_{BA} = |B| ε_A + |A| ε_B + ε_A ε_B + Σ_{i + j ≥ n} |B_i| |A_j| + rounding.
 //! ```
 //!
-//! *The largest norm*: that of [[a, b], [c, d]] is (|z| + |w|)/2 with z = a + d + i (b − c), w = a − d + i (b + c). With
+//! *The largest norm*: that of [[a, b], [c, d]] is (|z| + |w|)/2 with z = a + d + i (b − c), w = a − d + i
+//! (b + c). With
 //! |z(t)|² = Σ r_k t^k, r_k = Σ Re z_i z̄_j over i + j = k, it is at most r_0 + Σ |r_k|. Where M(t) turns by an angle that varies with
-//! t, all r_k but r_0 vanish, and the bound is 1, while Σ |M_j| grows like an exponential of the angle's range. So errors of
-//! turns add up and are not multiplied.
+//! t, all r_k but r_0 vanish, and the bound is 1, while Σ |M_j| grows like an exponential of the angle's
+//! range. So errors of turns add up and are not multiplied.
 //!
-//! *Rounding*, u the unit of the numbers, in the norm of Frobenius, which is at most √2 times the spectral one. An entry of
-//! B_i A_j passes through at most 2 (i + j) + 3 operations on its way into the coefficient i + j, so the product's is at most
-//! 2 u Σ (2 i + 2 j + 4) |B_i| |A_j|, the room left covering u² terms. For a part of the interval, t = α + β t' with
+//! *Rounding*, u the unit of the numbers, in the norm of Frobenius, which is at most √2 times the spectral
+//! one. An entry of B_i A_j passes through at most 2 (i + j) + 3 operations on its way into the coefficient
+//! i + j, so the product's is at most 2 u Σ (2 i + 2 j + 4) |B_i| |A_j|, the room left covering u² terms. For
+//! a part of the interval, t = α + β t' with
 //! |α| + |β| ≤ 1, the coefficient M_j passes through j + 1 sums at most and through products with α and β, j of them, each
-//! within 3 u: √2 u Σ (6 j + 6) |M_j|. The bounds themselves are computed in doubles: [`UP`] covers their roundings, and
-//! [`FLOOR`] what is lost where numbers underflow.
+//! within 3 u: √2 u Σ (6 j + 6) |M_j|. The bounds themselves are computed in doubles: [`UP`] covers their
+//! roundings, and [`FLOOR`] what is lost where numbers underflow.
 
 use super::coefficient::{Coefficient, near_ball};
 use super::lanes::Lanes;
@@ -171,7 +174,8 @@ impl<T: Coefficient> Map<T> {
         Map::kept(terms, 0.0, f64::INFINITY, 0)
     }
 
-    /// Without a turn; the terms that are too many go to the error. No value of the terms kept exceeds `known` in norm.
+    /// Without a turn; the terms that are too many go to the error. No value of the terms kept exceeds
+    /// `known` in norm.
     #[inline(always)]
     fn kept(mut terms: Vec<Entries<T>>, mut error: f64, known: f64, exponent: i128) -> Self {
         if terms.len() > T::TERMS {
@@ -335,8 +339,8 @@ impl<T: Coefficient> Map<T> {
         Map { least: self.least, ..Map::bounded(terms, error, known, self.exponent) }
     }
 
-    /// The turn, followed along t from 0 to α, where the image's direction is `towards`, in so small steps that it changes by less than
-    /// a right angle in each.
+    /// The turn, followed along t from 0 to α, where the image's direction is `towards`, in so small steps
+    /// that it changes by less than a right angle in each.
     #[inline(always)]
     pub fn turn_moved(&self, alpha: f64, towards: Option<f64>) -> Option<Turn> {
         let mut turn = self.turn?;

@@ -1,18 +1,19 @@
-//! The half period in the logarithm of the period: a matrix product over a rotation of the circle, renormalized by Euclid's
-//! algorithm (proofs/RETURNS.md).
+//! The half period in the logarithm of the period: a matrix product over a rotation of the circle,
+//! renormalized by Euclid's algorithm (proofs/RETURNS.md).
 //!
-//! The base's step is the unit of time, s its strength, σ = sin θ = √(s − s²/4), k that of the other clock. Right in the middle
-//! of a base's kick, in the coordinates (x, v/σ), the base turns clockwise by θ a step. A kick of the other clock at the offset
-//! x behind it, pulled back to it, is with u = 1 − s x/2
+//! The base's step is the unit of time, s its strength, σ = sin θ = √(s − s²/4), k that of the other clock.
+//! Right in the middle of a base's kick, in the coordinates (x, v/σ), the base turns clockwise by θ a step. A
+//! kick of the other clock at the offset x behind it, pulled back to it, is with u = 1 − s x/2
 //!
 //! ```text
 //!     K(x) = 1 + k [[u x, σ x²], [−u²/σ, −u x]],
 //! ```
 //!
-//! a polynomial in x. (Beyond the base's own limit, s ≤ 0 and s ≥ 4, the velocity has another unit κ in place of σ, and the base's
-//! step is [[c, κ], [−σ²/κ, c]], c = 1 − s/2.) From kick to kick the offset moves by p/q mod 1, and the state by K(x') R(nθ), n = ⌊x + p/q⌋. So the half
-//! period is a product of such maps along the orbit of x, half a kick before it, and what is left up to T/2 after it. Winding
-//! comes out of the same run: each product has its [`Turn`], so the sign changes of x are known without following them.
+//! a polynomial in x. (Beyond the base's own limit, s ≤ 0 and s ≥ 4, the velocity has another unit κ in place
+//! of σ, and the base's step is [[c, κ], [−σ²/κ, c]], c = 1 − s/2.) From kick to kick the offset moves by p/q
+//! mod 1, and the state by K(x') R(nθ), n = ⌊x + p/q⌋. So the half period is a product of such maps along the
+//! orbit of x, half a kick before it, and what is left up to T/2 after it. Winding comes out of the same run:
+//! each product has its [`Turn`], so the sign changes of x are known without following them.
 
 mod branch;
 mod coefficient;
@@ -39,13 +40,15 @@ use number::{Ball, Ratio, Rational, Real, Twofold};
 /// The precisions, in bits.
 pub const PRECISIONS: [u32; 3] = [53, 106, 256];
 
-/// From so many kicks of each clock on, return maps in doubles are cheaper than the filter's kicks (tests/bench/README.md).
+/// From so many kicks of each clock on, return maps in doubles are cheaper than the filter's kicks
+/// (tests/bench/README.md).
 const LONG: u64 = 1 << 14;
 
 /// From so many on, return maps in two doubles are cheaper than kicks in 128 bits.
 const LONG_FOR_BITS: u64 = 1 << 9;
 
-/// Whether the period is so long that its return maps are to be tried before its kicks, in doubles or in more bits.
+/// Whether the period is so long that its return maps are to be tried before its kicks, in doubles or in more
+/// bits.
 pub fn is_worth(ratio: Ratio, bits: u32) -> bool {
     ratio.p().min(ratio.q()) >= if bits > 53 { LONG_FOR_BITS } else { LONG }
 }
@@ -59,8 +62,8 @@ pub enum Wanted {
     Nodes,
 }
 
-/// The half period to the digits of numbers of so many bits; `None` where the bound loses all digits, where a partial
-/// quotient asks for too many products, and where the work was stopped.
+/// The half period to the digits of numbers of so many bits; `None` where the bound loses all digits, where a
+/// partial quotient asks for too many products, and where the work was stopped.
 ///
 /// The base is the clock by which the other one's kicks distort less, or the other where that fails.
 pub fn run<S: Real>(clocks: &LongClocks<S>, bits: u32, wanted: Wanted) -> Option<Ends> {
@@ -89,8 +92,8 @@ fn better<S: Real>(clocks: &LongClocks<S>, bits: u32, wanted: Wanted) -> Option<
     if decides(&second) { second } else { first.or(second) }
 }
 
-/// A run with the fast or the slow clock as the base. The number of kicks of the rarer clock decides which numbers know its first
-/// levels well enough (`euclid::suffices`).
+/// A run with the fast or the slow clock as the base. The number of kicks of the rarer clock decides which
+/// numbers know its first levels well enough (`euclid::suffices`).
 fn over<S: Real>(clocks: &LongClocks<S>, fast: bool, bits: u32, wanted: Wanted) -> Option<Found> {
     match (bits, clocks.shorter_bits()) {
         (0..=53, 0..=38) => over_in::<S, f64>(clocks, fast, bits, wanted),
@@ -111,7 +114,8 @@ fn over_in<S: Real, T: Walk>(clocks: &LongClocks<S>, fast: bool, bits: u32, want
 
 /// The numbers of a first level, and in them the walk with products of so many bits.
 ///
-/// No type of strengths enters: the walk, most of this room's code, is compiled here and not once more by every crate that asks.
+/// No type of strengths enters: the walk, most of this room's code, is compiled here and not once more by
+/// every crate that asks.
 trait Walk: Coefficient {
     fn walked(frame: &Frame<Self>, bits: u32) -> Option<Found>;
 }
@@ -145,7 +149,8 @@ fn prefers_fast<S: Real>(clocks: &LongClocks<S>) -> bool {
     distortion(s, k) <= distortion(k * ratio, s * ratio)
 }
 
-/// The norm of a kick k in the coordinates of a base s, about; far more where the base is beyond its own limit.
+/// The norm of a kick k in the coordinates of a base s, about; far more where the base is beyond its own
+/// limit.
 fn distortion(s: f64, k: f64) -> f64 {
     let square = s * (1.0 - 0.25 * s);
     if square > 0.0 { k.abs() / square.sqrt() } else { 1e6 + k.abs() }

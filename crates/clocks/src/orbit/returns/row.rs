@@ -1,12 +1,13 @@
 //! The product of some equidistant parts of one function, in one go: no bound and no list for each of them.
 //!
-//! On a part t = α + β t', |α| + |β| ≤ 1, the coefficients of M are at most f_0 = |M| and f_j = |β|^j Σ_k C(k, j) |M_k| in norm, whatever
-//! α is. So the product of q parts, Σ P_j t'^j, has the majorant f^q, and with v = f_0 + what parts lack:
+//! On a part t = α + β t', |α| + |β| ≤ 1, the coefficients of M are at most f_0 = |M| and f_j = |β|^j Σ_k
+//! C(k, j) |M_k| in norm, whatever α is. So the product of q parts, Σ P_j t'^j, has the majorant f^q, and
+//! with v = f_0 + what parts lack:
 //!
-//! * *terms left out.* A degree once passed is not lost again, so all that is left out of the products beyond the coefficient c is at
-//!   most Σ_{j ≥ c} [t^j] f^q ≤ f(R)^q R^{−c}, for each R ≥ 1.
-//! * *rounding.* The i-th product's is at most 2 u g^i (4 + 2 i f'(1)/g), g = f(1) (see [`map`](super::map)), and what follows it
-//!   takes it v^{q − i} times.
+//! * *terms left out.* A degree once passed is not lost again, so all that is left out of the products beyond
+//!   the coefficient c is at most Σ_{j ≥ c} [t^j] f^q ≤ f(R)^q R^{−c}, for each R ≥ 1.
+//! * *rounding.* The i-th product's is at most 2 u g^i (4 + 2 i f'(1)/g), g = f(1) (see [`map`](super::map)),
+//!   and what follows it takes it v^{q − i} times.
 //!
 //! Where g is much more than f_0, this would lose digits: then there is no such row.
 
@@ -248,8 +249,8 @@ mod tests {
             cut += usize::from(row.terms().len() < (n - 1) * q + 1);
             let parts = places.iter().map(|&alpha| exact.part(&Twofold::of(alpha), &Twofold::of(beta)));
             let single = parts.reduce(|earlier, later| later.after(&earlier)).unwrap();
-            // Some 8 roundings of 2 u 4 (4 + 16/5) and as much again of parts, and what is left out on purpose, each times what the other
-            // factors make of it.
+            // Some 8 roundings of 2 u 4 (4 + 16/5) and as much again of parts, and what is left out on
+            // purpose, each times what the other factors make of it.
             let most = (3e-13 + 100.0 * whole.least) * whole.norm().powi(q as i32);
             assert!(row.error() < most, "{case}: {} {most}", row.error());
             for t in [-1.0, -0.4, 0.0, 0.7, 1.0] {

@@ -1,9 +1,10 @@
 //! One branch many times: products of a slowly varying matrix function along an arithmetic progression.
 //!
-//! P_n(x) = F(x + (n − 1) d) … F(x + d) F(x), so P_2n(x) = P_n(x + n d) P_n(x). F varies by so much over its interval of length
-//! L, and P_n by as much over a piece of length L/n. So there are about 2 n pieces on which P_n is known, each as long as two
-//! of the next kind, and k/n places where it is asked for: a product of k factors costs about √k products of functions. Its
-//! error grows by a factor per doubling, like a power of k. From [`slow::WORTH`] factors on, [`Slow`] takes fewer and keeps it.
+//! P_n(x) = F(x + (n − 1) d) … F(x + d) F(x), so P_2n(x) = P_n(x + n d) P_n(x). F varies by so much over its
+//! interval of length L, and P_n by as much over a piece of length L/n. So there are about 2 n pieces on
+//! which P_n is known, each as long as two of the next kind, and k/n places where it is asked for: a product
+//! of k factors costs about √k products of functions. Its error grows by a factor per doubling, like a power
+//! of k. From [`slow::WORTH`] factors on, [`Slow`] takes fewer and keeps it.
 
 use super::branch::{Branch, Budget};
 use super::coefficient::Coefficient;
@@ -85,7 +86,8 @@ impl<T: Coefficient> Run<T> {
         budget.product(&second, &first)
     }
 
-    /// Where the pieces of length L/n begin of which one holds x and half a piece beyond it, in halves of one.
+    /// Where the pieces of length L/n begin of which one holds x and half a piece beyond it, in halves of
+    /// one.
     fn place(&self, log2: u32, x: i128) -> i128 {
         (x - self.branch.start) / ((self.branch.length >> log2) / 2)
     }

@@ -1,4 +1,5 @@
-//! Complex power series in t, cut off after [`Coefficient::TERMS`]: what is guessed with them is proven by maps afterwards.
+//! Complex power series in t, cut off after [`Coefficient::TERMS`]: what is guessed with them is proven by
+//! maps afterwards.
 
 use num_complex::Complex64;
 

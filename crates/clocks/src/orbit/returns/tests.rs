@@ -72,7 +72,8 @@ fn return_maps_are_what_kicks_give() {
     assert_eq!((two, long), ([pairs; 2], [pairs; 2]));
 }
 
-/// Beside simple ratios, where a partial quotient is so large that its product is taken in pieces: elliptic, hyperbolic, across
+/// Beside simple ratios, where a partial quotient is so large that its product is taken in pieces: elliptic,
+/// hyperbolic, across
 /// |Tr| = 2. Two doubles decide them all.
 #[test]
 fn slow_products_are_what_kicks_give() {
@@ -118,8 +119,8 @@ fn return_maps_are_what_kicks_give_beyond_the_limit() {
     assert!(10 * labels > 9 * pairs, "{labels} of {pairs}");
 }
 
-/// Periods of 2^39 to 2^120 kicks, which no tier follows: levels that are rounded on the way down say what long numbers throughout say,
-/// and with nearly all digits of the numbers asked for.
+/// Periods of 2^39 to 2^120 kicks, which no tier follows: levels that are rounded on the way down say what
+/// long numbers throughout say, and with nearly all digits of the numbers asked for.
 #[test]
 fn levels_in_fewer_bits_are_what_long_numbers_give() {
     let mut next = numbers(3);

@@ -1,9 +1,9 @@
 //! Lifts: by how much a matrix on its way from the identity has turned the vector (1, 0).
 //!
-//! The angle is kept as whole turns and the direction in which the vector now points, so it is exact however large it is.
-//! Lifts compose: G after F turns (1, 0) by φ_F + φ_G + δ, δ the difference between how far G turns F(1, 0) and how far it
-//! turns (1, 0). A lift is increasing and commutes with half turns, so −ψ < δ < π − ψ, ψ the direction of F(1, 0) less half
-//! turns, and δ is known from directions alone.
+//! The angle is kept as whole turns and the direction in which the vector now points, so it is exact however
+//! large it is. Lifts compose: G after F turns (1, 0) by φ_F + φ_G + δ, δ the difference between how far G
+//! turns F(1, 0) and how far it turns (1, 0). A lift is increasing and commutes with half turns, so −ψ < δ <
+//! π − ψ, ψ the direction of F(1, 0) less half turns, and δ is known from directions alone.
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
 
@@ -21,8 +21,8 @@ pub struct Turn {
 const NEAR: f64 = 0.0039;
 const OWN: f64 = 0.016;
 
-/// The angle of a vector that is not zero, in [-π, π], within [`NEAR`]: directions need no more, and an arctangent costs as much as
-/// a product of matrices.
+/// The angle of a vector that is not zero, in [-π, π], within [`NEAR`]: directions need no more, and an
+/// arctangent costs as much as a product of matrices.
 #[inline(always)]
 pub fn angle([x, y]: [f64; 2]) -> f64 {
     let (wide, high) = (x.abs(), y.abs());
@@ -60,7 +60,8 @@ impl Turn {
         Turn { whole: self.whole + whole as i128, angle }
     }
 
-    /// `later` after self, where the vector ends in the direction `angle`; `None` where directions do not decide.
+    /// `later` after self, where the vector ends in the direction `angle`; `None` where directions do not
+    /// decide.
     #[inline(always)]
     pub fn then(self, later: Turn, angle: f64) -> Option<Turn> {
         let difference = principal(angle - self.angle - later.angle);
@@ -71,8 +72,8 @@ impl Turn {
         Some(Turn { whole: turn.whole + later.whole, ..turn })
     }
 
-    /// The difference δ, known but for a whole turn, where it is nearly a half turn: δ + ψ lies between 0 and π. `None` where ψ is next to
-    /// one of them.
+    /// The difference δ, known but for a whole turn, where it is nearly a half turn: δ + ψ lies between 0 and
+    /// π. `None` where ψ is next to one of them.
     #[cold]
     fn nearly_opposite(self, difference: f64) -> Option<f64> {
         let psi = self.angle.rem_euclid(PI);
@@ -110,7 +111,8 @@ mod tests {
         }
     }
 
-    /// A hyperbolic matrix draws nearly every direction to one axis, those beside the other axis to either end of it.
+    /// A hyperbolic matrix draws nearly every direction to one axis, those beside the other axis to either
+    /// end of it.
     #[test]
     fn lifts_compose_where_directions_are_nearly_opposite() {
         let mut decided = 0;
@@ -122,7 +124,8 @@ mod tests {
                     let (along, across) = (x * cosine + y * sine, y * cosine - x * sine);
                     (across * 1e6).atan2(along * 1e-6)
                 };
-                // A symmetric positive matrix turns nothing by a right angle, and as much on the way from the identity.
+                // A symmetric positive matrix turns nothing by a right angle, and as much on the way from the
+                // identity.
                 let turned = |angle: f64| principal(image(angle) + repelling - angle);
                 let (start, end) = (turned(0.0), turned(first));
                 if [start, end].iter().any(|turn| turn.abs() > FRAC_PI_2 - 1e-9) {

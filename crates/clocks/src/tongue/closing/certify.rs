@@ -1,7 +1,7 @@
 //! One closing in a box that is proven to hold it.
 //!
-//! **Uniqueness**: Krawczyk's operator on F(s, ρ) = (X, Y), X and Y the two entries, maps a box strictly into itself; so
-//! the box holds exactly one common zero, and a simple one (Krawczyk 1969, Moore 1977).
+//! **Uniqueness**: Krawczyk's operator on F(s, ρ) = (X, Y), X and Y the two entries, maps a box strictly into
+//! itself; so the box holds exactly one common zero, and a simple one (Krawczyk 1969, Moore 1977).
 
 use num_traits::{One, Signed};
 
@@ -15,7 +15,8 @@ use number::error::{Error, Result};
 use number::parallel::go_on;
 use number::{Ball, Ratio, Rational, Sign, rational};
 
-/// A closed tongue, certified: the box s × ρ holds exactly one common zero of the two entries, and it is tongue m's.
+/// A closed tongue, certified: the box s × ρ holds exactly one common zero of the two entries, and it is
+/// tongue m's.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Closing {
     pub ratio: Ratio,
@@ -32,13 +33,15 @@ pub struct Closing {
 const BITS: u32 = 512;
 const MOST_BITS: u32 = 1 << 14;
 
-/// The box's half width for each [`BITS`] bits: 2^-100 of its centre, while the centre is good to about 2^-400.
+/// The box's half width for each [`BITS`] bits: 2^-100 of its centre, while the centre is good to about
+/// 2^-400.
 const BOX: i64 = -100;
 
 /// Digits of an edge that doubles cannot separate from its neighbour.
 const DIGITS: u32 = 60;
 
-/// A bracket of ρ is halved so often before more bits are tried: balls may lose more of them over a period than there are.
+/// A bracket of ρ is halved so often before more bits are tried: balls may lose more of them over a period
+/// than there are.
 const HALVINGS: u32 = 8;
 
 /// Which entry's zero is the lower edge.
@@ -174,8 +177,8 @@ impl Start {
         self.belongs(&s, &rho)?.then(|| self.closing(s, rho)).transpose()
     }
 
-    /// Whether the zero in the box is tongue m's edge and no other's: at both ends of the box's ρ the entries'
-    /// neighbouring zeros stay away from its s.
+    /// Whether the zero in the box is tongue m's edge and no other's: at both ends of the box's ρ the
+    /// entries' neighbouring zeros stay away from its s.
     fn belongs(&self, s: &Enclosure, rho: &Enclosure) -> Result<bool> {
         let index = self.m.div_ceil(2) as usize;
         let early = Tongues::new(self.ratio, &rho.lo)?;
@@ -204,7 +207,8 @@ impl Start {
     /// The simplest rationals in the box, if they are the closing: the box holds no other.
     fn rational(&self, s: &Enclosure, rho: &Enclosure) -> Option<(Rational, Rational)> {
         let (s, rho) = (simplest(&s.lo, &s.hi), simplest(&rho.lo, &rho.hi));
-        // Half the box's own digits: a coincidence of that kind would be a wonder, and is checked all the same.
+        // Half the box's own digits: a coincidence of that kind would be a wonder, and is checked all the
+        // same.
         let short = s.denom().bits() < 100 && rho.denom().bits() < 100;
         let signs =
             short.then(|| Decidable::half_signs(&TwoClocks::with_rho(self.ratio, s.clone(), rho.clone())))?;

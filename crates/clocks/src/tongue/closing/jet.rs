@@ -33,8 +33,8 @@ impl Jet {
     }
 }
 
-/// The entries' jets over s × ρ, by plain ball arithmetic: for short periods and small boxes, whose growth over the
-/// period the bits outlast.
+/// The entries' jets over s × ρ, by plain ball arithmetic: for short periods and small boxes, whose growth
+/// over the period the bits outlast.
 pub(crate) fn jets(ratio: Ratio, s: &Ball, rho: &Ball, pair: [Entry; 2], bits: u32) -> Result<[Jet; 2]> {
     let schedule = Schedule::two_clocks(ratio)?;
     let exact = |n: u64, d: u64| Ball::from_rational(&Rational::new(n.into(), d.into()), bits);

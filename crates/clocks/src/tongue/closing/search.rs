@@ -1,12 +1,13 @@
 //! Where tongues close: the pairs (s*, ρ*) at which both edges are one point and Q = ±I.
 //!
-//! The two edges of tongue m belong to two problems, so they can cross as ρ grows. **Existence**: at two rational
-//! ρ their order is certified, and differs; eigenvalues are continuous in ρ, so between the two they meet.
-//! **Uniqueness**: Krawczyk's operator on F(s, ρ) = (X, Y), X and Y the two entries, maps a box strictly into
-//! itself; so the box holds exactly one common zero, and a simple one (Krawczyk 1969, Moore 1977). **Completeness**: for
-//! ρ > 0 all zeros s of an entry are real, so the common zeros in a range of ρ are exactly the real zeros there of the
-//! resultant of X and Y in s, a polynomial in ρ; Descartes' rule isolates them. That is done for p + q up to
-//! [`COMPLETE_UP_TO`]; beyond it the search finds every crossing that its samples of ρ bracket, and says so.
+//! The two edges of tongue m belong to two problems, so they can cross as ρ grows. **Existence**: at two
+//! rational ρ their order is certified, and differs; eigenvalues are continuous in ρ, so between the two they
+//! meet. **Uniqueness**: Krawczyk's operator on F(s, ρ) = (X, Y), X and Y the two entries, maps a box
+//! strictly into itself; so the box holds exactly one common zero, and a simple one (Krawczyk 1969,
+//! Moore 1977). **Completeness**: for ρ > 0 all zeros s of an entry are real, so the common zeros in a range
+//! of ρ are exactly the real zeros there of the resultant of X and Y in s, a polynomial in ρ; Descartes' rule
+//! isolates them. That is done for p + q up to [`COMPLETE_UP_TO`]; beyond it the search finds every crossing
+//! that its samples of ρ bracket, and says so.
 //!
 //! ```
 //! use kickdrift_clocks::number::rational::ratio;
@@ -65,7 +66,8 @@ pub struct Found {
 /// The closings of p/q in a range of ρ.
 ///
 /// # Errors
-/// A range that is not positive or empty, fewer than 2 samples, and the errors of [`Tongues::new`](crate::tongue::Tongues::new).
+/// A range that is not positive or empty, fewer than 2 samples, and the errors of
+/// [`Tongues::new`](crate::tongue::Tongues::new).
 pub fn closings(ratio: Ratio, search: &Search) -> Result<Found> {
     let rhos = samples(search)?;
     let short = ratio.kicks() <= COMPLETE_UP_TO;
@@ -78,7 +80,8 @@ pub fn closings(ratio: Ratio, search: &Search) -> Result<Found> {
 /// Tongue m closes once, or an odd number of times, for ρ in a closed range.
 type Bracket = (u64, Rational, Rational);
 
-/// The tongues that close at each zero of the resultants, and whether exactly one closes at each zero: then these are all.
+/// The tongues that close at each zero of the resultants, and whether exactly one closes at each zero: then
+/// these are all.
 fn by_elimination(ratio: Ratio, search: &Search) -> Result<(Vec<Bracket>, bool)> {
     let (mut found, mut complete) = (Vec::new(), true);
     for odd in [true, false].into_iter().filter(|&odd| search.m.is_none_or(|m| (m % 2 == 1) == odd)) {

@@ -39,8 +39,8 @@ impl Batch {
         radius: [0.0; LANES],
     };
 
-    /// Sets κ to the middle of the intervals where nothing better is known: a mode that proved something, if only a
-    /// little, is.
+    /// Sets κ to the middle of the intervals where nothing better is known: a mode that proved something, if
+    /// only a little, is.
     #[inline(always)]
     pub fn guess(&mut self) {
         let [lo, hi] = &self.inside;

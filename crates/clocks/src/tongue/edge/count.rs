@@ -1,22 +1,24 @@
 //! How many eigenvalues lie below κ: a Sturm count in doubles, and what it proves.
 //!
-//! Follow the string from t = 0: x ← x + ℓ v, v ← v − κ m x. The number of eigenvalues below κ is the number of
-//! sign changes of x on the way (to a pinned end), and one more where x v < 0 at a free end (Sturm's oscillation
-//! theorem; the zero eigenvalue of C included). So one pass counts for two problems.
+//! Follow the string from t = 0: x ← x + ℓ v, v ← v − κ m x. The number of eigenvalues below κ is the number
+//! of sign changes of x on the way (to a pinned end), and one more where x v < 0 at a free end (Sturm's
+//! oscillation theorem; the zero eigenvalue of C included). So one pass counts for two problems.
 //!
-//! **Theorem** (after Kahan 1966 and Demmel and Kahan 1990). With u = 2^-53 and n nodes the computed count N̂(κ)
-//! is the exact count of a string whose masses and lengths are off by factors within (1 ± u)^±(2n + 5), so
+//! **Theorem** (after Kahan 1966 and Demmel and Kahan 1990). With u = 2^-53 and n nodes the computed count
+//! N̂(κ) is the exact count of a string whose masses and lengths are off by factors within (1 ± u)^±(2n + 5),
+//! so
 //!
 //! ```text
 //!     N(κ (1 - η)) <= N̂(κ) <= N(κ (1 + η)),        η = (4n + 16) u.
 //! ```
 //!
 //! Proof. x̂_j = (x̂_{j−1} + ℓ_j v̂_{j−1}) (1 + δ') and v̂_j = (v̂_{j−1} − κ m_j x̂_j (1 + δ)) (1 + δ''), the
-//! operations being fused. Divide x̂_j by X_j = Π (1 + δ') and v̂_j by V_j = Π (1 + δ'') up to j: no sign changes, and
-//! what is left is the exact recurrence with ℓ_j V_{j−1}/X_{j−1} and m_j (1 + δ) X_j/V_{j−1}, where m_j itself is
-//! within two more roundings of the string's mass. Each is off by a factor within (1 ± u)^±(2n + 5), so by
-//! monotonicity (see [`HalfString`]) the eigenvalues are by one within (1 ± u)^±(4n + 10). An underflowing result is
-//! off by less than u/4 of the larger one of |x| and |v|, which rescaling by powers of two keeps above 2^-500. ∎
+//! operations being fused. Divide x̂_j by X_j = Π (1 + δ') and v̂_j by V_j = Π (1 + δ'') up to j: no sign
+//! changes, and what is left is the exact recurrence with ℓ_j V_{j−1}/X_{j−1} and m_j (1 + δ) X_j/V_{j−1},
+//! where m_j itself is within two more roundings of the string's mass. Each is off by a factor within (1 ±
+//! u)^±(2n + 5), so by monotonicity (see [`HalfString`]) the eigenvalues are by one within (1 ±
+//! u)^±(4n + 10). An underflowing result is off by less than u/4 of the larger one of |x| and |v|, which
+//! rescaling by powers of two keeps above 2^-500. ∎
 
 use super::batch::Batch;
 use crate::tongue::string::lanes::{LANES, Lanes, lanes, lesser};
@@ -30,8 +32,9 @@ pub fn uncertainty(string: &HalfString) -> f64 {
     (4.0 * string.nodes.len() as f64 + 16.0) * U
 }
 
-/// N̂(κ) of positive eigenvalues, whole numbers: of the four problems, for the κ of each lane. Above all eigenvalues every
-/// κ counts alike, so none is taken where numbers grow faster than [`HalfString::block`] allows for.
+/// N̂(κ) of positive eigenvalues, whole numbers: of the four problems, for the κ of each lane. Above all
+/// eigenvalues every κ counts alike, so none is taken where numbers grow faster than [`HalfString::block`]
+/// allows for.
 pub fn counts(string: &HalfString, kappa: &Lanes) -> [Lanes; 4] {
     let kappa = lanes(|i| lesser(kappa[i], 2.0 * string.upper_bound));
     string.instructions.compute(Counting { string, kappa: &kappa })

@@ -28,7 +28,8 @@ pub struct Effort {
     pub precise: u64,
 }
 
-/// So many edges of a long period cost less one by one than the string's laying out and all its modes side by side.
+/// So many edges of a long period cost less one by one than the string's laying out and all its modes side by
+/// side.
 const ONE_BY_ONE: usize = 64;
 
 /// More edges of a period that is not laid out are not looked for at a time: some hours of them.
@@ -203,8 +204,8 @@ impl Edges {
         self.sharpened(edge, &Enclosure::from(edge), digits)
     }
 
-    /// The edge to `digits` significant digits, from an enclosure that may be narrower than the edge's own. Where it holds another zero, or one on its
-    /// end, proven counts identify the edge.
+    /// The edge to `digits` significant digits, from an enclosure that may be narrower than the edge's own.
+    /// Where it holds another zero, or one on its end, proven counts identify the edge.
     pub fn sharpened(&self, edge: &Edge, start: &Enclosure, digits: u32) -> Result<Enclosure> {
         self.precise.fetch_add(1, Relaxed);
         let (entry, index, around) = (edge.entry, edge.index as usize, Some((edge.lo, edge.hi)));
@@ -222,7 +223,8 @@ impl Edges {
         Ok(precise::shrink(&function, &alone, &relative, true).expect("it is isolated"))
     }
 
-    /// As [`Edges::sharpened`] by return maps alone; `None` where they cannot decide it, and of a period that is not long.
+    /// As [`Edges::sharpened`] by return maps alone; `None` where they cannot decide it, and of a period that
+    /// is not long.
     ///
     /// # Errors
     /// Where the schedule is too long.
@@ -234,8 +236,8 @@ impl Edges {
         Ok(precise::shrink(&function, start, &tenth_power(digits), false))
     }
 
-    /// How an edge compares with a number, decided. An enclosure as narrow as it takes holds one zero, so a rational zero in it is the edge;
-    /// powers of π are no edges.
+    /// How an edge compares with a number, decided. An enclosure as narrow as it takes holds one zero, so a
+    /// rational zero in it is the edge; powers of π are no edges.
     ///
     /// # Errors
     /// Where the schedule is too long.
@@ -330,7 +332,8 @@ mod tests {
         let edges = Edges::new(Ratio::new(13717421, 109739369).unwrap(), &rho).unwrap();
         assert!(edges.string().is_err());
         let edge = edges.lone(Entry::A, 3).unwrap().unwrap();
-        // The slow kicks being small and close, the fast ones too: s = h1² L1 of the fifth half turn of a smooth force.
+        // The slow kicks being small and close, the fast ones too: s = h1² L1 of the fifth half turn of a
+        // smooth force.
         let smooth = (5.0 * std::f64::consts::PI / 13717421.0).powi(2) / (1.0 + 0.1);
         assert!((edge.middle() / smooth - 1.0).abs() < 1e-10, "{edge:?} {smooth}");
     }

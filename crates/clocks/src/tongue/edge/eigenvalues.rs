@@ -1,4 +1,5 @@
-//! Eigenvalues one by one: isolated by Sturm counts, improved by Newton's method, certified by Rayleigh quotients.
+//! Eigenvalues one by one: isolated by Sturm counts, improved by Newton's method, certified by Rayleigh
+//! quotients.
 
 use std::cell::RefCell;
 
@@ -16,7 +17,8 @@ const ROUNDS: u32 = 60;
 /// Halvings between two attempts.
 const HALVINGS: u32 = 4;
 
-/// A relative uncertainty that hardly ever shows in a double: below it an enclosure is as narrow as doubles get.
+/// A relative uncertainty that hardly ever shows in a double: below it an enclosure is as narrow as doubles
+/// get.
 const NEGLIGIBLE: f64 = 1e-17;
 
 /// A trial that leaves more than this part of the uncertainty is the last: doubles allow no better.
@@ -40,7 +42,8 @@ thread_local! {
     static SPACE: RefCell<Workspace> = RefCell::default();
 }
 
-/// The eigenvalues with the given indices, by entry, as narrow as doubles prove them; `None` where that is nothing.
+/// The eigenvalues with the given indices, by entry, as narrow as doubles prove them; `None` where that is
+/// nothing.
 pub fn eigenvalues(string: &HalfString, wanted: &Indices) -> [Vec<Option<Edge>>; 4] {
     SPACE.with_borrow_mut(|space| {
         let found = space.search(string, wanted);

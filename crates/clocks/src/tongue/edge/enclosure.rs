@@ -3,8 +3,8 @@
 use crate::tongue::string::Entry;
 use number::{Rational, rational};
 
-/// An edge of a tongue: the `index`-th positive zero of an entry, in an interval that holds no other zero of it unless
-/// others are within the last place of a double.
+/// An edge of a tongue: the `index`-th positive zero of an entry, in an interval that holds no other zero of
+/// it unless others are within the last place of a double.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Edge {
     pub entry: Entry,

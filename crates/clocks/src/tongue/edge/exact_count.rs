@@ -76,8 +76,8 @@ impl KickDrift<BigInt> for IntegerOrbit {
     }
 }
 
-/// Isolates a zero by halving with proven counts: for zeros so close that counts in doubles cannot separate them
-/// apart. `around`, if given, is where doubles saw it.
+/// Isolates a zero by halving with proven counts: for zeros so close that counts in doubles cannot separate
+/// them apart. `around`, if given, is where doubles saw it.
 pub fn isolate(
     function: &EntryFunction,
     string: &HalfString,

@@ -1,10 +1,11 @@
 //! An edge by Sturm counts in two doubles: 27 digits, however close its neighbours are.
 //!
-//! The theorem of `count` holds for any arithmetic whose sums and products are right to within a part ε of themselves:
-//! the computed count at κ is the exact one somewhere in κ (1 ± η), η = (4n + 16) ε. Here ε = 2^-99. So where the
-//! count is below the index at one point and not below it at another, the eigenvalue of that index lies between the two,
-//! each moved outward by η; and halving brings them together. Nothing needs to be known of the other eigenvalues. The entry's
-//! own values say where to look before a half: secants prove nothing, the counts beside them do.
+//! The theorem of `count` holds for any arithmetic whose sums and products are right to within a part ε of
+//! themselves: the computed count at κ is the exact one somewhere in κ (1 ± η), η = (4n + 16) ε. Here ε =
+//! 2^-99. So where the count is below the index at one point and not below it at another, the eigenvalue of
+//! that index lies between the two, each moved outward by η; and halving brings them together. Nothing needs
+//! to be known of the other eigenvalues. The entry's own values say where to look before a half: secants
+//! prove nothing, the counts beside them do.
 
 use super::enclosure::Enclosure;
 use crate::tongue::string::lanes::{power_of_two, rescaling};
@@ -79,8 +80,8 @@ impl Task for Halving<'_> {
     }
 }
 
-/// How far beside a secant's zero the counts are asked, relative to the interval: its curvature moves it by less, but where a neighbour
-/// is as close as that.
+/// How far beside a secant's zero the counts are asked, relative to the interval: its curvature moves it by
+/// less, but where a neighbour is as close as that.
 const CLOSE: f64 = f64::from_bits((1023 - 20) << 52);
 
 /// A κ below or above the eigenvalue, and the value there of the entry whose zero that is, times 2^-exponent.
@@ -106,7 +107,8 @@ fn look(string: &HalfString, entry: Entry, index: usize, kappa: Twofold, [lo, hi
     *(if count < index { lo } else { hi }) = Place { kappa, entry: Some(value) };
 }
 
-/// The computed count of a problem's positive eigenvalues below κ, and the entry's value there as a [`Place`] has it.
+/// The computed count of a problem's positive eigenvalues below κ, and the entry's value there as a [`Place`]
+/// has it.
 #[inline(always)]
 fn count(string: &HalfString, entry: Entry, kappa: Twofold) -> (usize, (f64, i64)) {
     let mut kicks = [kappa; KINDS];

@@ -26,14 +26,14 @@ pub(crate) struct EntryFunction {
 pub enum By {
     /// Kick by kick, in as many bits as it takes; exactly in the end.
     Kicks,
-    /// By return maps in doubles or two doubles, where the kicks are too many to be followed in 256 bits. A sign that these maps cannot
-    /// decide stays unknown.
+    /// By return maps in doubles or two doubles, where the kicks are too many to be followed in 256 bits. A
+    /// sign that these maps cannot decide stays unknown.
     Returns,
 }
 
-/// Bits beyond which the refine tier is not asked before exact arithmetic: so many times what the cell's size asks. Of a
-/// long period they still cost far less than exact numbers, whose length grows with every kick; and a mode that lives
-/// far from the ends wants twice the digits that its ends are small by.
+/// Bits beyond which the refine tier is not asked before exact arithmetic: so many times what the cell's size
+/// asks. Of a long period they still cost far less than exact numbers, whose length grows with every kick;
+/// and a mode that lives far from the ends wants twice the digits that its ends are small by.
 const BITS_BEFORE_EXACT: u32 = 64;
 
 impl EntryFunction {
@@ -71,8 +71,8 @@ impl EntryFunction {
         }
     }
 
-    /// The entry's value at s, with a certified sign, from `bits` bits; the exact ball 0 where it is 0. And how many zeros lie
-    /// below s, if those bits decide it.
+    /// The entry's value at s, with a certified sign, from `bits` bits; the exact ball 0 where it is 0. And
+    /// how many zeros lie below s, if those bits decide it.
     ///
     /// `None` where return maps cannot decide it.
     pub fn value(&self, s: &Rational, bits: u32) -> Option<(Ball, Option<u64>)> {
@@ -95,14 +95,15 @@ impl EntryFunction {
         self.bits_of_returns().find_map(|bits| self.counted(&self.orbit(s, bits)?))
     }
 
-    /// In 256 bits return maps cost a hundred times what they do in two doubles, and as much as some 10^5 kicks.
+    /// In 256 bits return maps cost a hundred times what they do in two doubles, and as much as some 10^5
+    /// kicks.
     fn bits_of_returns(&self) -> impl Iterator<Item = u32> {
         let most = if self.ratio.kicks() > MOST_KICKS { 256 } else { 106 };
         returns::PRECISIONS.into_iter().filter(move |&bits| bits <= most)
     }
 
-    /// In how many bits a value is worth computing that is to be known to so many binary digits of its size between two zeros:
-    /// return maps lose fewer than kicks do.
+    /// In how many bits a value is worth computing that is to be known to so many binary digits of its size
+    /// between two zeros: return maps lose fewer than kicks do.
     pub fn bits_for(&self, digits: u32) -> u32 {
         match self.by {
             By::Kicks => (digits + 96).next_multiple_of(32),

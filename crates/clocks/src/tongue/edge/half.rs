@@ -1,23 +1,25 @@
 //! The recurrence from one end of the string to the node r, and what rounding took from it.
 //!
-//! Two operations lead from a node to the next, and their errors f and e are known exactly, being those of a product
-//! and a sum each:
+//! Two operations lead from a node to the next, and their errors f and e are known exactly, being those of a
+//! product and a sum each:
 //!
 //! ```text
 //!     v' = v - k x - f,        x' = x + ℓ v' + e,        k = κ m + δ.
 //! ```
 //!
-//! So the force in the spring behind is F = v + e/ℓ (e, ℓ of that spring), and the residual of a node's row is
+//! So the force in the spring behind is F = v + e/ℓ (e, ℓ of that spring), and the residual of a node's row
+//! is
 //!
 //! ```text
 //!     ρ = F - F' - κ m x = f + δ x + e/ℓ - e'/ℓ'.
 //! ```
 //!
-//! Σ x ρ over the nodes before r is Σ x (f + δ x) + Σ e F − (e/ℓ) x at r (summation by parts); that last term cancels
-//! against the row at r. Computed is Σ x (f + δ x) + Σ e v, term by term, so that the roundings' parts need no sums of
-//! their own.
+//! Σ x ρ over the nodes before r is Σ x (f + δ x) + Σ e F − (e/ℓ) x at r (summation by parts); that last term
+//! cancels against the row at r. Computed is Σ x (f + δ x) + Σ e v, term by term, so that the roundings'
+//! parts need no sums of their own.
 //!
-//! **Bounds.** To first order |f| ≤ u (|k x| + |v'|), |δ| ≤ 3u κ m, |e'/ℓ'| ≤ u (|v'| + |x'|/ℓ'), |x'|/ℓ' ≤ |x|/ℓ' + |F'|:
+//! **Bounds.** To first order |f| ≤ u (|k x| + |v'|), |δ| ≤ 3u κ m, |e'/ℓ'| ≤ u
+//! (|v'| + |x'|/ℓ'), |x'|/ℓ' ≤ |x|/ℓ' + |F'|:
 //!
 //! ```text
 //!     |ρ| <= u (4 κ m |x| + (1/ℓ + 1/ℓ') |x| + |F| + 3 |F'|),
@@ -30,8 +32,8 @@ use crate::tongue::string::lanes::{Lanes, lanes, range};
 use crate::tongue::string::{HalfString, KINDS, Step};
 use number::vector::Vector;
 
-/// A half on its way to r: the node's amplitude, the slope before it, and the sums over the nodes passed, in the scale
-/// of x (sums: of x²).
+/// A half on its way to r: the node's amplitude, the slope before it, and the sums over the nodes passed, in
+/// the scale of x (sums: of x²).
 #[derive(Clone, Copy)]
 pub struct Half<V> {
     pub x: V,
@@ -86,7 +88,8 @@ impl<'a> Way<'a> {
     }
 }
 
-/// k − κ m for the rounded kick, the mass being m and what rounding took from it: to within 2^-50 of itself and 2^-103 κ m.
+/// k − κ m for the rounded kick, the mass being m and what rounding took from it: to within 2^-50 of itself
+/// and 2^-103 κ m.
 #[inline(always)]
 pub fn difference<V: Vector>(kappa: V, mass: V, lost: V, kick: V) -> V {
     kappa.neg_mul_add(lost, kappa.neg_mul_add(mass, kick))
@@ -136,7 +139,8 @@ impl<V: Vector> Half<V> {
         half
     }
 
-    /// The kick at a node, with its amplitude (or 0 for none), and the drift to the next, as long as the spring (or 0).
+    /// The kick at a node, with its amplitude (or 0 for none), and the drift to the next, as long as the
+    /// spring (or 0).
     #[inline(always)]
     fn pass<const PROVE: bool>(&mut self, tables: &Tables<V>, step: &Step, amplitude: V, length: V) {
         let kick = tables.kicks[step.kind];

@@ -59,8 +59,8 @@ impl Interval {
 pub(crate) struct Contents {
     /// The most eigenvalues of a problem.
     most: u32,
-    /// A bit for each problem of which there is one: the eigenvalue before it lies below lo (1 + η), the one after above
-    /// hi (1 − η).
+    /// A bit for each problem of which there is one: the eigenvalue before it lies below lo (1 + η), the one
+    /// after above hi (1 − η).
     alone: u32,
 }
 
@@ -97,8 +97,8 @@ impl Limits {
 /// Memory for the search.
 #[derive(Debug, Default)]
 pub(crate) struct Cutting {
-    /// The intervals to cut, from below; those of the next round; in how many points they are cut; the points; what is found
-    /// there.
+    /// The intervals to cut, from below; those of the next round; in how many points they are cut; the
+    /// points; what is found there.
     open: Vec<Interval>,
     next: Vec<Interval>,
     cuts: Vec<usize>,
@@ -110,8 +110,8 @@ pub(crate) struct Cutting {
 const POINTS_AT_A_TIME: usize = 64;
 
 impl Cutting {
-    /// Cuts the range of all eigenvalues until those wanted are alone, or counts in doubles cannot separate them, and
-    /// shows each interval to `found`.
+    /// Cuts the range of all eigenvalues until those wanted are alone, or counts in doubles cannot separate
+    /// them, and shows each interval to `found`.
     pub fn isolate(
         &mut self,
         string: &HalfString,
@@ -150,7 +150,8 @@ impl Cutting {
         }
     }
 
-    /// Points that cut the open intervals evenly in √κ: as many as there are eigenvalues inside, and as cost nothing more.
+    /// Points that cut the open intervals evenly in √κ: as many as there are eigenvalues inside, and as cost
+    /// nothing more.
     fn cut(&mut self, limits: &Limits) {
         let Cutting { open, cuts, points, .. } = self;
         points.clear();

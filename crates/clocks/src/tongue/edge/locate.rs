@@ -1,8 +1,9 @@
 //! Where on the string a mode lives.
 //!
-//! Run the recurrence from both ends: the product x→ x← at a node r is (K − κM)⁻¹_rr times a constant, so near an
-//! eigenvalue it is the square of the mode there. At the node where it is largest neither half has been followed into
-//! the region where rounding errors outgrow it. (Twisted factorization: Parlett and Dhillon.)
+//! Run the recurrence from both ends: the product x→ x← at a node r is (K − κM)⁻¹_rr times a constant, so
+//! near an eigenvalue it is the square of the mode there. At the node where it is largest neither half has
+//! been followed into the region where rounding errors outgrow it. (Twisted factorization: Parlett and
+//! Dhillon.)
 
 use super::batch::Batch;
 use crate::tongue::string::lanes::{Aligned, LANES, Lanes, power_of_two};
@@ -10,8 +11,8 @@ use crate::tongue::string::{HalfString, KINDS, Step};
 use number::vector::Vector;
 use number::vector::instructions::Kernel;
 
-/// Among the nodes with more than this part of the largest product, the one nearest to t = 0 is taken: modes that fill
-/// the string are then all followed from T/2 through most of it, and little is done twice.
+/// Among the nodes with more than this part of the largest product, the one nearest to t = 0 is taken: modes
+/// that fill the string are then all followed from T/2 through most of it, and little is done twice.
 const NEARLY_LARGEST: f64 = 1.0 / 16.0;
 
 /// The recurrence from t = 0 at every node, its exponents by block.

@@ -1,9 +1,9 @@
-//! Edges of long periods, one by one: zeros are counted, and an entry's signs taken, by return maps in the logarithm of the
-//! period ([`crate::orbit::returns`]), and no string is laid out.
+//! Edges of long periods, one by one: zeros are counted, and an entry's signs taken, by return maps in the
+//! logarithm of the period ([`crate::orbit::returns`]), and no string is laid out.
 //!
-//! The zeros of an entry lie nearly evenly in the angle of the base, so the secant through the counts at two ends finds a point
-//! between two zeros in a few counts; every other cut halves, which bounds them. Then signs alone shrink the interval
-//! (`precise`).
+//! The zeros of an entry lie nearly evenly in the angle of the base, so the secant through the counts at two
+//! ends finds a point between two zeros in a few counts; every other cut halves, which bounds them. Then
+//! signs alone shrink the interval (`precise`).
 
 use super::enclosure::Enclosure;
 use super::function::EntryFunction;
@@ -15,7 +15,8 @@ const FIRST_CUT: f64 = 3.9;
 /// Parts of an interval at which it is cut in turn where the point before lies too close to a zero.
 const CUTS: [f64; 3] = [0.5, 0.45, 0.56];
 
-/// Cuts at most: the secant needs some ten, halving alone 53 from the spacing of doubles, and twice that are both in turn.
+/// Cuts at most: the secant needs some ten, halving alone 53 from the spacing of doubles, and twice that are
+/// both in turn.
 const MOST_CUTS: u32 = 128;
 
 /// A point and how many of an entry's positive zeros lie below it.
@@ -25,8 +26,8 @@ struct Sample {
     count: u64,
 }
 
-/// An interval with the `index`-th positive zero of an entry, alone and inside; `None` where counts are not known, or between
-/// neighbouring doubles leave others there.
+/// An interval with the `index`-th positive zero of an entry, alone and inside; `None` where counts are not
+/// known, or between neighbouring doubles leave others there.
 pub fn isolate(function: &EntryFunction, index: usize) -> Option<Enclosure> {
     let index = index as u64;
     let (mut lo, mut hi) = (Sample { s: 0.0, count: 0 }, counted(function, FIRST_CUT)?);

@@ -1,7 +1,7 @@
 //! Edges of tongues: the eigenvalues of the four strings, enclosed.
 //!
-//! Sturm counts separate the eigenvalues. The Rayleigh quotient of a mode encloses each one, as a rule between neighbouring
-//! doubles. Signs of the entry in more bits give any number of digits.
+//! Sturm counts separate the eigenvalues. The Rayleigh quotient of a mode encloses each one, as a rule
+//! between neighbouring doubles. Signs of the entry in more bits give any number of digits.
 //!
 //! | file | what is there |
 //! |---|---|

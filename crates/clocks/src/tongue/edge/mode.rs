@@ -7,27 +7,29 @@
 //!     F_j - F_{j+1} - κ m_j z_j = 0,        F_j = (z_j - z_{j-1})/ℓ_j
 //! ```
 //!
-//! hold but for the roundings of each step, which are known exactly (as the errors of sums and products), and the one
-//! at r, where the two halves do not quite meet. With the residuals ρ_j the quotient is
+//! hold but for the roundings of each step, which are known exactly (as the errors of sums and products), and
+//! the one at r, where the two halves do not quite meet. With the residuals ρ_j the quotient is
 //!
 //! ```text
 //!     μ = Σ F_j² ℓ_j/Σ m_j z_j² = κ + Σ z_j ρ_j/Σ m_j z_j²:
 //! ```
 //!
-//! a tiny correction to κ, so it needs a few digits only, and no cancellation ever occurs but at r, where it is done in
-//! sums of two doubles. Without the roundings it is Newton's step for the mismatch at r. Steps before that use the
-//! point before, too: κ is a smooth function of the mismatch, and two values with slopes give a cubic for it.
+//! a tiny correction to κ, so it needs a few digits only, and no cancellation ever occurs but at r, where it
+//! is done in sums of two doubles. Without the roundings it is Newton's step for the mismatch at r. Steps
+//! before that use the point before, too: κ is a smooth function of the mismatch, and two values with slopes
+//! give a cubic for it.
 //!
-//! **Theorem** (Weinstein; Temple, Kato). Let ε² = Σ ρ_j²/m_j/Σ m_j z_j². Some eigenvalue lies in \[μ − ε, μ + ε\]. If all
-//! but the k-th are ≤ α or ≥ β with α < μ − ε and μ + ε < β, it is the k-th one, and
+//! **Theorem** (Weinstein; Temple, Kato). Let ε² = Σ ρ_j²/m_j/Σ m_j z_j². Some eigenvalue lies in \[μ − ε,
+//! μ + ε\]. If all but the k-th are ≤ α or ≥ β with α < μ − ε and μ + ε < β, it is the k-th one, and
 //!
 //! ```text
 //!     μ - ε²/(β - μ) <= κ_k <= μ + ε²/(μ - α).
 //! ```
 //!
-//! **The residual**, with S = Σ m z², W = Σ (1/ℓ + 1/ℓ')² z²/m and λ the largest 1/(m ℓ) of a node and a spring at it. By
-//! `half` each row holds but for u (4 κ m |z| + (1/ℓ + 1/ℓ') |z| + 3 |F| + 3 |F'|) and, at r, the mismatch; and
-//! Σ (3 |F| + 3 |F'|)²/m ≤ 36 λ Σ F² ℓ = 36 λ μ S, μ ≤ κ + ε. With p = |mismatch|/√(m_r S):
+//! **The residual**, with S = Σ m z², W = Σ (1/ℓ + 1/ℓ')² z²/m and λ the largest 1/(m ℓ) of a node and a
+//! spring at it. By `half` each row holds but for u (4 κ m |z| + (1/ℓ + 1/ℓ') |z| + 3 |F| + 3 |F'|) and, at
+//! r, the mismatch; and Σ (3 |F| + 3 |F'|)²/m ≤ 36 λ Σ F² ℓ = 36 λ μ S, μ ≤ κ + ε. With p = |mismatch|/√(m_r
+//! S):
 //!
 //! ```text
 //!     ε <= p + u (√(W/S) + 4 κ + 6 √(λ (κ + ε)))
@@ -35,11 +37,13 @@
 //!       <= 1.01 (p + u √(9/8 W/S + 288 κ² + 648 λ κ)) + 17000 u² λ.
 //! ```
 //!
-//! So no absolute values need to be summed on the way. What is of second order in u is far below the 1.01 given to it.
+//! So no absolute values need to be summed on the way. What is of second order in u is far below the 1.01
+//! given to it.
 //!
-//! **The quotient's own error.** The terms of Σ z ρ add up to at most u (5 κ + 2 √(λ μ)) S ≤ ε S in absolute value, with the
-//! ε just computed; five are summed for each of n nodes, so rounding puts μ off by (5 n + 64) u ε at most, and n rounded
-//! masses in S, |μ − κ| being at most ε, by (n + 64) u ε. The terms e²/ℓ left out of e F add less than 4 u² (κ + λ).
+//! **The quotient's own error.** The terms of Σ z ρ add up to at most u (5 κ + 2 √(λ μ)) S ≤ ε S in absolute
+//! value, with the ε just computed; five are summed for each of n nodes, so rounding puts μ off by (5 n + 64)
+//! u ε at most, and n rounded masses in S, |μ − κ| being at most ε, by (n + 64) u ε. The terms e²/ℓ left out
+//! of e F add less than 4 u² (κ + λ).
 
 use super::batch::Batch;
 use super::count::uncertainty;
@@ -56,8 +60,9 @@ const SLACK: f64 = f64::from_bits((1023 - 96) << 52);
 /// Newton steps at most: as a rule three are enough.
 const PASSES: u32 = 6;
 
-/// A step shorter than this part of the distance to the neighbours is the last: what is left is about its square, in
-/// units of the distance. So is one whose product with the step before is: what is left is about the product's square.
+/// A step shorter than this part of the distance to the neighbours is the last: what is left is about its
+/// square, in units of the distance. So is one whose product with the step before is: what is left is about
+/// the product's square.
 const LAST_STEP: f64 = 1e-4;
 
 /// A step that would lead beyond an end of the bracket goes this part of the way to it.
@@ -180,8 +185,9 @@ impl<V: Vector> Point<V> {
         Point { kappa, mismatch, slope: one.div(squares) }
     }
 
-    /// Where the mismatch vanishes: by the cubic for κ as a function of it, through this point and the one before with
-    /// the slopes; by Newton's step where that is no improvement of it, or there is no point before.
+    /// Where the mismatch vanishes: by the cubic for κ as a function of it, through this point and the one
+    /// before with the slopes; by Newton's step where that is no improvement of it, or there is no point
+    /// before.
     #[inline(always)]
     fn zero(&self, before: &Point<V>) -> V {
         let (y, z) = (self.mismatch, before.mismatch);

@@ -1,11 +1,12 @@
 //! Edges to any number of digits, from certified signs of the entry at rational points.
 //!
-//! Quadratic interval refinement (Abbott 2006): the interval is cut into N equal cells, the secant says which one
-//! holds the zero, and the entry's signs at the cell's two ends prove it; then N is squared, else its root is
-//! taken. The interval at the start is a few units in the last place of a double, where the entry is straight to
-//! nearly as many digits again: so N begins that large, and the number of correct digits doubles with every two
-//! signs. The proof is nothing but a change of sign. A sign comes from the refine tier of [`crate::verdict`], with as many bits as the cell is small,
-//! and from exact arithmetic where that cannot decide: then the point may be the zero itself.
+//! Quadratic interval refinement (Abbott 2006): the interval is cut into N equal cells, the secant says which
+//! one holds the zero, and the entry's signs at the cell's two ends prove it; then N is squared, else its
+//! root is taken. The interval at the start is a few units in the last place of a double, where the entry is
+//! straight to nearly as many digits again: so N begins that large, and the number of correct digits doubles
+//! with every two signs. The proof is nothing but a change of sign. A sign comes from the refine tier of
+//! [`crate::verdict`], with as many bits as the cell is small, and from exact arithmetic where that cannot
+//! decide: then the point may be the zero itself.
 
 use std::ops::RangeInclusive;
 
@@ -17,13 +18,13 @@ use super::enclosure::{Enclosure, negative_log2};
 use super::function::EntryFunction;
 use number::{Ball, Rational, Sign};
 
-/// Binary digits that the curvature of an entry takes from the secant's: its other zeros are n or so, at distances of
-/// some 1/n of their size. A wrong guess costs two signs.
+/// Binary digits that the curvature of an entry takes from the secant's: its other zeros are n or so, at
+/// distances of some 1/n of their size. A wrong guess costs two signs.
 const STRAIGHT: u32 = 12;
 
-/// Shrinks an interval with one zero, simple and inside, until it is narrower than `relative` times itself. `None`
-/// where a zero is neither known nor shown by the sign changes along the orbits of the two ends, and where return maps cannot
-/// decide a sign.
+/// Shrinks an interval with one zero, simple and inside, until it is narrower than `relative` times itself.
+/// `None` where a zero is neither known nor shown by the sign changes along the orbits of the two ends, and
+/// where return maps cannot decide a sign.
 pub fn shrink(
     function: &EntryFunction,
     start: &Enclosure,
@@ -74,7 +75,8 @@ pub fn shrink(
     Some(Enclosure { lo: interval.point(&BigInt::zero()), hi: interval.point(&interval.width) })
 }
 
-/// From lo to lo + width, in units of 1/(denominator 2^places): whole numbers, so that cutting reduces no fractions.
+/// From lo to lo + width, in units of 1/(denominator 2^places): whole numbers, so that cutting reduces no
+/// fractions.
 #[derive(Clone, Debug)]
 struct Interval {
     lo: BigInt,
@@ -139,8 +141,8 @@ impl Interval {
         Interval { lo: &self.lo + from, width: upto - from, ..self.clone() }
     }
 
-    /// The one of 2^cells equal parts that the secant through the ends' values points to: where it begins, in the units
-    /// of the cut interval, in which it is as wide as this one in its own.
+    /// The one of 2^cells equal parts that the secant through the ends' values points to: where it begins, in
+    /// the units of the cut interval, in which it is as wide as this one in its own.
     fn secant(&self, below: &Ball, above: &Ball, cells: u32) -> BigInt {
         let bits = cells + 64;
         let share = below.div(&below.sub(above, bits), bits).unwrap_or_else(|| Ball::one().scale2(-1));

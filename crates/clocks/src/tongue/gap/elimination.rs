@@ -35,15 +35,17 @@ pub(crate) fn common_factor(ratio: Ratio, rho: &Rational, pair: [Entry; 2]) -> I
     entries[pair[0] as usize].gcd(&entries[pair[1] as usize])
 }
 
-/// How many ρ in \[lo, hi\], 0 < lo, let two entries share a zero; `None` where an entry has no zeros, so none.
+/// How many ρ in \[lo, hi\], 0 < lo, let two entries share a zero; `None` where an entry has no zeros, so
+/// none.
 pub fn count_closings(ratio: Ratio, pair: [Entry; 2], lo: &Rational, hi: &Rational) -> Option<usize> {
     Some(crossings(ratio, pair, lo, hi)?.len())
 }
 
-/// Where two entries share a zero: brackets of one such ρ each within \[lo, hi\], 0 < lo, increasing; `None` as above.
+/// Where two entries share a zero: brackets of one such ρ each within \[lo, hi\], 0 < lo, increasing; `None`
+/// as above.
 ///
-/// The resultant in s vanishes at ρ iff they share a zero or both degrees fall, and for ρ > 0 the degrees are what
-/// the string has masses: they do not fall.
+/// The resultant in s vanishes at ρ iff they share a zero or both degrees fall, and for ρ > 0 the degrees are
+/// what the string has masses: they do not fall.
 pub fn crossings(ratio: Ratio, pair: [Entry; 2], lo: &Rational, hi: &Rational) -> Option<Vec<RootInterval>> {
     Some(roots_within(&squarefree(&eliminant(ratio, pair)?), lo, hi))
 }
@@ -51,11 +53,12 @@ pub fn crossings(ratio: Ratio, pair: [Entry; 2], lo: &Rational, hi: &Rational) -
 /// Z\[ρ\]\[s\]: of each power of s the coefficients of the powers of ρ.
 type InRho = Vec<Vec<BigInt>>;
 
-/// The resultant in s of two entries made integer by a factor, a polynomial in ρ, without its factors ρ; `None` where an
-/// entry is constant in s.
+/// The resultant in s of two entries made integer by a factor, a polynomial in ρ, without its factors ρ;
+/// `None` where an entry is constant in s.
 ///
-/// Put together from its values modulo primes. It is a determinant whose rows hold the coefficients of one entry each, so
-/// the sum of its |coefficients| is at most |X|^(deg Y) |Y|^(deg X), |X| that sum for X: primes beyond twice that determine it.
+/// Put together from its values modulo primes. It is a determinant whose rows hold the coefficients of one
+/// entry each, so the sum of its |coefficients| is at most |X|^(deg Y) |Y|^(deg X), |X| that sum for X:
+/// primes beyond twice that determine it.
 fn eliminant(ratio: Ratio, pair: [Entry; 2]) -> Option<Vec<BigInt>> {
     let s = Polynomial::<Polynomial<Rational>>::variable();
     let rho = Polynomial::constant(Polynomial::variable());
@@ -81,8 +84,8 @@ fn eliminant(ratio: Ratio, pair: [Entry; 2]) -> Option<Vec<BigInt>> {
     Some(lift.into_values().into_iter().skip_while(Zero::is_zero).collect())
 }
 
-/// The coefficients of the resultant modulo a prime: from its values at ρ = 1, 2, ..., but for those at which an entry
-/// loses degree.
+/// The coefficients of the resultant modulo a prime: from its values at ρ = 1, 2, ..., but for those at which
+/// an entry loses degree.
 fn eliminant_modulo(field: &PrimeField, pair: [&InRho; 2], degree: usize) -> Vec<u64> {
     let [x, y] = pair.map(|f| f.iter().map(|c| residues(field, c)).collect::<Vec<_>>());
     let mut nodes = Vec::with_capacity(degree + 1);

@@ -1,10 +1,11 @@
 //! Do two entries share a zero at all? Decided modulo a prime.
 //!
-//! For fixed p/q and ρ the entries are polynomials in κ. **Lemma.** If a prime does not divide the denominators of
-//! ρ p/q, the degrees of X and Y survive modulo it, and X and Y have no common factor there, they have none over Q:
-//! their resultant is an integer (up to powers of the denominator) that is not 0 modulo the prime. So B and C without
-//! a common factor mean that no tongue of even m is closed, however thin; A and D likewise for odd m. The other
-//! answer, a common factor, may be an accident of the prime and is left to exact arithmetic.
+//! For fixed p/q and ρ the entries are polynomials in κ. **Lemma.** If a prime does not divide the
+//! denominators of ρ p/q, the degrees of X and Y survive modulo it, and X and Y have no common factor there,
+//! they have none over Q: their resultant is an integer (up to powers of the denominator) that is not 0
+//! modulo the prime. So B and C without a common factor mean that no tongue of even m is closed, however
+//! thin; A and D likewise for odd m. The other answer, a common factor, may be an accident of the prime and
+//! is left to exact arithmetic.
 
 use std::sync::OnceLock;
 

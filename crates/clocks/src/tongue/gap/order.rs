@@ -1,8 +1,9 @@
-//! The two edges of a tongue: which is the lower one and how far they are apart, or the proof that they are one point.
+//! The two edges of a tongue: which is the lower one and how far they are apart, or the proof that they are
+//! one point.
 //!
-//! As a rule the enclosures of the edges say it. Where they overlap, or nearly so, the width is found without more digits
-//! of the edges (by tunnelling); where it is a difference of nearly equal terms, as close to a closing, by more
-//! and more digits, and where no number of digits would end that, by algebra.
+//! As a rule the enclosures of the edges say it. Where they overlap, or nearly so, the width is found without
+//! more digits of the edges (by tunnelling); where it is a difference of nearly equal terms, as close to a
+//! closing, by more and more digits, and where no number of digits would end that, by algebra.
 
 use num_traits::Zero;
 
@@ -23,12 +24,13 @@ pub struct Gap {
     pub upper: Option<Edge>,
     /// Whether the edges are one point: no instability, Q = ±I there.
     pub closed: bool,
-    /// hi − lo, enclosed: proven to about three digits, or to be smaller than all normal doubles; infinite for the last
-    /// tongue.
+    /// hi − lo, enclosed: proven to about three digits, or to be smaller than all normal doubles; infinite
+    /// for the last tongue.
     pub width: (f64, f64),
 }
 
-/// Digits asked of return maps, one after the other, each of which leaves a width its last four; two doubles give some 24 of them.
+/// Digits asked of return maps, one after the other, each of which leaves a width its last four; two doubles
+/// give some 24 of them.
 const DIGITS_OF_RETURNS: [u32; 5] = [19, 22, 24, 26, 50];
 
 /// Relative accuracy of a width: a few digits are what it is worth.
@@ -147,7 +149,8 @@ fn by_tunnelling<D: Digits>(
     Ok(is_enough.then_some(Gap { m, lower, upper: Some(upper), closed: false, width }))
 }
 
-/// Whether both entries vanish at the simplest rational in both enclosures, or at a common algebraic zero there.
+/// Whether both entries vanish at the simplest rational in both enclosures, or at a common algebraic zero
+/// there.
 fn coincide(edges: &Edges, pair: &[(Edge, &Enclosure); 2]) -> Result<bool> {
     let [(a, x), (b, y)] = pair;
     let (lo, hi) = ((&x.lo).max(&y.lo), (&x.hi).min(&y.hi));

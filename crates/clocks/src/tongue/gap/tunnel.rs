@@ -1,39 +1,43 @@
 //! How far apart two edges are that doubles see as one point: by tunnelling.
 //!
-//! The two problems X and Y of a tongue differ at both ends of the string: where one is free the other is pinned. A
-//! mode that lives far from the ends hardly feels that, and the little it feels is the width of the tongue. It needs
-//! no digits of the edges themselves.
+//! The two problems X and Y of a tongue differ at both ends of the string: where one is free the other is
+//! pinned. A mode that lives far from the ends hardly feels that, and the little it feels is the width of the
+//! tongue. It needs no digits of the edges themselves.
 //!
-//! **The width, exactly.** Run the recurrence (x, v): v −= κ m x at a mass, x += v ℓ along a spring, from the left end
-//! and, mirrored, from the right end to a node r, short of its mass: (x, v) and (y, w). With
+//! **The width, exactly.** Run the recurrence (x, v): v −= κ m x at a mass, x += v ℓ along a spring, from the
+//! left end and, mirrored, from the right end to a node r, short of its mass: (x, v) and (y, w). With
 //!
 //! ```text
 //!     F(κ) = v/x + w/y - κ m_r,        F = 0 at the problem's eigenvalues, where x, y ≠ 0,
 //!     F'   = -Z,   Z = Σ m x_j²/x² + Σ m y_j²/y² + m_r     (sums over the nodes on either side of r),
 //! ```
 //!
-//! because v ∂x/∂κ − x ∂v/∂κ = Σ m x_j². All steps have determinant 1, so the free and the pinned start of one end keep
-//! x_free v_pinned − v_free x_pinned = 1, and with the sign + at an end where X is free, − where it is pinned,
+//! because v ∂x/∂κ − x ∂v/∂κ = Σ m x_j². All steps have determinant 1, so the free and the pinned start of
+//! one end keep x_free v_pinned − v_free x_pinned = 1, and with the sign + at an end where X is free, − where
+//! it is pinned,
 //!
 //! ```text
 //!     Δ = F_Y - F_X = ± 1/(x_X x_Y) ± 1/(y_X y_Y).
 //! ```
 //!
-//! F_Y(κ_Y) = 0, so F_X(κ_Y) = −Δ(κ_Y), and by the mean value theorem κ_Y − κ_X = Δ(κ_Y)/Z_X(ξ), ξ between the two. Both sums
-//! have positive terms and Δ is a product for each end: where its two terms do not cancel, all is known in doubles to
-//! many digits over the whole interval that holds κ_X and κ_Y, however narrow the tongue.
+//! F_Y(κ_Y) = 0, so F_X(κ_Y) = −Δ(κ_Y), and by the mean value theorem κ_Y − κ_X = Δ(κ_Y)/Z_X(ξ), ξ between
+//! the two. Both sums have positive terms and Δ is a product for each end: where its two terms do not cancel,
+//! all is known in doubles to many digits over the whole interval that holds κ_X and κ_Y, however narrow the
+//! tongue.
 //!
-//! The orbits are followed in doubles, or in two doubles each over an interval that is narrower by as much: where kicks
-//! are 1e12 strong an error of 1e-16 in x is one of 1e-4 in v.
+//! The orbits are followed in doubles, or in two doubles each over an interval that is narrower by as much:
+//! where kicks are 1e12 strong an error of 1e-16 in x is one of 1e-4 in v.
 //!
 //! **Roundings** and the interval's width are local errors r_k of the computed orbit û, bounded by theorems
-//! `perturbed_orbit_stepwise` and `shear_turn` in proofs/. With ‖M_k‖ ≤ κ_k, b_k = Σ |r_j| |û_j| and τ_k = 2 b_k/|û_k|², let
+//! `perturbed_orbit_stepwise` and `shear_turn` in proofs/. With ‖M_k‖ ≤ κ_k, b_k = Σ |r_j| |û_j| and τ_k = 2
+//! b_k/|û_k|², let
 //!
 //! ```text
 //!     w_k = Σ (|r_j| + κ_j τ_{j-1} |û_{j-1}|)/|û_j|,     c_k = Σ |r_j|/|û_{j-1}|,     w_n + c_n <= 1/2.
 //! ```
 //!
-//! Then u_k = a_k (û_k + (t_k/|û_k|²) J û_k), J the rotation by a right angle, |t_k| ≤ 2 b_k and 1 − w_k ≤ a_k ≤ 1/(1 − w_k).
+//! Then u_k = a_k (û_k + (t_k/|û_k|²) J û_k), J the rotation by a right angle, |t_k| ≤ 2 b_k and 1 − w_k ≤
+//! a_k ≤ 1/(1 − w_k).
 
 use crate::tongue::string::lanes::{logarithm, rescaling};
 use crate::tongue::string::{Digits, Entry, HalfString, KINDS, Step};
@@ -49,7 +53,8 @@ const LARGEST_STRAIN: f64 = 0.05;
 /// A term of Δ below this power of two of the other is only bounded.
 const FAINT: i64 = -400;
 
-/// Powers of two beyond this are taken in two factors, and below its double make nothing of any number met here.
+/// Powers of two beyond this are taken in two factors, and below its double make nothing of any number met
+/// here.
 const RANGE: i64 = 900;
 
 /// Two edges separated.
@@ -60,8 +65,8 @@ pub struct Apart {
     pub width: (f64, f64),
 }
 
-/// s_Y − s_X, for the edge X whose string is free at t = 0 and the edge Y whose string is pinned there; both lie in
-/// `between`, which is narrow, else the enclosure is poor. `None` where nothing is proven.
+/// s_Y − s_X, for the edge X whose string is free at t = 0 and the edge Y whose string is pinned there; both
+/// lie in `between`, which is narrow, else the enclosure is poor. `None` where nothing is proven.
 pub fn splitting<D: Digits>(string: &HalfString, free: Entry, between: [D; 2]) -> Option<Apart> {
     debug_assert!(free.starts_free());
     let tunnel = Tunnel::new(string, between);
@@ -147,8 +152,8 @@ impl<D: Digits> Orbit<D> {
         Orbit { x, v, exponent: 0, length: 1.0, squares, strays, across, tilt, stretch, strain }
     }
 
-    /// v −= k x, k known to within `uncertainty` of itself. (Where a product underflows, the other component is far
-    /// longer than 2^-200, and its rounding covers that.)
+    /// v −= k x, k known to within `uncertainty` of itself. (Where a product underflows, the other component
+    /// is far longer than 2^-200, and its rounding covers that.)
     fn kick(&mut self, k: D, mass: f64, uncertainty: f64) {
         let (x, stray) = (self.x.double(), self.tilt * self.v.double());
         self.squares += mass * x * x;
@@ -166,9 +171,9 @@ impl<D: Digits> Orbit<D> {
         self.advance(1.0 + t, D::LOSS * (way.double().abs() + self.x.double().abs()));
     }
 
-    /// Accounts for a step with ‖M‖ ≤ `norm` and |r| ≤ `residual`, r in the component that the step changes. The
-    /// roundings of this, and the second-order parts of the residuals, are below 2^-26 of the sums (fewer than 2^26
-    /// steps) and in the margins of [`Orbit::reliable`].
+    /// Accounts for a step with ‖M‖ ≤ `norm` and |r| ≤ `residual`, r in the component that the step changes.
+    /// The roundings of this, and the second-order parts of the residuals, are below 2^-26 of the sums (fewer
+    /// than 2^26 steps) and in the margins of [`Orbit::reliable`].
     fn advance(&mut self, norm: f64, residual: f64) {
         let length = self.x.double().abs() + self.v.double().abs();
         let inverse = ROOT_TWO / length;
@@ -244,7 +249,8 @@ impl Term {
         if !(slope.0 > 0.0 && lo > 0.0 && self.exponent <= RANGE) {
             return None;
         }
-        // In two factors, each within the range of doubles; four roundings, and two where the result is not normal.
+        // In two factors, each within the range of doubles; four roundings, and two where the result is not
+        // normal.
         let first = (self.exponent / 2).max(-RANGE);
         let second = (self.exponent - first).max(-RANGE);
         let quotient =

@@ -1,27 +1,29 @@
 //! The largest growth inside a tongue.
 //!
-//! ln of the multiplier per period is ln μ = 2 asinh √E, E = BC where Tr > 2 and −AD where Tr < −2; the growth rate per
-//! unit time at fixed L1 is that over T = p h1 = p √(s/L1).
+//! ln of the multiplier per period is ln μ = 2 asinh √E, E = BC where Tr > 2 and −AD where Tr < −2; the
+//! growth rate per unit time at fixed L1 is that over T = p h1 = p √(s/L1).
 //!
-//! **One peak.** An entry is a product of factors 1 − s/s_k over its zeros (C: times s), all of them positive. Each factor's
-//! ln |1 − s/s_k| is concave in σ = ln s on either side of s_k, so ln E is concave in σ inside the tongue. So is ln ln μ, since
-//! ln asinh e^y rises and is concave; and the rate's logarithm, which is that less σ/2. Hence the rate has exactly
-//! one maximum in a tongue, where with w = asinh √E = ½ ln μ
+//! **One peak.** An entry is a product of factors 1 − s/s_k over its zeros (C: times s), all of them
+//! positive. Each factor's ln |1 − s/s_k| is concave in σ = ln s on either side of s_k, so ln E is concave in
+//! σ inside the tongue. So is ln ln μ, since ln asinh e^y rises and is concave; and the rate's logarithm,
+//! which is that less σ/2. Hence the rate has exactly one maximum in a tongue, where with w = asinh √E = ½ ln
+//! μ
 //!
 //! ```text
 //!     d ln E/dσ = w coth w.
 //! ```
 //!
 //! The difference of the two sides falls in σ, from ∞ at the lower edge a to −∞ at the upper edge b; times
-//! (1 − a/s)(1 − s/b)/(1 − a/b) it goes from 1 to −1, and is all but straight where the tongue is narrow. Its zero is found by regula
-//! falsi with σ as the variable, so that edges any number of decades apart are no different. The entries at a point
-//! come from [`super::meet`], in two doubles: three to ten evaluations a peak, each O(p + q), and no other edge is needed.
+//! (1 − a/s)(1 − s/b)/(1 − a/b) it goes from 1 to −1, and is all but straight where the tongue is narrow. Its
+//! zero is found by regula falsi with σ as the variable, so that edges any number of decades apart are no
+//! different. The entries at a point come from [`super::meet`], in two doubles: three to ten evaluations a
+//! peak, each O(p + q), and no other edge is needed.
 //!
-//! **Thin tongues.** Where the relative width δ is below 2^-52 the middle is the place and the parabola's height there the value
-//! ([`super::meet`]), n nodes making it wrong by some n δ relative.
+//! **Thin tongues.** Where the relative width δ is below 2^-52 the middle is the place and the parabola's
+//! height there the value ([`super::meet`]), n nodes making it wrong by some n δ relative.
 //!
-//! **Nothing is guessed.** Each value comes with a bound of what rounding can have done to it, and where that shows in a
-//! double, as where the two edges all but meet (near a closing), big numbers take over.
+//! **Nothing is guessed.** Each value comes with a bound of what rounding can have done to it, and where that
+//! shows in a double, as where the two edges all but meet (near a closing), big numbers take over.
 
 use super::meet::{Meeting, Point};
 use crate::propagator::TwoClocks;
@@ -32,8 +34,8 @@ use crate::verdict::{Limits, Side, Verdict, growth};
 use number::error::{Error, Result};
 use number::{Laurent, Rational, Twofold, rational};
 
-/// The fastest growth in a tongue; rounded: s to nine digits, the rate to fifteen; the rest is that of a place which is s
-/// before rounding.
+/// The fastest growth in a tongue; rounded: s to nine digits, the rate to fifteen; the rest is that of a
+/// place which is s before rounding.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Peak {
     /// Where.
@@ -258,7 +260,8 @@ impl Search {
     }
 }
 
-/// Where f, with one maximum in [0, 1], has it: 44 sections that keep 0.618 each leave 6e-10, where f is flat to 1e-18.
+/// Where f, with one maximum in [0, 1], has it: 44 sections that keep 0.618 each leave 6e-10, where f is flat
+/// to 1e-18.
 fn golden(f: impl Fn(f64) -> Result<f64>) -> Result<f64> {
     let ratio = 0.5 * (5f64.sqrt() - 1.0);
     let (mut lo, mut hi) = (0.0, 1.0);
@@ -310,11 +313,13 @@ mod tests {
                 }
             }
         }
-        // A bound on how often doubles give up: slow or fast forces of 1e-12 leave 1e-14 of an edge between the two.
+        // A bound on how often doubles give up: slow or fast forces of 1e-12 leave 1e-14 of an edge between
+        // the two.
         assert!(seen > 500 && left < seen / 5, "{left} of {seen}");
     }
 
-    /// The widths relative to s are 1e-11 to 1e-12: edges by return maps are sharp enough, as 40 digits by kicks show.
+    /// The widths relative to s are 1e-11 to 1e-12: edges by return maps are sharp enough, as 40 digits by
+    /// kicks show.
     #[test]
     fn thin_tongues_of_a_long_period_grow_as_their_kicks_say() {
         let edges = Edges::new(Ratio::new(30001, 30000).unwrap(), &ratio(121, 10_000)).unwrap();

@@ -1,25 +1,27 @@
 //! The two entries of a tongue at a point, to twice the digits of a double, with their slopes.
 //!
-//! Run the recurrence from t = 0 to a node r, short of its mass, and from T/2 back to it (`gap::tunnel` says how):
-//! (x, v) and (y, w), each once free and once pinned at its end. Every entry of the half period is, whatever r,
+//! Run the recurrence from t = 0 to a node r, short of its mass, and from T/2 back to it (`gap::tunnel` says
+//! how): (x, v) and (y, w), each once free and once pinned at its end. Every entry of the half period is,
+//! whatever r,
 //!
 //! ```text
 //!     X = x w + v y - k_r x y,
 //! ```
 //!
-//! the start at t = 0 free for A and C, that at T/2 free for C and D. Of a tongue's pair let X be the entry that starts
-//! free, Y the other one, ε = 1 for B and C, −1 for A and D: inside, E = ε X Y > 0 and ln of the multiplier is 2 asinh √E.
+//! the start at t = 0 free for A and C, that at T/2 free for C and D. Of a tongue's pair let X be the entry
+//! that starts free, Y the other one, ε = 1 for B and C, −1 for A and D: inside, E = ε X Y > 0 and ln of the
+//! multiplier is 2 asinh √E.
 //!
-//! **Thinner than doubles show.** With P and Q the products of the free and the pinned amplitude at r, from the left and
-//! from the right, X = x y F and Y = x' y' F', F' − F = Δ = 1/P + ε/Q, so that
+//! **Thinner than doubles show.** With P and Q the products of the free and the pinned amplitude at r, from
+//! the left and from the right, X = x y F and Y = x' y' F', F' − F = Δ = 1/P + ε/Q, so that
 //!
 //! ```text
 //!     ε PQ Δ²/4 = (|P| - |Q|)²/(4 |PQ|) = sinh²(L/2),       L = ln |P/Q|,
 //! ```
 //!
-//! up to the sign (ε PQ < 0 in a tongue). As F' = Δ where F = 0 and F = −Δ where F' = 0, and both are straight but for
-//! the tongue's relative width times the number of nodes, E is a parabola between the edges; its height in the
-//! middle is |PQ| Δ Δ'/4, with Δ and Δ' at the two edges:
+//! up to the sign (ε PQ < 0 in a tongue). As F' = Δ where F = 0 and F = −Δ where F' = 0, and both are
+//! straight but for the tongue's relative width times the number of nodes, E is a parabola between the edges;
+//! its height in the middle is |PQ| Δ Δ'/4, with Δ and Δ' at the two edges:
 //!
 //! ```text
 //!     E = sinh(L/2) sinh(L'/2),
@@ -33,7 +35,8 @@ use number::Twofold;
 use number::vector::instructions::Kernel;
 use number::vector::{LANES, Pair, Vector};
 
-/// The error of one operation on two doubles, relative to its terms: the roundings of the kick itself included.
+/// The error of one operation on two doubles, relative to its terms: the roundings of the kick itself
+/// included.
 const LOSS: f64 = f64::from_bits((1023 - 101) << 52);
 
 /// Relative accuracy asked of E: twice what ln of the multiplier then has, which is fifteen digits.
@@ -104,8 +107,8 @@ impl Meeting {
         (number > 0.0 && off <= ACCURACY).then(|| ln_multiplier(number, x.exponent + y.exponent))
     }
 
-    /// The rate in the middle of a tongue that is far thinner than its distance to others, nearby; and how far in ln s
-    /// that is.
+    /// The rate in the middle of a tongue that is far thinner than its distance to others, nearby; and how
+    /// far in ln s that is.
     pub fn in_the_middle(&self) -> Option<(f64, f64)> {
         let Value { number, slope, uncertainty, .. } = self.balance;
         let to = self.pair.map(Value::to_zero);

@@ -21,9 +21,9 @@ pub enum ExactEdge {
 
 /// An edge in closed form, if it has one that we know.
 ///
-/// The odd solution of p θ = m π vanishes at all slow kicks if q = 1 (and then ends with x = 0 or v = 0 at T/2 as m is
-/// even or odd), or if q = 2 and m is even: the slow clock does not act on it. Likewise with the clocks
-/// exchanged. Other edges are rational if the simplest rational in the enclosure is a zero.
+/// The odd solution of p θ = m π vanishes at all slow kicks if q = 1 (and then ends with x = 0 or v = 0 at
+/// T/2 as m is even or odd), or if q = 2 and m is even: the slow clock does not act on it. Likewise with the
+/// clocks exchanged. Other edges are rational if the simplest rational in the enclosure is a zero.
 pub(crate) fn exact_edge(edges: &Edges, m: u64, edge: &Edge) -> Result<Option<ExactEdge>> {
     let odd_start = !edge.entry.starts_free();
     let silent = |other: u64| other == 1 || (other == 2 && edge.entry == Entry::B);

@@ -30,8 +30,8 @@ pub struct Predicted {
     pub s: f64,
     /// Decided, not estimated.
     pub side: Side,
-    /// The distance to the tongue in s, rounded: positive outside, minus the distance to the nearer edge inside,
-    /// 0 on an edge.
+    /// The distance to the tongue in s, rounded: positive outside, minus the distance to the nearer edge
+    /// inside, 0 on an edge.
     pub distance: f64,
 }
 

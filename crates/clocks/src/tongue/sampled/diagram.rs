@@ -14,7 +14,8 @@ pub struct Band {
     pub m: u64,
     /// Its dominant family (a, b).
     pub family: (i64, i64),
-    /// [lower s, upper s, ρ], ρ rising; where ρ is 0 both are the point p θ = m π. Edges are the middles of their enclosures.
+    /// [lower s, upper s, ρ], ρ rising; where ρ is 0 both are the point p θ = m π. Edges are the middles of
+    /// their enclosures.
     pub edges: Vec<[f64; 3]>,
 }
 

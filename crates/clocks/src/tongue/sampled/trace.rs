@@ -39,7 +39,8 @@ pub struct Near {
     pub width: f64,
     /// [x, ±Tr Q − 2], the sign being (−1)^m: positive where unstable.
     pub excess: Vec<[f64; 2]>,
-    /// The two entries of the half-period propagator that vanish at the edges, each over its largest value: [x, value].
+    /// The two entries of the half-period propagator that vanish at the edges, each over its largest value:
+    /// [x, value].
     pub entries: [(Entry, Vec<[f64; 2]>); 2],
 }
 
@@ -53,7 +54,8 @@ impl Trace {
     /// Through all tongues below s = 4, and close by through that of label m, or the widest.
     ///
     /// # Errors
-    /// A label that is not there; a tongue that is closed, the last, or too thin; and those of [`Tongues::gaps`].
+    /// A label that is not there; a tongue that is closed, the last, or too thin; and those of
+    /// [`Tongues::gaps`].
     pub fn through(ratio: Ratio, rho: &Rational, m: Option<u64>) -> Result<Trace> {
         let tongues = Tongues::new(ratio, rho)?;
         let gaps = tongues.gaps(1, tongues.last())?;

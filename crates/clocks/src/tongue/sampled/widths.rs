@@ -8,8 +8,8 @@ use number::error::{Error, Result};
 use number::parallel::try_map;
 use number::{Ratio, Rational, rational};
 
-/// A tongue about a point p θ = m π: that θ, the a of its dominant family, its number of slow kicks, and width/(2 s ρ), which is |S|
-/// to first order (see [`crate::resonance::strength`]).
+/// A tongue about a point p θ = m π: that θ, the a of its dominant family, its number of slow kicks, and
+/// width/(2 s ρ), which is |S| to first order (see [`crate::resonance::strength`]).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
     pub theta: f64,
@@ -18,8 +18,8 @@ pub struct Measured {
     pub strength: f64,
 }
 
-/// All tongues of p + q ≤ `max_sum` with m/p between two shares of π, 0 < m < p, in the order of p + q, p, m; widths from certified
-/// edges, rounded.
+/// All tongues of p + q ≤ `max_sum` with m/p between two shares of π, 0 < m < p, in the order of p + q, p, m;
+/// widths from certified edges, rounded.
 ///
 /// # Errors
 /// ρ = 0, and those of [`Tongues::gaps`].

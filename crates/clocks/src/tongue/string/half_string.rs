@@ -1,20 +1,22 @@
 //! The half period as a vibrating string.
 //!
-//! Between kicks x(t) is straight; at a kick of strength s m its slope drops by s m x: a massless string under
-//! unit tension with point masses m. One *tick* is the greatest common measure of all kick times, so all spring
-//! lengths ℓ are whole numbers; in slopes per tick the kick is κ m x, κ = s/(ticks in h1), with the masses 1
-//! (fast), R = ρ p/q (slow), their sum where both strike, and half of it at t = 0 and T/2. So A = 0, B = 0, C = 0,
-//! D = 0 are four eigenvalue problems in κ,
+//! Between kicks x(t) is straight; at a kick of strength s m its slope drops by s m x: a massless string
+//! under unit tension with point masses m. One *tick* is the greatest common measure of all kick times, so
+//! all spring lengths ℓ are whole numbers; in slopes per tick the kick is κ m x, κ = s/(ticks in h1), with
+//! the masses 1 (fast), R = ρ p/q (slow), their sum where both strike, and half of it at t = 0 and T/2. So
+//! A = 0, B = 0, C = 0, D = 0 are four eigenvalue problems in κ,
 //!
 //! ```text
 //!     (x_j - x_{j-1})/ℓ_j - (x_{j+1} - x_j)/ℓ_{j+1} = κ m_j x_j,
 //! ```
 //!
-//! whose ends are free (slope 0) or pinned (x = 0). Stiffness is GᵀG, G bidiagonal; all eigenvalues are real and
-//! simple (Gantmacher and Krein), and relative changes of masses and lengths change them by no more than that:
+//! whose ends are free (slope 0) or pinned (x = 0). Stiffness is GᵀG, G bidiagonal; all eigenvalues are real
+//! and simple (Gantmacher and Krein), and relative changes of masses and lengths change them by no more than
+//! that:
 //!
-//! **Monotonicity** (Courant, Fischer). κ_k is a min-max of Σ (x_j − x_{j−1})²/ℓ_j / Σ m_j x_j². So if every mass
-//! changes by a factor in [1/μ, μ] and every length by one in [1/ν, ν], κ_k changes by one in [1/(μν), μν].
+//! **Monotonicity** (Courant, Fischer). κ_k is a min-max of Σ (x_j − x_{j−1})²/ℓ_j / Σ m_j x_j². So if every
+//! mass changes by a factor in [1/μ, μ] and every length by one in [1/ν, ν], κ_k changes by one in [1/(μν),
+//! μν].
 
 use num_traits::{Signed, ToPrimitive, Zero};
 
@@ -35,8 +37,8 @@ pub struct Node {
     pub weight: f64,
 }
 
-/// So many kinds of nodes there are: that at t = 0, where both clocks strike, those of the fast clock alone and of the
-/// slow one, and that at T/2. In between the clocks never strike together.
+/// So many kinds of nodes there are: that at t = 0, where both clocks strike, those of the fast clock alone
+/// and of the slow one, and that at T/2. In between the clocks never strike together.
 pub(crate) const KINDS: usize = 4;
 
 const START: usize = 0;
@@ -55,7 +57,8 @@ pub struct Step {
     pub weight: f64,
 }
 
-/// Decades by which (x, v) may grow or shrink between two rescalings: squares of it stay in the range of doubles.
+/// Decades by which (x, v) may grow or shrink between two rescalings: squares of it stay in the range of
+/// doubles.
 const RANGE: f64 = 140.0;
 
 /// The half period of p/q as nodes 0, 1, ..., n at the kick times; node n stands at T/2, kick or none.
@@ -177,8 +180,9 @@ impl HalfString {
         self.nodes.iter().fold(1.0, |most: f64, node| most.max(node.length))
     }
 
-    /// How many positive eigenvalues a problem of p/q has: one for each free mass, less the rigid shift of C. Masses stand at the
-    /// clocks' kicks in [0, T/2], at T/2 where p or q is even; the slow clock's only where it is not silent.
+    /// How many positive eigenvalues a problem of p/q has: one for each free mass, less the rigid shift of C.
+    /// Masses stand at the clocks' kicks in [0, T/2], at T/2 where p or q is even; the slow clock's only
+    /// where it is not silent.
     pub fn dimension(ratio: Ratio, slow_is_silent: bool, entry: Entry) -> usize {
         let (p, q) = (ratio.p(), if slow_is_silent { 1 } else { ratio.q() });
         let at_end = p.is_multiple_of(2) || q.is_multiple_of(2);
@@ -215,9 +219,9 @@ impl HalfString {
         self.backward.reverse();
     }
 
-    /// So many that max(|x|, |v|) changes by a factor within 1e±140: a kick and a drift multiply it by (1 + k) (1 + ℓ) at
-    /// most, and so do their inverses, κ being at most twice the upper bound. A node alone, with masses within 1e±16 and
-    /// lengths below 2^25, is within 1e±48.
+    /// So many that max(|x|, |v|) changes by a factor within 1e±140: a kick and a drift multiply it by (1 +
+    /// k) (1 + ℓ) at most, and so do their inverses, κ being at most twice the upper bound. A node alone,
+    /// with masses within 1e±16 and lengths below 2^25, is within 1e±48.
     fn nodes_in_range(&self) -> usize {
         let heaviest = self.masses.iter().fold(0.0, |most: f64, &mass| most.max(mass));
         let growth = (1.0 + 2.0 * self.upper_bound * heaviest) * (1.0 + self.longest());

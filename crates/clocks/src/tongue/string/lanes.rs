@@ -30,13 +30,15 @@ pub(crate) fn power_of_two(e: i64) -> f64 {
     f64::from_bits(((e.clamp(-1022, 1023) + 1023) as u64) << 52)
 }
 
-/// 2^32 log2 |x| up to a constant, to within 2^29: a double's bits are its logarithm, the mantissa's straightened.
+/// 2^32 log2 |x| up to a constant, to within 2^29: a double's bits are its logarithm, the mantissa's
+/// straightened.
 #[inline(always)]
 pub fn logarithm(x: f64) -> i64 {
     (x.abs().to_bits() >> 20) as i64
 }
 
-/// Vectors are scaled down beyond this length and up below its reciprocal: 2^200. A node changes it by less than 2^120.
+/// Vectors are scaled down beyond this length and up below its reciprocal: 2^200. A node changes it by less
+/// than 2^120.
 pub const LONGEST: f64 = f64::from_bits((1023 + 200) << 52);
 
 /// The power of two that brings a length back into range, and by how many places.

@@ -4,7 +4,8 @@ use number::{Twofold, U};
 
 /// A double, or two: what orbits are followed in.
 pub trait Digits: Copy {
-    /// The relative rounding error of a product. A sum has the same relative error and, beside it, an eighth of it times the terms.
+    /// The relative rounding error of a product. A sum has the same relative error and, beside it, an eighth
+    /// of it times the terms.
     const LOSS: f64;
     /// a + b, rounded.
     fn sum(a: f64, b: f64) -> Self;

@@ -1,6 +1,8 @@
-//! Arrays by reference: NumPy's `.npy` files, the members of `.npz` archives, and Matrix Market's files (see `market`).
+//! Arrays by reference: NumPy's `.npy` files, the members of `.npz` archives, and Matrix Market's files (see
+//! `market`).
 //!
-//! A `.npy` file is the magic bytes, a header that is a Python dictionary, and the elements in C order (or Fortran's).
+//! A `.npy` file is the magic bytes, a header that is a Python dictionary, and the elements in C order (or
+//! Fortran's).
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -22,11 +24,12 @@ const MOST_ELEMENTS: usize = 1 << 28;
 /// The longest header of a `.npy` file, in bytes; NumPy's own have some hundred.
 const LONGEST_HEADER: usize = 1 << 16;
 
-/// The bytes that an element takes while it is read: as it stands, as a double, in the other order, and kept for who reads it again.
+/// The bytes that an element takes while it is read: as it stands, as a double, in the other order, and kept
+/// for who reads it again.
 const BYTES_AN_ELEMENT: u128 = 32;
 
-/// `{"npy": "h.npy"}`, `{"npz": "data.npz", "array": "fast"}`, `{"mm": "k.mtx"}` or, of a sparse stiffness, `{"npz": "k.npz", "csr": ""}`; paths
-/// are relative to the file that holds them.
+/// `{"npy": "h.npy"}`, `{"npz": "data.npz", "array": "fast"}`, `{"mm": "k.mtx"}` or, of a sparse stiffness,
+/// `{"npz": "k.npz", "csr": ""}`; paths are relative to the file that holds them.
 #[derive(Clone, Debug, Deserialize, PartialEq, Eq, PartialOrd, Ord)]
 #[serde(try_from = "Value")]
 pub(crate) enum Reference {
@@ -75,8 +78,8 @@ pub struct Array {
     values: Vec<f64>,
 }
 
-/// Where the arrays are that a system refers to: in files, paths taken from a folder, or in memory by the names that they have in
-/// their archive.
+/// Where the arrays are that a system refers to: in files, paths taken from a folder, or in memory by the
+/// names that they have in their archive.
 #[derive(Clone, Debug)]
 pub enum Arrays {
     In(Folder),
@@ -89,7 +92,8 @@ impl<P: AsRef<Path> + ?Sized> From<&P> for Arrays {
     }
 }
 
-/// A folder, and the arrays that were read from it: of one file, and of all that differ from it in some number, each once.
+/// A folder, and the arrays that were read from it: of one file, and of all that differ from it in some
+/// number, each once.
 #[derive(Clone, Debug)]
 pub struct Folder {
     path: PathBuf,
@@ -100,7 +104,8 @@ impl Reference {
     /// Reads the array.
     ///
     /// # Errors
-    /// An I/O error; bad input by `field` where the file is no such array, where none of this name is held, and where a number is not finite.
+    /// An I/O error; bad input by `field` where the file is no such array, where none of this name is held,
+    /// and where a number is not finite.
     pub fn read(&self, field: &str, arrays: &Arrays) -> Result<Array> {
         let array = self.read_unchecked(field, arrays)?;
         match array.values.iter().position(|x| !x.is_finite()) {
@@ -191,7 +196,8 @@ fn next<const N: usize>(bytes: &mut impl Read) -> Told<[u8; N]> {
     Ok(all)
 }
 
-/// The array that a `.npy` file's bytes begin with, or why there is none: they are counted by the header before there is room for them.
+/// The array that a `.npy` file's bytes begin with, or why there is none: they are counted by the header
+/// before there is room for them.
 fn parse(bytes: &mut impl Read) -> Told<Array> {
     let [0x93, b'N', b'U', b'M', b'P', b'Y', version, _] = next(bytes)? else {
         return Err(bad("is no .npy file"));

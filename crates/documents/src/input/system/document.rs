@@ -16,8 +16,8 @@ pub(super) const SIZES: std::ops::RangeInclusive<f64> = 1e-150..=1e150;
 /// The most degrees of freedom: dense matrices of this size still fit.
 pub(super) const LARGEST: usize = 4096;
 
-/// An exact number: a text, or a JSON number, whose digits are taken as they stand. Anything else is kept until a reader
-/// can name its field.
+/// An exact number: a text, or a JSON number, whose digits are taken as they stand. Anything else is kept
+/// until a reader can name its field.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(from = "Value")]
 pub(super) enum Number {
@@ -80,7 +80,8 @@ impl Number {
     }
 }
 
-/// That a text names no more degrees of freedom than dense matrices may have, its lists counted before their elements are built.
+/// That a text names no more degrees of freedom than dense matrices may have, its lists counted before their
+/// elements are built.
 pub(super) fn check_lengths(text: &str) -> Result<()> {
     #[derive(Default, Deserialize)]
     #[serde(default)]

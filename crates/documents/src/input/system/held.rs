@@ -1,8 +1,9 @@
 //! Molecules: bonds that are held, hydrogens that are made heavier.
 //!
-//! A held distance is σ = |x_a − x_b|²/2. On what the constraints leave, with the kinetic energy as metric, a potential V has the second
-//! derivative Zᵀ (∇²V − Σ λ_c ∇²σ_c) Z, Z a basis of the tangent space, λ the multipliers of V's own gradient (mass-weighted, least squares):
-//! the tension that its force puts on a bond bends it. At a minimum the tensions of all potentials cancel, those of one alone do not.
+//! A held distance is σ = |x_a − x_b|²/2. On what the constraints leave, with the kinetic energy as metric, a
+//! potential V has the second derivative Zᵀ (∇²V − Σ λ_c ∇²σ_c) Z, Z a basis of the tangent space, λ the
+//! multipliers of V's own gradient (mass-weighted, least squares): the tension that its force puts on a bond
+//! bends it. At a minimum the tensions of all potentials cancel, those of one alone do not.
 
 use nalgebra::{DMatrix, DVector};
 use serde::Deserialize;

@@ -1,7 +1,8 @@
 //! All unstable intervals of one number of a file, none missed.
 //!
 //! * `outer`: the outer step, all steps in their ratios as in the file;
-//! * the path of a step: its multiples of the shortest of the others (the inner steps are what they are), each decided;
+//! * the path of a step: its multiples of the shortest of the others (the inner steps are what they are),
+//!   each decided;
 //! * the path of a scale, a stiffness, a spring, a mass: the number itself.
 
 use std::fmt::{Display, Formatter};
@@ -111,11 +112,12 @@ impl Span {
 pub const NEAREST: &str = "the unstable steps next to its own";
 
 impl SystemScene {
-    /// The verdicts on all values of a number in a range, no interval wider than `width` times its larger end missed.
+    /// The verdicts on all values of a number in a range, no interval wider than `width` times its larger end
+    /// missed.
     ///
     /// # Errors
-    /// A number that is none of these, nonlinear bonds, irrational quantities, friction; a budget error, before the work; as
-    /// [`Model::stretches`].
+    /// A number that is none of these, nonlinear bonds, irrational quantities, friction; a budget error,
+    /// before the work; as [`Model::stretches`].
     pub fn intervals(&self, span: &Span, width: f64, limits: &Limits) -> Result<Intervals> {
         self.cost_of_intervals(span, width, limits)?;
         let (role, inner_steps) = (span.role()?, self.model.inner_steps());
@@ -202,12 +204,14 @@ impl SystemScene {
         Ok((level, factor))
     }
 
-    /// The largest growth rate at each value of the number, per unit time, rounded; `None` where it is not known.
+    /// The largest growth rate at each value of the number, per unit time, rounded; `None` where it is not
+    /// known.
     ///
     /// # Errors
     /// As [`SystemScene::intervals`] and [`Model::decide`].
     pub fn growth_rates(&self, span: &Span, values: &[f64], limits: &Limits) -> Result<Vec<Option<f64>>> {
-        // Some milliseconds a rate, whose last digits nobody sees, and a second at most for one that doubles leave open.
+        // Some milliseconds a rate, whose last digits nobody sees, and a second at most for one that doubles
+        // leave open.
         let limits = &Limits { refining: 1 << 20, products: limits.products.min(1 << 30) };
         if span.role()? == Role::Outer {
             return self.model.growth_rates(values, limits);
@@ -220,7 +224,8 @@ impl SystemScene {
         number::parallel::try_map(values, rate)
     }
 
-    /// The unstable intervals of the outer step next to the one of the file, all steps in their ratios: between half of it and twice it.
+    /// The unstable intervals of the outer step next to the one of the file, all steps in their ratios:
+    /// between half of it and twice it.
     ///
     /// # Errors
     /// As [`SystemScene::intervals`].

@@ -5,10 +5,12 @@
 //! "levels": [{"fine": [4, 5, 6], "substeps": 2}, {"fine": [5], "substeps": 3}]
 //! ```
 //!
-//! * `scheme`: `lts`, leapfrog whose forces on what is not fine stand still; `avi`, each element a clock of its own.
+//! * `scheme`: `lts`, leapfrog whose forces on what is not fine stand still; `avi`, each element a clock of
+//!   its own.
 //! * All potentials have one step, dt, and masses are diagonal.
-//! * `levels`, the coarsest first: `fine`, the degrees of freedom that take `substeps` in a step of the level above, or `elements` of a mesh,
-//!   with all their nodes, in `avi` these alone. Each level is a part of the one above.
+//! * `levels`, the coarsest first: `fine`, the degrees of freedom that take `substeps` in a step of the level
+//!   above, or `elements` of a mesh, with all their nodes, in `avi` these alone. Each level is a part of the
+//!   one above.
 
 use std::collections::BTreeSet;
 
@@ -33,7 +35,8 @@ impl Document {
         }
     }
 
-    /// The model with the scheme of the file, where it names one; `moving` are node and axis of each degree of freedom of a mesh.
+    /// The model with the scheme of the file, where it names one; `moving` are node and axis of each degree
+    /// of freedom of a mesh.
     pub fn with_scheme(&self, model: Model, moving: &[(usize, usize)]) -> Result<Model> {
         let Some((scheme, levels)) = self.named_scheme()? else { return Ok(model) };
         let Model::Rational(plain) = model else {

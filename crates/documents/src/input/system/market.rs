@@ -9,8 +9,8 @@
 //! 2 2 4.5
 //! ```
 //!
-//! Rows and columns count from 1; of a symmetric matrix the lower triangle is written; an array is by columns. Entries that
-//! are given twice add up, as assembled matrices do.
+//! Rows and columns count from 1; of a symmetric matrix the lower triangle is written; an array is by
+//! columns. Entries that are given twice add up, as assembled matrices do.
 
 /// The most elements read: 4096 x 4096.
 const MOST_ELEMENTS: usize = 1 << 24;

@@ -14,25 +14,30 @@
 //! }
 //! ```
 //!
-//! `masses` are a number for each degree of freedom or for each three, or a diagonal matrix of these; `mass_matrix` is another name for that.
+//! `masses` are a number for each degree of freedom or for each three, or a diagonal matrix of these;
+//! `mass_matrix` is another name for that.
 //!
-//! Rigid motions are projected out: by `positions` three translations and three rotations, with `"periodic": true` the translations alone,
-//! else the common null space of all stiffnesses, if it is no larger than that. What a stiffness holds is not rigid, each by its own accuracy: then
-//! the file is refused, or the motion stays (see [`Removed`](systems::Removed)).
+//! Rigid motions are projected out: by `positions` three translations and three rotations, with `"periodic":
+//! true` the translations alone, else the common null space of all stiffnesses, if it is no larger than that.
+//! What a stiffness holds is not rigid, each by its own accuracy: then the file is refused, or the motion
+//! stays (see [`Removed`](systems::Removed)).
 //!
-//! `"hydrogen_mass": 3.024` makes hydrogens (up to 1.1) heavier at the cost of the nearest heavy particle. `"constraints": "h-bonds"`, or pairs,
-//! holds distances; then each potential has a `force` by reference, at the positions and not mass-weighted (see `held`).
-//! `"method": "molly-short"` integrates two levels otherwise than by kicks and drifts: the force of the shorter step is followed exactly, or by the
-//! midpoint rule, over the whole longer one, and the other force kicks, filtered (see [`Method`](systems::levels::Method)).
-//! `"symmetric": false` says that a force is no gradient, as one that is learned and predicted directly: then its Jacobian, minus the derivative
-//! of the force, is no Hessian, and its asymmetry no error.
-//! Of particles in space `labels` may be of three words, as `H1 HOH 4`; `elements` are their symbols, `bonded` pairs of them: by these, or by
-//! masses and distances, the motions of a molecule are named.
-//! `"along_orbit": true` says that the Hessians are those along half a period of the integrator's own orbit, which is at rest at t = 0 and at T/2: each
-//! `stiffness` is an array (k, n, n), one matrix for each kick of its clock from t = 0 to T/2, both counted, not mass-weighted. A free molecule has
-//! `positions` at t = 0 and `turned`, those at T/2, by which its rigid motions are set apart. In other coordinates than those of atoms `rigid` has these
-//! motions, an array (2, n, r): mass-weighted columns at both ends.
-//! `"keep_rigid": true` projects no rigid motions out: there are none, as of atoms among others that stand still.
+//! `"hydrogen_mass": 3.024` makes hydrogens (up to 1.1) heavier at the cost of the nearest heavy particle.
+//! `"constraints": "h-bonds"`, or pairs, holds distances; then each potential has a `force` by reference, at
+//! the positions and not mass-weighted (see `held`). `"method": "molly-short"` integrates two levels
+//! otherwise than by kicks and drifts: the force of the shorter step is followed exactly, or by the midpoint
+//! rule, over the whole longer one, and the other force kicks, filtered (see
+//! [`Method`](systems::levels::Method)). `"symmetric": false` says that a force is no gradient, as one that
+//! is learned and predicted directly: then its Jacobian, minus the derivative of the force, is no Hessian,
+//! and its asymmetry no error. Of particles in space `labels` may be of three words, as `H1 HOH 4`;
+//! `elements` are their symbols, `bonded` pairs of them: by these, or by masses and distances, the motions of
+//! a molecule are named. `"along_orbit": true` says that the Hessians are those along half a period of the
+//! integrator's own orbit, which is at rest at t = 0 and at T/2: each `stiffness` is an array (k, n, n), one
+//! matrix for each kick of its clock from t = 0 to T/2, both counted, not mass-weighted. A free molecule has
+//! `positions` at t = 0 and `turned`, those at T/2, by which its rigid motions are set apart. In other
+//! coordinates than those of atoms `rigid` has these motions, an array (2, n, r): mass-weighted columns at
+//! both ends. `"keep_rigid": true` projects no rigid motions out: there are none, as of atoms among others
+//! that stand still.
 
 use nalgebra::DMatrix;
 use serde::Deserialize;
@@ -46,7 +51,8 @@ use number::error::{Error, Result};
 use number::rational::to_f64;
 use systems::{Along, Body, Jacobians, MeasuredSystem, Model};
 
-/// How well a measured stiffness is known unless its file says so: a Hessian by differences is good to some 10^-6 of its norm.
+/// How well a measured stiffness is known unless its file says so: a Hessian by differences is good to some
+/// 10^-6 of its norm.
 const USUAL_ACCURACY: f64 = 1e-6;
 
 #[derive(Debug, Deserialize)]
@@ -142,7 +148,8 @@ impl TryFrom<Value> for MassesDocument {
 }
 
 impl MassesDocument {
-    /// A mass for each of n degrees of freedom, from as many numbers, one for each three, or a diagonal matrix of either.
+    /// A mass for each of n degrees of freedom, from as many numbers, one for each three, or a diagonal
+    /// matrix of either.
     pub fn read(&self, field: &str, n: usize, arrays: &Arrays) -> Result<Vec<f64>> {
         let masses = match self {
             MassesDocument::Array(at) => at.read(field, arrays)?.into_diagonal(field)?,
@@ -308,7 +315,8 @@ impl Document {
         }
     }
 
-    /// The positions of the particles, where they are given. Elements and bonds are checked against the number of particles.
+    /// The positions of the particles, where they are given. Elements and bonds are checked against the
+    /// number of particles.
     pub fn positions(&self, n: usize, arrays: &Arrays) -> Result<Option<Vec<[f64; 3]>>> {
         let positions = self.positions.as_ref().map(|at| at.read("positions", arrays)).transpose()?;
         let positions = positions.map(|positions| triples(&positions.into_values(), n)).transpose()?;
@@ -391,8 +399,8 @@ impl PotentialDocument {
     }
 }
 
-/// That the Hessians of a clock's kicks are symmetric to their accuracy, which is relative to the largest norm among them: within that the symmetric part is
-/// taken.
+/// That the Hessians of a clock's kicks are symmetric to their accuracy, which is relative to the largest
+/// norm among them: within that the symmetric part is taken.
 fn check_symmetric(field: &str, kicks: &[DMatrix<f64>], accuracy: f64) -> Result<()> {
     let largest = kicks.iter().map(DMatrix::norm).fold(0.0, f64::max);
     let square = kicks.iter().enumerate().filter(|(_, matrix)| matrix.is_square());

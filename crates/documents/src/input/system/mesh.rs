@@ -12,10 +12,10 @@
 //!
 //! * `nodes`: 1 to 3 coordinates each. `elements`: 2 nodes a bar, 3 a triangle in the plane, 4 a tetrahedron.
 //! * `fixed`: nodes, or \[node, axis\] pairs.
-//! * `young`, `density`; `poisson` (0 unless given) and `thickness` (the cross-section of bars; 1 unless given); `plane`:
-//!   stress (unless given) or strain.
-//! * The steps: `step` for all; or `steps`, one an element; or `steps` one a class with `classes`, the class of each
-//!   element; or `courant`, for bars: the step of each is that times l/c, c = √(young/density).
+//! * `young`, `density`; `poisson` (0 unless given) and `thickness` (the cross-section of bars; 1 unless
+//!   given); `plane`: stress (unless given) or strain.
+//! * The steps: `step` for all; or `steps`, one an element; or `steps` one a class with `classes`, the class
+//!   of each element; or `courant`, for bars: the step of each is that times l/c, c = √(young/density).
 
 use std::collections::BTreeSet;
 
@@ -34,7 +34,8 @@ pub(super) fn labels(moving: &[(usize, usize)]) -> Vec<String> {
 }
 
 impl MeshDocument {
-    /// The system, and the node and the axis of each degree of freedom; each element takes so many substeps in its step, where they are given.
+    /// The system, and the node and the axis of each degree of freedom; each element takes so many substeps
+    /// in its step, where they are given.
     pub fn system(&self, substeps: Option<&[u32]>) -> Result<(System, Vec<(usize, usize)>)> {
         let mut mesh = self.mesh()?;
         for ((_, step), &substeps) in mesh.elements.iter_mut().zip(substeps.unwrap_or_default()) {

@@ -15,27 +15,31 @@
 //! }
 //! ```
 //!
-//! * All quantities are exact, texts or JSON numbers (0.1 is 1/10); indices count from 0. Stiffnesses, springs and scales may involve
-//!   π, as `"pi^2/25"`; of one mass alone (K clocks on one oscillator) its mass and its steps, too.
+//! * All quantities are exact, texts or JSON numbers (0.1 is 1/10); indices count from 0. Stiffnesses,
+//!   springs and scales may involve π, as `"pi^2/25"`; of one mass alone (K clocks on one oscillator) its
+//!   mass and its steps, too.
 //! * `time_unit`, if given, is the name of the unit of steps and periods, as "ps": answers name it.
 //! * `masses`, or `mass_matrix` by rows.
-//! * A potential has a `step`, a `phase` (0 unless given, or 1/2), and at least one of `springs` (i, j, k; j null for a
-//!   wall), `stiffness` (by rows), `bonds` (a named form between i and j, without j to a wall at 0). They add up, times
-//!   `scale` (1 unless given).
-//! * Forms: `harmonic` (k), `quartic` (k, beta), `lennard-jones` (epsilon, sigma). With bonds other than harmonic the
-//!   system is the linear one at the equilibrium found near the positions `near`: exact for the Hessian in doubles,
-//!   which is itself rounded.
-//! * A `stiffness` by reference, `{"npy": "h.npy"}` or `{"npz": "data.npz", "array": "h"}`, makes it a system of measured
-//!   doubles: then all stiffnesses are references, `masses` and `positions` too; `mass_weighted` says that the matrices are,
-//!   `accuracy` how well they are known.
-//! * `labels` name the degrees of freedom, or the particles of three each; `friction` is a rate γ per unit time: O, v → exp(−γ t) v,
-//!   in the middle of every drift of the whole schedule, also for what only some of the clocks act on.
-//! * `symmetric`: `false` says that a force is no gradient: `stiffness` by rows is minus its derivative, whatever that is.
+//! * A potential has a `step`, a `phase` (0 unless given, or 1/2), and at least one of `springs` (i, j, k; j
+//!   null for a wall), `stiffness` (by rows), `bonds` (a named form between i and j, without j to a wall
+//!   at 0). They add up, times `scale` (1 unless given).
+//! * Forms: `harmonic` (k), `quartic` (k, beta), `lennard-jones` (epsilon, sigma). With bonds other than
+//!   harmonic the system is the linear one at the equilibrium found near the positions `near`: exact for the
+//!   Hessian in doubles, which is itself rounded.
+//! * A `stiffness` by reference, `{"npy": "h.npy"}` or `{"npz": "data.npz", "array": "h"}`, makes it a system
+//!   of measured doubles: then all stiffnesses are references, `masses` and `positions` too; `mass_weighted`
+//!   says that the matrices are, `accuracy` how well they are known.
+//! * `labels` name the degrees of freedom, or the particles of three each; `friction` is a rate γ per unit
+//!   time: O, v → exp(−γ t) v, in the middle of every drift of the whole schedule, also for what only some of
+//!   the clocks act on.
+//! * `symmetric`: `false` says that a force is no gradient: `stiffness` by rows is minus its derivative,
+//!   whatever that is.
 //! * `scheme`: `"lts"` or `"avi"` with `levels` are local time steps, see `local`.
-//! * In place of masses and potentials a `mesh` of finite elements, see `mesh`; or `build`: `{"kind": "chain", "masses": 200, "stiffness": [...], "steps": [...]}`,
-//!   `{"kind": "stiff-soft", "pairs": 4, "stiff": "100", "steps": [stiff, soft]}`,
-//!   `{"kind": "graded-bar", "elements": 100, "classes": 10, "courant": "1/4"}`,
-//!   `{"kind": "tethered-pair", "masses": [...], "stiffness": [bond, tether], "steps": [bond, tether]}`.
+//! * In place of masses and potentials a `mesh` of finite elements, see `mesh`; or `build`: `{"kind":
+//!   "chain", "masses": 200, "stiffness": [...], "steps": [...]}`, `{"kind": "stiff-soft", "pairs": 4,
+//!   "stiff": "100", "steps": [stiff, soft]}`, `{"kind": "graded-bar", "elements": 100, "classes": 10,
+//!   "courant": "1/4"}`, `{"kind": "tethered-pair", "masses": [...], "stiffness": [bond, tether], "steps":
+//!   [bond, tether]}`.
 //!
 //! | file | what |
 //! |---|---|
@@ -158,8 +162,9 @@ impl SystemFile {
     /// Reads it with the folder that the files it refers to are in, or with these arrays in memory.
     ///
     /// # Errors
-    /// JSON that is no system, an unknown field, a quantity that does not parse, an index out of range, and whatever
-    /// [`System::new`] refuses; each by the entry's name. An I/O error of the files that it refers to.
+    /// JSON that is no system, an unknown field, a quantity that does not parse, an index out of range, and
+    /// whatever [`System::new`] refuses; each by the entry's name. An I/O error of the files that it refers
+    /// to.
     pub fn read(&self, arrays: impl Into<Arrays>) -> Result<SystemScene> {
         SystemScene::parsed(arrays.into(), self.source.clone(), self.text.as_deref())
     }
@@ -237,11 +242,13 @@ impl SystemScene {
         scene.asked(None, false, friction.as_ref(), method)
     }
 
-    /// This system with what is asked of it beside its file: another accuracy of measured stiffnesses, relative to their norms; their rigid
-    /// motions left in; friction of a rate per unit time, O in the middle of every drift; another integrator of two levels.
+    /// This system with what is asked of it beside its file: another accuracy of measured stiffnesses,
+    /// relative to their norms; their rigid motions left in; friction of a rate per unit time, O in the
+    /// middle of every drift; another integrator of two levels.
     ///
     /// # Errors
-    /// An accuracy or rigid motions where nothing is measured, an accuracy that is not in (0, 1/10), a rate that is not positive.
+    /// An accuracy or rigid motions where nothing is measured, an accuracy that is not in (0, 1/10), a rate
+    /// that is not positive.
     pub fn asked(
         mut self,
         accuracy: Option<f64>,
@@ -319,8 +326,8 @@ impl SystemScene {
         self.bonds.as_ref().map(|n| n.equilibrium.as_slice())
     }
 
-    /// The integrator's own periodic orbit beside the equilibrium, and the verdict about it; `None` where there are no nonlinear
-    /// bonds, or where the equilibrium is the orbit.
+    /// The integrator's own periodic orbit beside the equilibrium, and the verdict about it; `None` where
+    /// there are no nonlinear bonds, or where the equilibrium is the orbit.
     ///
     /// # Errors
     /// Where no orbit is found; as [`decide_along`](systems::decide_along).
@@ -419,7 +426,8 @@ fn check_schema(schema: &str) -> Result<()> {
     Err(of_another_kind(schema, SCHEMA))
 }
 
-/// A model, the bonds at whose equilibrium it is, and labels of its degrees of freedom, where the file implies some.
+/// A model, the bonds at whose equilibrium it is, and labels of its degrees of freedom, where the file
+/// implies some.
 struct Described {
     model: Model,
     bonds: Option<Nonlinear>,

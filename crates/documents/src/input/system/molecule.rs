@@ -13,7 +13,8 @@ use number::Rational;
 use number::error::{Error, Result};
 use systems::Body;
 
-/// A system file for an archive that holds `fast`, `slow`, `masses` and `positions`: mass-weighted, 1/ps², the steps in fs.
+/// A system file for an archive that holds `fast`, `slow`, `masses` and `positions`: mass-weighted, 1/ps²,
+/// the steps in fs.
 pub fn of_archive(npz: &str, steps: [&Rational; 2]) -> Value {
     let at = |array: &str| json!({"npz": npz, "array": array});
     let step = |step: &Rational| (step / Rational::from_integer(1000.into())).to_string();
@@ -84,7 +85,8 @@ impl SystemScene {
     /// The steps of measured levels, or of forces that are no gradient, in fs.
     ///
     /// # Errors
-    /// A file without `time_unit`, or with another than fs, ps, ns or s; as [`Model::measured_steps`](systems::Model::measured_steps).
+    /// A file without `time_unit`, or with another than fs, ps, ns or s; as
+    /// [`Model::measured_steps`](systems::Model::measured_steps).
     pub fn scheme(&self) -> Result<Scheme> {
         let steps = match self.model.jacobians() {
             Some(jacobians) => jacobians.steps(),

@@ -8,7 +8,8 @@ use number::error::Result;
 use systems::{PiPotential, Symmetric, System, beside_pi};
 
 impl Document {
-    /// The system with a rational in the place of π, where stiffnesses involve it; `None` where all numbers are rational.
+    /// The system with a rational in the place of π, where stiffnesses involve it; `None` where all numbers
+    /// are rational.
     pub fn beside_pi(&self, mass: Symmetric) -> Result<Option<System>> {
         let n = mass.size();
         let potentials = self

@@ -1,8 +1,9 @@
 //! One file, many systems: any number of it replaced by the values of a range.
 //!
-//! A path names the number as it stands in the file: `potentials.1.step`, `build.steps.0`, `potentials.bond.scale` (a
-//! potential by its name), `potentials.0.springs.2.2`. A last key that is not there yet is added (`scale`, `phase`). An entry of a symmetric
-//! matrix off its diagonal is both: `mass_matrix.0.1` is `mass_matrix.1.0`, too. `outer` is the longest step, all steps in their ratios.
+//! A path names the number as it stands in the file: `potentials.1.step`, `build.steps.0`,
+//! `potentials.bond.scale` (a potential by its name), `potentials.0.springs.2.2`. A last key that is not
+//! there yet is added (`scale`, `phase`). An entry of a symmetric matrix off its diagonal is both:
+//! `mass_matrix.0.1` is `mass_matrix.1.0`, too. `outer` is the longest step, all steps in their ratios.
 
 use std::fmt::{Display, Formatter};
 use std::str::FromStr;
@@ -86,7 +87,8 @@ pub struct Scan {
 }
 
 impl Scan {
-    /// Of a system, whatever these numbers are in it; its accuracy, and whether it keeps rigid motions, stay as they are.
+    /// Of a system, whatever these numbers are in it; its accuracy, and whether it keeps rigid motions, stay
+    /// as they are.
     ///
     /// # Errors
     /// As [`SystemScene::read`] at the first point; a path that leads nowhere; too many points.
@@ -135,7 +137,8 @@ impl Scan {
 }
 
 impl SystemScene {
-    /// The number at a path in words, and the power of time in its unit: `potentials.soft.step` is the step of soft, a time.
+    /// The number at a path in words, and the power of time in its unit: `potentials.soft.step` is the step
+    /// of soft, a time.
     pub fn number(&self, path: &str) -> (String, i8) {
         let keys: Vec<&str> = path.split('.').collect();
         let text = |value: &Value| value.as_str().map_or_else(|| value.to_string(), String::from);

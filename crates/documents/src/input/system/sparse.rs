@@ -12,9 +12,11 @@
 //! }
 //! ```
 //!
-//! `csr` names the three arrays `data`, `indices` and `indptr` of compressed rows: `slow.data` and so on, or, where it is empty, those of a file
-//! of `scipy.sparse.save_npz`. With `"scheme": "lts"` there is one stiffness, and `"levels": [{"fine": [4, 5], "substeps": 2}]` are local
-//! time steps (see `local`); `fine` may stand by reference, too, as `{"npz": "mesh.npz", "array": "fine"}`. A stiffness is K, not mass-weighted, symmetric to rounding; both triangles stand in it.
+//! `csr` names the three arrays `data`, `indices` and `indptr` of compressed rows: `slow.data` and so on, or,
+//! where it is empty, those of a file of `scipy.sparse.save_npz`. With `"scheme": "lts"` there is one
+//! stiffness, and `"levels": [{"fine": [4, 5], "substeps": 2}]` are local time steps (see `local`); `fine`
+//! may stand by reference, too, as `{"npz": "mesh.npz", "array": "fine"}`. A stiffness is K, not
+//! mass-weighted, symmetric to rounding; both triangles stand in it.
 
 use std::collections::BTreeSet;
 
@@ -70,8 +72,8 @@ pub(super) fn read(document: &Document, arrays: &Arrays) -> Result<SparseSystem>
     SparseSystem::new(sparse_levels, [inner, outer], document.accuracy()?, removed)
 }
 
-/// Two levels that a file gives, with the steps of another in which nothing else differs: their stiffnesses are not read again. `None` where the fast one is no
-/// longer the fast one, or there are no two levels.
+/// Two levels that a file gives, with the steps of another in which nothing else differs: their stiffnesses
+/// are not read again. `None` where the fast one is no longer the fast one, or there are no two levels.
 pub(super) fn with_steps(sparse_system: &SparseSystem, files: [&Value; 2]) -> Result<Option<SparseSystem>> {
     let steps = |file: &Value| -> Result<Vec<Rational>> {
         let document = measured::parse(file)?;

@@ -15,7 +15,8 @@ notation! {
 question! {
     /// Consistency, symmetry, order, stable steps, cost of an integrator; its verdict at one step.
     args struct Word {
-        /// The integrator: kicks K, K1, K2, drifts D, midpoints C, exact flows R, friction O, n*(...), as "K(1/2) D(1) K(1/2)".
+        /// The integrator: kicks K, K1, K2, drifts D, midpoints C, exact flows R, friction O, n*(...), as
+        /// "K(1/2) D(1) K(1/2)".
         #[arg(value_name = "WORD", value_parser = flag::<words::Word>)]
         word: Option<words::Word>,
         /// One of the catalogue, which --list shows.

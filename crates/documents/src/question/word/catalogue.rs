@@ -129,8 +129,8 @@ fn slow_range() -> StepRange {
 }
 
 impl Listed {
-    /// Whether no step below √Λ2 h = 2 is unstable at Λ2/Λ1 = 1/16: that is free of resonance. `None` for one force, and where edges that touch are
-    /// not separated.
+    /// Whether no step below √Λ2 h = 2 is unstable at Λ2/Λ1 = 1/16: that is free of resonance. `None` for one
+    /// force, and where edges that touch are not separated.
     pub fn is_free(&self) -> Option<bool> {
         let two = self.two.as_ref()?;
         let limit = Rational::from_integer(64.into());

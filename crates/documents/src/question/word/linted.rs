@@ -20,7 +20,8 @@ pub struct Linted {
     /// Λ2/Λ1; 0 for one force. `None` where the word names forces and the stiffnesses are not given.
     pub rho: Option<Rational>,
     pub stability: Option<Stability>,
-    /// The stable and unstable intervals of a word with exact flows, filters or friction: in steps h, within the range.
+    /// The stable and unstable intervals of a word with exact flows, filters or friction: in steps h, within
+    /// the range.
     pub pieces: Option<Pieces>,
     /// The range of (h² Λ1) that is asked about, rounded outwards.
     pub range: Option<(Rational, Rational)>,
@@ -70,7 +71,8 @@ impl Pieces {
         Ok(Pieces { all, range: (lo, hi), root, is_free })
     }
 
-    /// The end of the stable steps that begin with the range at 0, in h; `None` where the next ones are stable, too, or the range ends.
+    /// The end of the stable steps that begin with the range at 0, in h; `None` where the next ones are
+    /// stable, too, or the range ends.
     fn edge(&self) -> Option<(f64, f64)> {
         let first = self.all.first().filter(|first| first.stable && self.range.0 == 0.0)?;
         self.all.get(1).filter(|next| !next.stable).map(|_| first.upper)

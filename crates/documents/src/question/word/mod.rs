@@ -18,7 +18,8 @@ use number::{ExactSign, Laurent, Real, Sign};
 use shown::{chosen, record};
 use words::{Enclosed, Forces, Stability, at};
 
-/// The most kicks of a word unless a budget says otherwise: roots of polynomials of this degree are isolated in some seconds.
+/// The most kicks of a word unless a budget says otherwise: roots of polynomials of this degree are isolated
+/// in some seconds.
 const MOST_KICKS: u64 = 100;
 
 /// So many letters cost as much as one power of the force.

@@ -87,7 +87,8 @@ fn blocks<'a, T>(
     found
 }
 
-/// Each mode and each pair of modes at each scheme's own ratio, and the schemes' outer steps as lines through their rows.
+/// Each mode and each pair of modes at each scheme's own ratio, and the schemes' outer steps as lines through
+/// their rows.
 pub(super) fn of_periods(advice: &Advice, title: &str) -> Figure {
     let lines = |answer: &Answer| {
         let modes = answer.rows.iter().map(|row| mode(advice, answer, row));
@@ -110,8 +111,8 @@ pub(super) fn within(foot: Foot, band: &Rational, friction: Option<&Rational>, u
     friction.map_or(foot.clone(), |value| foot.words(&format!("friction {}", rate(value))))
 }
 
-/// Safe up to what is published, caution up to the band's edge, the unstable intervals over what is not advised; no step is called stable where a clock
-/// has no period.
+/// Safe up to what is published, caution up to the band's edge, the unstable intervals over what is not
+/// advised; no step is called stable where a clock has no period.
 fn mode(advice: &Advice, answer: &Answer, row: &Row) -> Line {
     let alone = answer.scheme.steps().len() == 1;
     let known = !advice.silent && !advice.lacks_fast && advice.beads.is_none();

@@ -1,4 +1,5 @@
-//! Advice on forces that are no gradient, drawn: growth at every multiple of the step before the outermost one.
+//! Advice on forces that are no gradient, drawn: growth at every multiple of the step before the outermost
+//! one.
 
 use plot::palette::{COEXISTENCE, GREY, HYPERBOLIC, INK, SAFE};
 use plot::{Anchor, Axis, Figure, Layer, Note, Panel, Place, Shape, Stroke};
@@ -17,7 +18,8 @@ const HEIGHT: f64 = 70.0;
 /// From a line of words to the next, as a share of that.
 const NEXT: f64 = 0.09;
 
-/// A panel for each step before the outermost one, with the schemes that have it; `None` where every scheme has one step alone.
+/// A panel for each step before the outermost one, with the schemes that have it; `None` where every scheme
+/// has one step alone.
 pub(super) fn figure(findings: &DirectFindings, title: &str) -> Option<Figure> {
     let mut inner: Vec<(&Rational, Vec<&DirectFinding>)> = Vec::new();
     for direct_finding in findings.schemes.iter().filter(|scheme| !scheme.ladder.is_empty()) {

@@ -12,7 +12,8 @@ use molecules::{
 use number::Rational;
 use number::rational::to_f64;
 
-/// Limits of every linear analysis of given periods; the first is left out where these are the periods of all modes.
+/// Limits of every linear analysis of given periods; the first is left out where these are the periods of all
+/// modes.
 const UNKNOWN: [&str; 3] = [
     "whether a faster mode exists than those given: coupled modes are faster than two-body formulas say",
     "how far anharmonic motion, another temperature or other surroundings move the periods beyond the band",
@@ -49,7 +50,8 @@ pub(super) fn of(advice: &Advice, reading: Option<&Reading>) -> Vec<String> {
     lines
 }
 
-/// The outer step that is advised, where it is another one than that of the scheme: no other one is ever written into an engine's input.
+/// The outer step that is advised, where it is another one than that of the scheme: no other one is ever
+/// written into an engine's input.
 pub(super) fn advised<'a>(scheme: &Scheme, safe: &'a Option<Rational>) -> Option<&'a Rational> {
     safe.as_ref().filter(|outer| *outer != scheme.outer())
 }
@@ -58,7 +60,8 @@ pub(super) fn of_answer(answer: &Answer) -> Option<&Rational> {
     advised(&answer.scheme, &answer.safe)
 }
 
-/// GROMACS's own check of its innermost step, in its own words; of the fastest motion its name and its period over n.
+/// GROMACS's own check of its innermost step, in its own words; of the fastest motion its name and its period
+/// over n.
 pub(super) fn grompp(reading: &Reading, fastest: &str, part: impl Fn(u64) -> String) -> Option<String> {
     let limits = GROMPP.map(|(n, does)| format!("{does} where dt is longer than T/{n} = {} fs", part(n)));
     let line = format!("  note       {fastest}: grompp {}, {}", limits[0], limits[1]);
@@ -134,7 +137,8 @@ fn next(advice: &Advice, answer: &Answer) -> String {
     format!("; {what}, margin {}", unit.of(margin))
 }
 
-/// On which condition a scheme is stable where a clock has no period: its forces' own steps are no longer than all others'.
+/// On which condition a scheme is stable where a clock has no period: its forces' own steps are no longer
+/// than all others'.
 fn slow_forces(advice: &Advice, answer: &Answer) -> String {
     let Some(proven) = answer.needs else { return String::new() };
     let value = proven.max(shortest_of(to_f64(answer.scheme.outer())));

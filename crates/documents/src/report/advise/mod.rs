@@ -35,8 +35,9 @@ pub enum View<'a> {
     Direct(&'a DirectFindings),
 }
 
-/// The document `kickdrift/advise/1`, `kickdrift/advise-system/1` or `kickdrift/advise-direct/1`, but for the input; with what an engine's text says, where the steps are
-/// those of one; for people with `notes` on how it was read.
+/// The document `kickdrift/advise/1`, `kickdrift/advise-system/1` or `kickdrift/advise-direct/1`, but for the
+/// input; with what an engine's text says, where the steps are those of one; for people with `notes` on how
+/// it was read.
 pub fn document(view: View, reading: Option<&Reading>, notes: &[String]) -> Document {
     match view {
         View::Periods(advice) => of_periods(advice, reading),
@@ -45,8 +46,9 @@ pub fn document(view: View, reading: Option<&Reading>, notes: &[String]) -> Docu
     }
 }
 
-/// Each mode and each pair of modes, or the molecule and each group of its fast modes, at each scheme's own ratio, and the schemes' outer steps as lines
-/// through their rows. Of forces that are no gradient the growth over the outer step; `None` where there is one step alone.
+/// Each mode and each pair of modes, or the molecule and each group of its fast modes, at each scheme's own
+/// ratio, and the schemes' outer steps as lines through their rows. Of forces that are no gradient the growth
+/// over the outer step; `None` where there is one step alone.
 pub fn figure(view: View, title: &str) -> Option<plot::Figure> {
     match view {
         View::Periods(advice) => Some(chart::of_periods(advice, title)),

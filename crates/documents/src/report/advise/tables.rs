@@ -15,8 +15,8 @@ pub fn engine(advised: Option<&Rational>, reading: &Reading) -> Value {
     json!({"name": reading.engine.name(), "dt": reading.engine.dt(), "forces": reading.forces, "used": reading.used, "remarks": reading.remarks, "rewritten": rewritten})
 }
 
-/// What is published about a scheme of so many steps, for the fastest mode on any clock but the outermost and for that on the innermost one: each with
-/// its limit in fs.
+/// What is published about a scheme of so many steps, for the fastest mode on any clock but the outermost and
+/// for that on the innermost one: each with its limit in fs.
 pub fn published(steps: usize, modes: [&str; 2], limit: impl Fn(&Caution) -> Cell + Send + Sync) -> Value {
     let record = Record::new()
         .field(Column::new("mode"), |caution: &Caution| modes[usize::from(caution.inner)].into())

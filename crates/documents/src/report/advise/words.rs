@@ -5,8 +5,8 @@ use molecules::unit::{TimeUnit, decimal};
 use molecules::{Bound, Caps, Mode, Origin, PRACTICE, Scheme};
 use number::Rational;
 
-/// A number known to an enclosure, rounded to at most so many significant digits, fewer where the enclosure is wider: every digit is that of
-/// both ends' rounding.
+/// A number known to an enclosure, rounded to at most so many significant digits, fewer where the enclosure
+/// is wider: every digit is that of both ends' rounding.
 ///
 /// ```
 /// use kickdrift_documents::report::advise::nearest;
@@ -67,7 +67,8 @@ pub(super) fn cap(x: &Rational, unit: TimeUnit) -> String {
     unit.of(down(number::rational::to_f64(x)))
 }
 
-/// The choice of an outer step: `safe` is below what is published too, `largest` is proven for the whole band.
+/// The choice of an outer step: `safe` is below what is published too, `largest` is proven for the whole
+/// band.
 pub(super) struct Choice<'a> {
     pub scheme: &'a Scheme,
     pub safe: &'a Option<Rational>,

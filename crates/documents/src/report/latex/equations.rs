@@ -20,7 +20,8 @@ pub struct Equation {
 /// The room of a column of two between the left side and the number of the equation, in points.
 const LINE: f64 = 150.0;
 
-/// The equations as one `align`, broken before terms that a column of two has no room for; pages may be broken too.
+/// The equations as one `align`, broken before terms that a column of two has no room for; pages may be
+/// broken too.
 ///
 /// # Errors
 /// A term that no line holds.

@@ -5,7 +5,8 @@ use serde_json::{Map, Value};
 /// Labels longer than this end in a sum over all inputs.
 const LONGEST_LABEL: usize = 60;
 
-/// A name that tables of other inputs do not have: the values of all of them, or a checksum where these are long.
+/// A name that tables of other inputs do not have: the values of all of them, or a checksum where these are
+/// long.
 pub fn label(name: &str, input: &Map<String, Value>) -> String {
     let values = input.iter().map(|(key, value)| match value {
         Value::String(text) => format!("-{key}-{text}"),

@@ -4,13 +4,13 @@ use super::typeset::{escaped, shown};
 use crate::report::table::{Align, Column, Table};
 use number::named;
 
-/// The widths, in points, of a column of a two-column article on A4 and of the text of a one-column one, both in
-/// letters of ten points: the narrowest that there are.
+/// The widths, in points, of a column of a two-column article on A4 and of the text of a one-column one, both
+/// in letters of ten points: the narrowest that there are.
 const COLUMN: f64 = 221.0;
 const TEXT: f64 = 345.0;
 
-/// The sizes of letters: their command, their widths against ten points (those of Computer Modern's digits), half the
-/// space between columns.
+/// The sizes of letters: their command, their widths against ten points (those of Computer Modern's digits),
+/// half the space between columns.
 const SIZES: [(&str, f64, f64); 4] = [
     ("", 1.0, 6.0),
     ("\\small", 0.925, 6.0),
@@ -66,8 +66,8 @@ impl Body {
         }
     }
 
-    /// The largest letters in which the table fits, in one column of two if it can be and no environment is asked for; `None`
-    /// where it does not fit.
+    /// The largest letters in which the table fits, in one column of two if it can be and no environment is
+    /// asked for; `None` where it does not fit.
     fn place(&self, is_long: bool, float: Option<Float>) -> Option<Place> {
         let fits = |limit: f64, sizes: usize| {
             let fits = |(_, scale, space): &&(&str, f64, f64)| self.width(*scale, *space) <= limit;

@@ -1,5 +1,5 @@
-//! Tables for papers: LaTeX floats with a `booktabs` body, numbers in math mode and aligned at their points, no wider than
-//! a column of text; beyond a page a `longtable`. Polynomials are equations.
+//! Tables for papers: LaTeX floats with a `booktabs` body, numbers in math mode and aligned at their points,
+//! no wider than a column of text; beyond a page a `longtable`. Polynomials are equations.
 
 mod equations;
 mod label;
@@ -22,12 +22,13 @@ const ROWS_OF_A_PAGE: usize = 40;
 /// Significant digits where none are asked for, the first of them that fit the paper.
 const DIGITS: [u32; 4] = [10, 8, 6, 4];
 
-/// A table with its caption, its parameters behind it, and the label `tab:NAME-PARAMETERS-FORM`. Without `digits` as many are
-/// shown as fit, ten at most.
+/// A table with its caption, its parameters behind it, and the label `tab:NAME-PARAMETERS-FORM`. Without
+/// `digits` as many are shown as fit, ten at most.
 ///
-/// It fits an article of one column and one of two: in a column of two where it can, across both where it must, in
-/// smaller letters where that is not enough, unless `float` chooses; what is too wide even so goes on in further tables, the first columns of
-/// numbers repeated. More rows than a page holds are a `longtable`, for which an article of two columns is interrupted.
+/// It fits an article of one column and one of two: in a column of two where it can, across both where it
+/// must, in smaller letters where that is not enough, unless `float` chooses; what is too wide even so goes
+/// on in further tables, the first columns of numbers repeated. More rows than a page holds are a
+/// `longtable`, for which an article of two columns is interrupted.
 ///
 /// # Errors
 /// A column wider than a page.

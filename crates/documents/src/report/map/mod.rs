@@ -1,5 +1,5 @@
-//! The verdicts of a grid on their way out: counts for the summary, rows of the pairs that are not plainly stable,
-//! arrays of all pairs. All take one band at a time.
+//! The verdicts of a grid on their way out: counts for the summary, rows of the pairs that are not plainly
+//! stable, arrays of all pairs. All take one band at a time.
 
 mod arrays;
 mod rows;

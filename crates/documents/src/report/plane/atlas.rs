@@ -1,7 +1,7 @@
 //! The atlas: every tongue as the segment that it is in the (h1, h2) plane, over the curves (a, b).
 //!
-//! Along the ray h2 = h1 p/q a tongue is the segment between its two edges; nothing is sampled, so what is thinner
-//! than any grid is there too: as a dot as wide as the lines.
+//! Along the ray h2 = h1 p/q a tongue is the segment between its two edges; nothing is sampled, so what is
+//! thinner than any grid is there too: as a dot as wide as the lines.
 
 use plot::palette::{self, COEXISTENCE, Colour, Gradient};
 use plot::{Axis, ColourBar, Figure, Layer, Panel, Place, Shape, Stroke};
@@ -39,8 +39,8 @@ const WIDTH: f64 = 0.55;
 const ACROSS: f64 = 320.0;
 /// A line in the legend, wide enough to show its colour.
 const SAMPLE: f64 = 2.0;
-/// The families' marks, for those who see no colours: on the middle of each segment that is longer than so many points; the strongest
-/// family is the one without.
+/// The families' marks, for those who see no colours: on the middle of each segment that is longer than so
+/// many points; the strongest family is the one without.
 const SHAPES: [Option<Shape>; FAMILIES] = [
     None,
     Some(Shape::Triangle),
@@ -88,7 +88,8 @@ impl Atlas<'_> {
         self.finish(panel, 135.0)
     }
 
-    /// The fastest growth on a gradient; in the last tongue of a ratio growth has no bound, and the strongest colour.
+    /// The fastest growth on a gradient; in the last tongue of a ratio growth has no bound, and the strongest
+    /// colour.
     pub fn by_growth(&self) -> Figure {
         let bar = self.bar();
         let mut panel = self.panel(|_| PALE);

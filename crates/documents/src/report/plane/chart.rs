@@ -220,7 +220,8 @@ pub(super) fn labels(mut panel: Panel, curves: &[Curve], window: &Window) -> Pan
         let mut points = curve.pieces.iter().flatten();
         if let Some(point) = points.find(|point| roomy(point.h1, point.h2)) {
             let text = format!("({}, {})", curve.a, curve.b).replace('-', "−");
-            // Above the curve, for unstable pairs lie below it; from the middle on, where it falls steeply, right of it.
+            // Above the curve, for unstable pairs lie below it; from the middle on, where it falls steeply,
+            // right of it.
             let side = if share(window.h1, point.h1) < 0.5 { Anchor::Middle } else { Anchor::Start };
             let shift = if side == Anchor::Middle { [0.0, 7.5] } else { [2.0, 5.0] };
             panel = panel.note(Note::new([point.h1, point.h2], &text).anchored(side, shift));

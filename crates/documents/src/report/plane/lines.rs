@@ -10,7 +10,8 @@ pub fn lines(panel: Panel, curves: &[Curve]) -> Panel {
     lines_in(|_| INK, "", panel, curves)
 }
 
-/// One layer for each a, each in a colour of its own, behind what comes after; `before` stands before the names.
+/// One layer for each a, each in a colour of its own, behind what comes after; `before` stands before the
+/// names.
 pub fn lines_in(colour: impl Fn(i64) -> Colour, before: &str, mut panel: Panel, curves: &[Curve]) -> Panel {
     let mut families: Vec<i64> = curves.iter().map(|curve| curve.a).collect();
     families.sort_unstable();

@@ -1,4 +1,5 @@
-//! The (h1, h2) plane drawn: unstable pairs, resonance curves, and one over the other; and the atlas of all tongues.
+//! The (h1, h2) plane drawn: unstable pairs, resonance curves, and one over the other; and the atlas of all
+//! tongues.
 
 mod atlas;
 mod chart;

@@ -5,8 +5,8 @@ use clocks::map::Grid;
 /// The most cells along a side: at 110 mm of paper each is a third of a point, and nothing smaller is drawn.
 const MOST_CELLS: usize = 900;
 
-/// One value for each cell of at most 900 x 900, a cell standing for one pair of a small grid and for a block of a
-/// large one. Of the values put into a cell the largest stays.
+/// One value for each cell of at most 900 x 900, a cell standing for one pair of a small grid and for a block
+/// of a large one. Of the values put into a cell the largest stays.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Raster<T> {
     /// The multipliers of the first pair, the numbers of pairs and of cells: of columns, of rows.

@@ -42,8 +42,8 @@ fn panel(run: &Run, label: &str, value: fn(&Sample) -> f64, colour: usize) -> Pa
         .with(Layer::lines(vec![points], stroke).labelled("Algorithm 1"))
 }
 
-/// a exp(rate t): through the last sample of a linear run, where the fastest mode is left alone; through the first one of a
-/// nonlinear run, which follows it while deviations are small.
+/// a exp(rate t): through the last sample of a linear run, where the fastest mode is left alone; through the
+/// first one of a nonlinear run, which follows it while deviations are small.
 fn with_prediction(run: &Run, panel: Panel) -> Panel {
     let (Some(first), true) = (run.series.first(), run.predicted > run.resolution()) else { return panel };
     let end = run.series.last().map_or(1.0, |s| s.time);

@@ -1,4 +1,5 @@
-//! A run of Algorithm 1 as a document: the series as rows, measured growth beside the predicted one; and drawn.
+//! A run of Algorithm 1 as a document: the series as rows, measured growth beside the predicted one; and
+//! drawn.
 
 mod chart;
 

@@ -1,4 +1,5 @@
-//! Entries beside the verdict of a system: the unit of time, friction, the integrator's own orbit, the motions of the growing modes.
+//! Entries beside the verdict of a system: the unit of time, friction, the integrator's own orbit, the
+//! motions of the growing modes.
 
 use serde_json::{Value, json};
 
@@ -163,7 +164,8 @@ pub(super) fn lines(beside: &Beside, analysis: &Analysis) -> Vec<String> {
 /// The growing modes that a person is shown.
 const SHOWN_MODES: usize = 12;
 
-/// The fastest growing modes, each with its number in the document, in the document's order; and how many are left out.
+/// The fastest growing modes, each with its number in the document, in the document's order; and how many are
+/// left out.
 pub(super) fn fastest(analysis: &Analysis) -> (Vec<(usize, &Instability)>, usize) {
     let mut modes: Vec<_> = (1..).zip(analysis.parts.iter().flat_map(|part| &part.instabilities)).collect();
     modes.sort_by(|a, b| b.1.multiplier.size().total_cmp(&a.1.multiplier.size()));

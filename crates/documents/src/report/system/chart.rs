@@ -48,7 +48,8 @@ impl SystemMap {
             .with(panel)
     }
 
-    /// One number varied: growth over it, a line where it is known; an undecided point is not drawn as no growth.
+    /// One number varied: growth over it, a line where it is known; an undecided point is not drawn as no
+    /// growth.
     fn profile(&self, title: &str, number: &(String, i8)) -> Figure {
         let (first, step) = pitch(&self.xs);
         // Half a step beyond both ends, so that no point is cut by the frame.

@@ -1,4 +1,5 @@
-//! The verdict on a system of many clocks and degrees of freedom: as a document, its modes drawn, and maps of it.
+//! The verdict on a system of many clocks and degrees of freedom: as a document, its modes drawn, and maps of
+//! it.
 
 mod beside;
 mod chart;

@@ -33,7 +33,8 @@ fn turns(instability: &Instability) -> bool {
     instability.quadrature.iter().any(|x| *x != 0.0)
 }
 
-/// One frame a growing mode, the columns `mode` and, where two modes collide, `quadrature`: positions a quarter turn of the beat later. Rounded.
+/// One frame a growing mode, the columns `mode` and, where two modes collide, `quadrature`: positions a
+/// quarter turn of the beat later. Rounded.
 ///
 /// # Errors
 /// Where no mode grows; where the modes are of other points.
@@ -67,7 +68,8 @@ pub fn xyz(analysis: &Analysis, geometry: &Geometry) -> Result<String> {
     Ok(text)
 }
 
-/// All growing modes on one grid, a vector a point each: `mode 1` and so on, by their numbers in documents. Rounded.
+/// All growing modes on one grid, a vector a point each: `mode 1` and so on, by their numbers in documents.
+/// Rounded.
 ///
 /// # Errors
 /// As [`xyz`].

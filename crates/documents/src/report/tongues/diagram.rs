@@ -10,8 +10,8 @@ use clocks::tongue::sampled::{Diagram, LARGEST_S};
 const HEIGHT: f64 = 62.0;
 const BESIDE: f64 = 18.0;
 
-/// A panel for each ratio, one above the other, ρ up to `rho`, so wide (175 mm unless given). The labels know the width: in
-/// another one they would meet.
+/// A panel for each ratio, one above the other, ρ up to `rho`, so wide (175 mm unless given). The labels know
+/// the width: in another one they would meet.
 pub fn figure(diagrams: &[Diagram], rho: f64, width_mm: Option<f64>) -> Figure {
     let height = BESIDE + HEIGHT * diagrams.len() as f64;
     let sheet = Figure::new(width_mm.unwrap_or(175.0), height).named("Tongues over stiffness").columns(1);

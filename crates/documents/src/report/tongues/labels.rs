@@ -1,11 +1,12 @@
-//! Where the labels of a diagram stand: m (a, b) inside its tongue or beside it, on nothing else; upright where it is narrow, and
-//! m alone where neither fits.
+//! Where the labels of a diagram stand: m (a, b) inside its tongue or beside it, on nothing else; upright
+//! where it is narrow, and m alone where neither fits.
 
 use plot::{Anchor, Note};
 
 use clocks::tongue::sampled::{Band, Diagram, LARGEST_S};
 
-/// Heights that are tried, from the bottom to the top, and where a tongue's edges are looked at along a label.
+/// Heights that are tried, from the bottom to the top, and where a tongue's edges are looked at along a
+/// label.
 const HEIGHTS: usize = 40;
 const SAMPLES: usize = 8;
 /// The height of letters, the distance to what is not to be touched, half a ring, in points.

@@ -16,8 +16,9 @@ pub const CAPTION_LATEX: &str = "Unstable intervals (tongues) $s_- < s < s_+$ of
 /// Digits that people need of a number that is rounded anyway.
 const DIGITS: usize = 4;
 
-/// Every column and every entry of JSON: `p, q, m, a, b, lower, upper, closed, width` and what else is wanted, null where
-/// a tongue has none of it. In the `short` form only the columns that fit a line, rounded numbers in a few digits.
+/// Every column and every entry of JSON: `p, q, m, a, b, lower, upper, closed, width` and what else is
+/// wanted, null where a tongue has none of it. In the `short` form only the columns that fit a line, rounded
+/// numbers in a few digits.
 pub fn record(request: &Request, short: bool) -> Record<'_, Tongue> {
     let record = Record::new()
         .field(Column::math("p", "p"), |tongue: &Tongue| tongue.row.ratio.p().into())

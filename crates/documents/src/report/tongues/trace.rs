@@ -1,5 +1,5 @@
-//! Traces through a resonance: Tr Q over s between the lines ±2, one tongue close by, and what of the half period vanishes
-//! at its edges.
+//! Traces through a resonance: Tr Q over s between the lines ±2, one tongue close by, and what of the half
+//! period vanishes at its edges.
 
 use plot::palette::{GREY, INK, family};
 use plot::{Anchor, Axis, Dash, Figure, Layer, Note, Panel, Place, Stroke, typeset};
@@ -9,7 +9,8 @@ use clocks::tongue::sampled::{Near, Trace};
 /// Beyond this Tr Q is cut.
 const SHOWN: f64 = 3.2;
 
-/// Tr Q over all tongues; below it one of them: how far |Tr Q| exceeds 2, and the entries whose product that is.
+/// Tr Q over all tongues; below it one of them: how far |Tr Q| exceeds 2, and the entries whose product that
+/// is.
 pub fn figure(trace: &Trace) -> Figure {
     let name = format!("Traces of h2/h1 = {}", trace.ratio);
     let figure = Figure::double_column(150.0).columns(1).named(&name);

@@ -141,7 +141,8 @@ impl Claim {
         !self.modes_asked().any(|mode| mode.clock == Some(0) && !(is_alone && slow(mode)))
     }
 
-    /// Whether h w ≤ 1 of the stiffest mode on a clock, for a step of its own; lifted of harmonic bonds, but not of the slowest force beside others.
+    /// Whether h w ≤ 1 of the stiffest mode on a clock, for a step of its own; lifted of harmonic bonds, but
+    /// not of the slowest force beside others.
     pub fn is_below_turn(&self, mass: &Mass, clock: usize, step: &Rational) -> bool {
         let last = mass.steps.len() - 1;
         if self.input.harmonic && (clock < last || last == 0) {

@@ -15,7 +15,8 @@ pub struct Claim {
     input: Advised,
 }
 
-/// By how much growth over a period may differ: a multiplier near a double one moves by the root of the roundings.
+/// By how much growth over a period may differ: a multiplier near a double one moves by the root of the
+/// roundings.
 const GROWTH: f64 = 1e-6;
 
 const ROUTE: &str =

@@ -1,4 +1,5 @@
-//! Levers that would let the step grow: kicks and drifts by the pivots of their action, other methods by their traces.
+//! Levers that would let the step grow: kicks and drifts by the pivots of their action, other methods by
+//! their traces.
 
 use num_traits::One;
 
@@ -62,7 +63,8 @@ impl Claim {
             holds(count > 1, || "one clock has no ratio".into())?;
             steps[count - 1] = &steps[count - 2] * parse_rational("lever", p)?;
         }
-        // The inner steps are those of the scheme, and all columns belong to the ratio of the step that is taken.
+        // The inner steps are those of the scheme, and all columns belong to the ratio of the step that is
+        // taken.
         let is_at_ratio = lever_row.lever.starts_with("ratio ");
         let outer = match &lever_row.step {
             Some(step) if !is_at_ratio && steps.len() > 1 => step.0.clone(),

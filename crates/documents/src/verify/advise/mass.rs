@@ -171,8 +171,8 @@ pub fn crosses(at: &impl Fn(f64) -> Mass, ends: Ends, name: &str) -> Checked {
     holds(apart, || format!("no {name} end of an unstable interval lies in {}..{}", ends.lo, ends.hi))
 }
 
-/// The growth that is written is the fastest inside the interval. It is compared at 16 places, then nearer and nearer to the best of
-/// them: growth has one maximum there.
+/// The growth that is written is the fastest inside the interval. It is compared at 16 places, then nearer
+/// and nearer to the best of them: growth has one maximum there.
 pub fn fastest_growth(at: &impl Fn(f64) -> Mass, (lo, hi): (f64, f64), steps: Option<f64>) -> Checked {
     let growth = |outer: f64| -> Checked<(f64, f64)> {
         let (trace, period) = at(outer).trace()?;
@@ -195,7 +195,8 @@ pub fn fastest_growth(at: &impl Fn(f64) -> Mass, (lo, hi): (f64, f64), steps: Op
         }
         width /= 2.0;
     }
-    // The steps written are those where the rate is largest; near its maximum an error of the place of 1e-5 of the width changes little.
+    // The steps written are those where the rate is largest; near its maximum an error of the place of 1e-5
+    // of the width changes little.
     let truth = std::f64::consts::LN_10 / (best.0 * best.1);
     // Where hardly anything grows the steps may be left out.
     let right = steps.map_or(truth > 1e9, |steps| (truth / steps - 1.0).abs() < 1e-3);

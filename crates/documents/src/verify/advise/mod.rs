@@ -1,7 +1,9 @@
-//! Advice: the full period kick by kick in balls of many bits, and the first region by the pivots of its action.
+//! Advice: the full period kick by kick in balls of many bits, and the first region by the pivots of its
+//! action.
 //!
-//! The action of a path over the half period, J = Σ |x_j − x_(j−1)|²/τ_j − Σ k_j x_j², is a tridiagonal form; it is positive iff all pivots of
-//! its elimination are (Sylvester). That is another route than the strings of the tongues and than the orbits of many clocks.
+//! The action of a path over the half period, J = Σ |x_j − x_(j−1)|²/τ_j − Σ k_j x_j², is a tridiagonal form;
+//! it is positive iff all pivots of its elimination are (Sylvester). That is another route than the strings
+//! of the tongues and than the orbits of many clocks.
 //!
 //! | file | what |
 //! |---|---|

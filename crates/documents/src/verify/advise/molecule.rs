@@ -33,7 +33,8 @@ fn route<'a>(scene: &'a SystemScene, band: f64, limits: &'a Limits) -> Result<Bo
     })
 }
 
-/// Levels of any number as a rational system of the doubles given: half periods kick by kick, each at one step.
+/// Levels of any number as a rational system of the doubles given: half periods kick by kick, each at one
+/// step.
 struct Many<'a> {
     system: Cow<'a, System>,
     scene: &'a SystemScene,
@@ -42,7 +43,8 @@ struct Many<'a> {
 }
 
 impl Many<'_> {
-    /// The verdict at the steps of a scheme, all times `factor`, with the stiffness of each level times one of `scales`.
+    /// The verdict at the steps of a scheme, all times `factor`, with the stiffness of each level times one
+    /// of `scales`.
     fn at(&self, scheme: &Scheme, factor: f64, scales: &[f64]) -> Result<Holds> {
         let exact = |x: f64| from_f64_exact(x).unwrap_or_else(Rational::zero);
         let (unit, factor) = (self.scene.femtoseconds()?, exact(factor));
@@ -123,7 +125,8 @@ struct Other {
     unit: f64,
 }
 
-/// By how much growth per period may differ: a multiplier near a double one moves by the square root of the roundings.
+/// By how much growth per period may differ: a multiplier near a double one moves by the square root of the
+/// roundings.
 const GROWTH: f64 = 1e-5;
 
 impl Other {

@@ -72,7 +72,8 @@ impl Claim {
         })
     }
 
-    /// Damped by the frictions that are said to mask, some larger ones where all are, and not by the one that is said not to.
+    /// Damped by the frictions that are said to mask, some larger ones where all are, and not by the one that
+    /// is said not to.
     fn friction(&self, row: &Row, mass: &Mass) -> Checked {
         let per_fs = |per_ps: f64| exact(per_ps) / Rational::from_integer(self.per().into());
         if let Some(masked) = row.masked_above {

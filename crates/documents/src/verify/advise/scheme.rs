@@ -66,7 +66,8 @@ impl Claim {
             && (last == 0 || *outer < exact(self.fastest()?.third.lo)))
     }
 
-    /// That the band's corner is in the first region at `largest`, and not at the next multiple; and `safe` below what is published.
+    /// That the band's corner is in the first region at `largest`, and not at the next multiple; and `safe`
+    /// below what is published.
     fn largest(&self, corner: &Mass, given: &Mass, row: &SchemeRow) -> Checked {
         let count = corner.steps.len();
         let with = |outer: &Rational| -> Checked<bool> {

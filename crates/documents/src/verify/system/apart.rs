@@ -10,7 +10,8 @@ use systems::{Analysis, Model, System};
 /// Ranks are taken of no more degrees of freedom: n⁴ products of rationals.
 const MOST: usize = 24;
 
-/// No potential holds a rigid mode, and there are as many of these as potentials leave free: of effective stiffnesses those that they come from.
+/// No potential holds a rigid mode, and there are as many of these as potentials leave free: of effective
+/// stiffnesses those that they come from.
 pub fn exactly(scene: &SystemScene, analysis: &Analysis) -> Checked {
     let plain = match scene.model() {
         Model::Rational(system) | Model::Elements(system, _) => system,

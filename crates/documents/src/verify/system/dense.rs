@@ -13,8 +13,8 @@ use systems::avi::Run;
 use systems::levels::{Hessians, Near};
 use systems::{Analysis, Holds, Limits, Measured, Model, full_period};
 
-/// Multipliers are rounded eigenvalues: those of nearly defective propagators are right to half their digits only, but not
-/// the sums of them.
+/// Multipliers are rounded eigenvalues: those of nearly defective propagators are right to half their digits
+/// only, but not the sums of them.
 const ROUNDED: f64 = 1e-9;
 
 /// Tr Q = Σ (λ + 1/λ) and Tr Q² = Σ (λ² + 1/λ²), a rigid mode counting as λ = 1.
@@ -54,10 +54,12 @@ pub fn traces(scene: &SystemScene, analysis: &Analysis) -> Checked {
     })
 }
 
-/// ln |λ| of a period below which roundings may have made it: a double eigenvalue moves by the square root of 10^-16 times its condition.
+/// ln |λ| of a period below which roundings may have made it: a double eigenvalue moves by the square root of
+/// 10^-16 times its condition.
 const STILL: f64 = 1e-5;
 
-/// The largest growth rate of measured stiffnesses holds the one of the dense full period, kick by kick and without any basis of modes.
+/// The largest growth rate of measured stiffnesses holds the one of the dense full period, kick by kick and
+/// without any basis of modes.
 pub fn growth(scene: &SystemScene, analysis: &Analysis, limits: &Limits) -> Checked {
     let Some((found, (lo, hi))) = scene.model().growth_of_period(limits)?.zip(analysis.growth_rate()) else {
         return Ok(());
@@ -68,11 +70,13 @@ pub fn growth(scene: &SystemScene, analysis: &Analysis, limits: &Limits) -> Chec
     holds(right, || format!("the growth rate is {lo} to {hi}, that of the dense full period {found}"))
 }
 
-/// How far a verdict on measured stiffnesses stands, by the action of paths, which shares no step with the forms and counts that found it: it is definite
-/// for all stiffnesses near those given where all are stable at this step and at every smaller one.
+/// How far a verdict on measured stiffnesses stands, by the action of paths, which shares no step with the
+/// forms and counts that found it: it is definite for all stiffnesses near those given where all are stable
+/// at this step and at every smaller one.
 pub struct Stands<'a> {
     measured: &'a Measured,
-    /// Two levels of kicks and drifts, small enough: the matrices, their norms, the outer step and its inner ones.
+    /// Two levels of kicks and drifts, small enough: the matrices, their norms, the outer step and its inner
+    /// ones.
     levels: Option<(Hessians, [f64; 2], f64, u64)>,
 }
 

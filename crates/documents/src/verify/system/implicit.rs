@@ -1,10 +1,12 @@
-//! Two levels whose fast force is solved for: the kind by exact masses against the kernel of the step in doubles.
+//! Two levels whose fast force is solved for: the kind by exact masses against the kernel of the step in
+//! doubles.
 
 use crate::verify::context::{Checked, holds};
 use systems::levels::Method;
 use systems::{Analysis, ImplicitExplicit, Limits, MeasuredSystem, Model, Route};
 
-/// Checks that doubles, where they decide the kind at all, find the same one: by definite forms in the fast modes, with the system's own masses.
+/// Checks that doubles, where they decide the kind at all, find the same one: by definite forms in the fast
+/// modes, with the system's own masses.
 pub fn in_doubles(implicit_explicit: &ImplicitExplicit, analysis: &Analysis) -> Checked {
     // A mass matrix, or numbers beyond doubles: there is no such second route.
     let Ok(doubles) = MeasuredSystem::rounded(implicit_explicit.plain()) else { return Ok(()) };

@@ -1,9 +1,11 @@
 //! Documents of intervals: the stretches as they are written, held against systems at numbers inside them.
 //!
-//! Kicks and drifts of measured levels are followed over half a period in doubles, kick by kick, without the cells that made the document, at an outer
-//! step or at another value of what is varied. The eigenvalues of S = Bᵀ C say whether anything grows there. Where nothing does, each mode v has a sign of Krein's, that of vᵀ Aᵀ C v, and
-//! multipliers leave the circle only where they meet one of the other sign, or ±1. So where the order of the signs differs at two places of a stretch
-//! that is said to be stable, what was passed between them is looked for by halving. Other methods have the growth of their dense step alone.
+//! Kicks and drifts of measured levels are followed over half a period in doubles, kick by kick, without the
+//! cells that made the document, at an outer step or at another value of what is varied. The eigenvalues of
+//! S = Bᵀ C say whether anything grows there. Where nothing does, each mode v has a sign of Krein's, that of
+//! vᵀ Aᵀ C v, and multipliers leave the circle only where they meet one of the other sign, or ±1. So where
+//! the order of the signs differs at two places of a stretch that is said to be stable, what was passed
+//! between them is looked for by halving. Other methods have the growth of their dense step alone.
 
 use std::borrow::Cow;
 
@@ -25,13 +27,15 @@ use systems::stretches::Stretch;
 use systems::vary::Intervals;
 use systems::{Holds, Limits, Model, Route, half_period};
 
-/// Stretches that are looked at, unless all are asked for; all of measured levels where it costs no more than is allowed.
+/// Stretches that are looked at, unless all are asked for; all of measured levels where it costs no more than
+/// is allowed.
 const MOST: u64 = 24;
 
 /// Where in a stretch: beside its ends, too.
 const INSIDE: [f64; 5] = [1.0 / 64.0, 0.25, 0.5, 0.75, 63.0 / 64.0];
 
-/// ln |λ| of a period below which roundings may have made it: of modes that meet, about the square root of 10^-16 times their condition.
+/// ln |λ| of a period below which roundings may have made it: of modes that meet, about the square root of
+/// 10^-16 times their condition.
 const STILL: f64 = 1e-5;
 
 /// `kickdrift/system-intervals/1`.
@@ -94,8 +98,8 @@ impl Recheck for Claim {
 }
 
 impl Claim {
-    /// That the n-th row, counted from 1, begins where the one before it ends, the first one with the range. Of isolated edges the next double begins a
-    /// stretch.
+    /// That the n-th row, counted from 1, begins where the one before it ends, the first one with the range.
+    /// Of isolated edges the next double begins a stretch.
     fn joined(&self, n: usize, found: &Intervals) -> Checked {
         let row = &self.stretches[n - 1];
         holds(row.lo <= row.hi, || "it ends before it begins".into())?;
@@ -216,7 +220,8 @@ impl<'a> Places<'a> {
         self.system.is_some()
     }
 
-    /// Five half periods of each stretch, about as many halvings: kicks on 2n columns, eigenvalues and vectors.
+    /// Five half periods of each stretch, about as many halvings: kicks on 2n columns, eigenvalues and
+    /// vectors.
     fn allow(&self, stretches: usize, limits: &Limits) -> Result<()> {
         let (n, kicks) = match &self.system {
             Some(system) => (system.size() as u64, system.schedule().strikes() / 2 + 1),
@@ -351,7 +356,8 @@ mod tests {
         (Places::of(scene, path, width).unwrap(), all.unwrap().stretches)
     }
 
-    /// Stretches that hold; an unstable one moved by half of itself into a stable one, and one that is called stable with all up to the next stable ones.
+    /// Stretches that hold; an unstable one moved by half of itself into a stable one, and one that is called
+    /// stable with all up to the next stable ones.
     #[test]
     fn an_interval_that_was_moved_or_dropped_is_found_without_the_cells() {
         for (file, method, path, range) in [
@@ -392,7 +398,8 @@ mod tests {
         }
     }
 
-    /// About a narrow interval of a molecule: at the five steps that are looked at nothing grows, and the order of signs finds it.
+    /// About a narrow interval of a molecule: at the five steps that are looked at nothing grows, and the
+    /// order of signs finds it.
     #[test]
     fn a_narrow_interval_is_found_by_the_order_of_signs() {
         let scene = scene("alanine-dipeptide.json", None);

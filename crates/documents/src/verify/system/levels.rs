@@ -8,8 +8,9 @@ use systems::{Analysis, Holds};
 /// The other route, in words.
 pub const ROUTE: &str = "outer steps kick by kick, each from rest where the last one ended";
 
-/// Outer steps that are run, and how many times longer positions become over their second half where something grows. In the first region a step from rest
-/// is self-adjoint in a scalar product, so that nothing becomes longer there but by what that product differs from the usual one.
+/// Outer steps that are run, and how many times longer positions become over their second half where
+/// something grows. In the first region a step from rest is self-adjoint in a scalar product, so that nothing
+/// becomes longer there but by what that product differs from the usual one.
 const STEPS: usize = 400;
 const GROWN: f64 = 1e3;
 

@@ -1,4 +1,5 @@
-//! A scheme of local time steps run as codes run it, substep by substep, against the stiffness that stands for it.
+//! A scheme of local time steps run as codes run it, substep by substep, against the stiffness that stands
+//! for it.
 
 use faer::{Mat, Side};
 use num_traits::{Num, One, Zero};
@@ -10,16 +11,19 @@ use systems::{Analysis, Holds, Level, LocalSteps, SchemeSummary, SparseSteps};
 /// Degrees of freedom of which one is displaced, at most.
 const MOST: usize = 16;
 
-/// Steps of Lanczos's recursion: it sees all motions of a scheme with no more degrees of freedom, of a larger one the extreme motions.
+/// Steps of Lanczos's recursion: it sees all motions of a scheme with no more degrees of freedom, of a larger
+/// one the extreme motions.
 pub const SEEN: usize = 120;
 
-/// The error of doubles, relative to the norm of f: a recursion of some hundred steps, each of sums of some dozen terms.
+/// The error of doubles, relative to the norm of f: a recursion of some hundred steps, each of sums of some
+/// dozen terms.
 const ROUNDED: f64 = 1e-10;
 
 /// Relative to what grows: its enclosure is as wide.
 const SHARP: f64 = 0.02;
 
-/// How far below 4 f may be, relative to it, where a resonance is known to 10^-6: as the square of that times the substeps.
+/// How far below 4 f may be, relative to it, where a resonance is known to 10^-6: as the square of that times
+/// the substeps.
 const RESONANT: f64 = 1e-6;
 
 /// x₊ + x₋ − 2 x = −dt² M⁻¹ K' x, for displacements of one degree of freedom each, exactly.
@@ -84,7 +88,8 @@ pub fn sparse(
     Ok(())
 }
 
-/// No motion beyond the ends where all are said to be stable; some, where all are seen and one is said to grow.
+/// No motion beyond the ends where all are said to be stable; some, where all are seen and one is said to
+/// grow.
 fn verdict(sparse_steps: &SparseSteps, dt: f64, said: Holds) -> Checked {
     let Extreme { excess, room } = Extreme::of(sparse_steps, dt);
     let right = match said {
@@ -97,7 +102,8 @@ fn verdict(sparse_steps: &SparseSteps, dt: f64, said: Holds) -> Checked {
     })
 }
 
-/// How far the eigenvalues of f that Lanczos's recursion sees are beyond 0 and 4, and what rounding makes of it.
+/// How far the eigenvalues of f that Lanczos's recursion sees are beyond 0 and 4, and what rounding makes of
+/// it.
 struct Extreme {
     excess: f64,
     room: f64,
@@ -129,7 +135,8 @@ fn dot(x: &[f64], y: &[f64]) -> f64 {
     x.iter().zip(y).map(|(x, y)| x * y).sum()
 }
 
-/// The least and the largest eigenvalue of a symmetric matrix that Lanczos's recursion sees, each vector held orthogonal to all before it.
+/// The least and the largest eigenvalue of a symmetric matrix that Lanczos's recursion sees, each vector held
+/// orthogonal to all before it.
 fn extremes(n: usize, of: impl Fn(&[f64]) -> Vec<f64>) -> [f64; 2] {
     let unit = |x: Vec<f64>| {
         let length = dot(&x, &x).sqrt();
@@ -181,7 +188,8 @@ impl<'a, T: Num + Clone> Scheme<'a, T> {
         Scheme { moves, substeps: levels.iter().map(|level| level.substeps).collect(), pull }
     }
 
-    /// (x(d) + x(−d))/2 from x(0) = `x` at level l with the step d, forces of coarser levels standing still at −`still` an inertia.
+    /// (x(d) + x(−d))/2 from x(0) = `x` at level l with the step d, forces of coarser levels standing still
+    /// at −`still` an inertia.
     fn half_turn(&self, l: usize, d: T, x: &[T], still: &[T]) -> Vec<T> {
         let whole = |n: u32| (0..n).fold(T::zero(), |sum, _| sum + T::one());
         let forced = |moves: &dyn Fn(usize) -> bool| -> Vec<T> {

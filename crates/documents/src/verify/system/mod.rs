@@ -1,8 +1,8 @@
 //! Documents of systems: computed again as a whole, then checked by another route.
 //!
-//! Equal inputs give equal documents, so every value is compared with the one computed again. That finds any change made
-//! afterwards. Errors made from the start are looked for by exact arithmetic (the kind) and by the dense full
-//! period in doubles (multipliers, runs of linear systems).
+//! Equal inputs give equal documents, so every value is compared with the one computed again. That finds any
+//! change made afterwards. Errors made from the start are looked for by exact arithmetic (the kind) and by
+//! the dense full period in doubles (multipliers, runs of linear systems).
 
 mod apart;
 mod dense;
@@ -23,7 +23,8 @@ use number::rational::to_f64;
 use systems::avi::Ends;
 use systems::{Analysis, Limits, Model, SchemeSummary, SparseSteps};
 
-/// Points of a map whose kind is decided by the other route (where it costs no more than is allowed), unless all are.
+/// Points of a map whose kind is decided by the other route (where it costs no more than is allowed), unless
+/// all are.
 const POINTS: u64 = 200;
 
 /// `kickdrift/system-verdict/1` or `kickdrift/system-map/1`.
@@ -143,7 +144,8 @@ fn seen(steps: &SparseSteps, mut outcome: Outcome) -> Outcome {
     outcome
 }
 
-/// `None` where the work exceeds the limits, and where stiffnesses are known within a bound only and no kind is claimed.
+/// `None` where the work exceeds the limits, and where stiffnesses are known within a bound only and no kind
+/// is claimed.
 fn exact_kind(scene: &SystemScene, claimed: Option<Kind>, limits: &Limits) -> Result<Option<Kind>> {
     if matches!(scene.model(), Model::Pi(_)) && claimed.is_none() {
         return Ok(None);

@@ -65,8 +65,8 @@ impl Growth {
     }
 }
 
-/// The largest ln μ of a tongue that is thin against nine digits of s: sinh² (ln μ/2) is a parabola there, by three points
-/// of it.
+/// The largest ln μ of a tongue that is thin against nine digits of s: sinh² (ln μ/2) is a parabola there, by
+/// three points of it.
 fn thin(lower: &ZeroOf, width: &Rational) -> Checked<f64> {
     const BITS: u32 = 256;
     let square = |quarter: u64| -> Option<Ball> {
@@ -88,7 +88,8 @@ fn thin(lower: &ZeroOf, width: &Rational) -> Checked<f64> {
 }
 
 impl Predicted {
-    /// The point lies where it is said to lie: on an edge by theory or in cyclotomic numbers, else edge and point part.
+    /// The point lies where it is said to lie: on an edge by theory or in cyclotomic numbers, else edge and
+    /// point part.
     pub fn holds(&self, m: u64, lower: &Zero, upper: &Zero) -> Checked {
         let p = lower.zero.ratio.p();
         let (position, distance) = (*self.position, self.distance);
@@ -120,7 +121,8 @@ impl Predicted {
             Side::Above => apart(p, m, &mut above),
             Side::Inside => -apart(p, m, &mut below).min(apart(p, m, &mut above)),
         };
-        // Both ends are rounded where they are doubles: of a larger distance that takes less than a millionth.
+        // Both ends are rounded where they are doubles: of a larger distance that takes less than a
+        // millionth.
         let slack = 1e-6 * truth.abs();
         holds((distance - truth).abs() <= slack, || {
             format!("the distance to its tongue is {truth}, not {distance}")
@@ -169,7 +171,8 @@ fn apart(p: u64, m: u64, edge: &mut ZeroOf) -> f64 {
 }
 
 impl FirstOrder {
-    /// The law by the edges' slopes in ρ at ρ = 0, −X_ρ/X_s for either entry X: with no sum over the slow kicks.
+    /// The law by the edges' slopes in ρ at ρ = 0, −X_ρ/X_s for either entry X: with no sum over the slow
+    /// kicks.
     pub fn holds(&self, m: u64, lower: &Zero, upper: &Zero, width: Ends) -> Checked {
         let (p, rho) = (lower.zero.ratio.p(), lower.zero.rho);
         // Differences of 2^-80 in exact arithmetic: slopes to 2^-70 or so.
@@ -198,7 +201,8 @@ impl FirstOrder {
         holds(close(self.ln_multiplier, ln, slack * turn + ROUNDED * ln), || {
             format!("the law's growth is {ln}")
         })?;
-        // What is enclosed meets what this route finds, and is no wider than the edges and the width are known.
+        // What is enclosed meets what this route finds, and is no wider than the edges and the width are
+        // known.
         let meets = |name: &str, said: Ends, [least, most]: [Rational; 2], widest: f64| {
             let (lo, hi) = said.exact()?;
             let is_close = said.hi - said.lo <= widest;

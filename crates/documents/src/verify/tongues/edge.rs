@@ -117,8 +117,9 @@ impl Zero<'_> {
 
     /// Whether the edge sits exactly on a clock's own resonance; `None` where that is not decided.
     ///
-    /// The odd solution of that resonance vanishes at all kicks of the other clock if there is one a period, or if there
-    /// are two and m is even: that clock does not act on it. Else the entry is evaluated in the cyclotomic field.
+    /// The odd solution of that resonance vanishes at all kicks of the other clock if there is one a period,
+    /// or if there are two and m is even: that clock does not act on it. Else the entry is evaluated in the
+    /// cyclotomic field.
     pub fn sits(&self, on: Resonance, m: u64) -> Option<bool> {
         let (ratio, rho) = (self.zero.ratio, self.zero.rho);
         let still = *rho == Rational::default();

@@ -16,7 +16,8 @@ pub fn last(ratio: Ratio, rho: &Rational) -> u64 {
 }
 
 impl Claim {
-    /// The labels asked for are there, in order: as many edges as an entry has zeros, so each enclosure holds one.
+    /// The labels asked for are there, in order: as many edges as an entry has zeros, so each enclosure holds
+    /// one.
     pub(super) fn complete(&self, limits: &Limits) -> Checked {
         let list = self.input.ratios()?.list();
         let mut rows = self.tongues.iter().zip(1..);

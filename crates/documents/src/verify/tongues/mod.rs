@@ -1,4 +1,5 @@
-//! Tongues, edge by edge: exact signs of the half period at the ends of every enclosure, and the verdict inside.
+//! Tongues, edge by edge: exact signs of the half period at the ends of every enclosure, and the verdict
+//! inside.
 //!
 //! | file | what is there |
 //! |---|---|

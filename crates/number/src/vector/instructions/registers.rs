@@ -1,20 +1,21 @@
 //! Vectors in the registers of x86-64.
 //!
-//! Their operations are safe because nobody can name these types who has not asked the processor: `instructions` alone sees them, and it hands
-//! them to kernels with an `Instructions` in its hand that has them. A kernel knows them as some `V: Vector`, from which no
-//! value leads out of it.
+//! Their operations are safe because nobody can name these types who has not asked the processor:
+//! `instructions` alone sees them, and it hands them to kernels with an `Instructions` in its hand that has
+//! them. A kernel knows them as some `V: Vector`, from which no value leads out of it.
 
 use std::arch::x86_64::*;
 
 use crate::vector::{EXPONENTS, SIGN, Vector, WHOLE};
 
-/// A value for the k-th register, of every one. A loop and no closure: compilers leave closures for the processor's
-/// common instructions.
+/// A value for the k-th register, of every one. A loop and no closure: compilers leave closures for the
+/// processor's common instructions.
 macro_rules! each {
     ($vector:ident, $k:ident => $value:expr) => {{
         let mut all = $vector;
         for ($k, register) in all.0.iter_mut().enumerate() {
-            // Safety: a processor without these instructions never sees a vector in its registers, as said above.
+            // Safety: a processor without these instructions never sees a vector in its registers, as said
+            // above.
             *register = unsafe { $value };
         }
         all

@@ -14,8 +14,9 @@ impl Steps<'_> {
         self.chain(step, bounds, &free.map(|node| (node, 1.0)).collect::<Vec<_>>())
     }
 
-    /// The action of a whole period between ends with x(T) = e^(iφ) x(0), s = cos² φ/2, as a real chain (`proofs/REGION.md`, section 10): from t = 0 to T/2, what meets
-    /// there times √s, and back to where 0 is held, what meets times √(1 − s).
+    /// The action of a whole period between ends with x(T) = e^(iφ) x(0), s = cos² φ/2, as a real chain
+    /// (`proofs/REGION.md`, section 10): from t = 0 to T/2, what meets there times √s, and back to where 0 is
+    /// held, what meets times √(1 − s).
     fn twisted(&self, step: f64, bounds: &Bounds, s: f64) -> Envelope {
         let last = self.events.len() - 1;
         let there = (0..=last).map(|node| (node, if node == last { s.sqrt() } else { 1.0 }));
@@ -82,8 +83,9 @@ impl Steps<'_> {
         other.sign(self.terms(), ROUNDINGS) == Some(Sign::Negative)
     }
 
-    /// Whether counts of negative eigenvalues, least at the smaller step and most at the larger one, prove a real multiplier off the circle at all
-    /// outer steps between: neg J_fh and neg J_hf differ, or n + neg J_hh and neg J_ff (`proofs/REGION.md`, section 3).
+    /// Whether counts of negative eigenvalues, least at the smaller step and most at the larger one, prove a
+    /// real multiplier off the circle at all outer steps between: neg J_fh and neg J_hf differ, or n + neg
+    /// J_hh and neg J_ff (`proofs/REGION.md`, section 3).
     pub(super) fn has_real_unstable_mode(&self, [lo, hi]: [f64; 2], epsilon: f64) -> bool {
         let [softer, stiffer] = self.softer_and_stiffer(epsilon);
         let exceeds = |low: [bool; 2], high: [bool; 2], [more, other]: [usize; 2]| {
@@ -107,8 +109,9 @@ impl Steps<'_> {
         action.negatives(self.terms(), ROUNDINGS, is_least)
     }
 
-    /// Whether the index proves all stiffnesses within ε stable at all outer steps between: the counts are one for all of them, held at both ends, at one, and
-    /// twisted by each of 1 = s_0 > s_1 > ... > s_K = 0, and the last ones change by n in all.
+    /// Whether the index proves all stiffnesses within ε stable at all outer steps between: the counts are
+    /// one for all of them, held at both ends, at one, and twisted by each of 1 = s_0 > s_1 > ... > s_K = 0,
+    /// and the last ones change by n in all.
     pub(super) fn is_stable_by_index(&self, [lo, hi]: [f64; 2], epsilon: f64) -> bool {
         let Some(twists) = self.twists(lo / 2.0 + hi / 2.0) else { return false };
         let [softer, stiffer] = self.softer_and_stiffer(epsilon);

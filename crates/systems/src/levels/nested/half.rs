@@ -18,8 +18,9 @@ use clocks::verdict::Kind;
 use number::rational::{from_f64_exact, to_f64};
 use number::{Rational, U};
 
-/// Coordinates at a step: x = V D⁻¹ y, p = V⁻ᵀ D q. A drift and a kick turn y by about as much in them, so that products stay near 1. What is soft drifts by one
-/// in a period: less would let errors of stiffnesses move it far.
+/// Coordinates at a step: x = V D⁻¹ y, p = V⁻ᵀ D q. A drift and a kick turn y by about as much in them, so
+/// that products stay near 1. What is soft drifts by one in a period: less would let errors of stiffnesses
+/// move it far.
 #[derive(Clone, Debug)]
 struct Turning {
     /// D.
@@ -32,7 +33,8 @@ struct Turning {
 }
 
 impl Steps<'_> {
-    /// The period with friction γ per unit time, v → exp(−γ t) v in the middle of every drift, and a bound on its error.
+    /// The period with friction γ per unit time, v → exp(−γ t) v in the middle of every drift, and a bound on
+    /// its error.
     fn damped_period(&self, step: f64, friction: f64) -> Option<(Mat<f64>, f64)> {
         let ticks = step / self.outer * to_f64(self.schedule.tick());
         let decay = from_f64_exact(friction * ticks).filter(|value| *value >= Rational::default())?;
@@ -49,7 +51,8 @@ impl Steps<'_> {
         damping(&q, error, Radius::of(&q, error))
     }
 
-    /// A friction that is proven to mask, where something grows without one: about the least. `None` where none was found.
+    /// A friction that is proven to mask, where something grows without one: about the least. `None` where
+    /// none was found.
     pub fn masking_friction(&self, step: f64) -> Option<f64> {
         let radius = |friction: f64| {
             let values = self.damped_period(step, friction).and_then(|(q, _)| q.eigenvalues().ok());
@@ -90,7 +93,8 @@ impl Steps<'_> {
         self.kicks_at(step, turning).into_iter().map(|matrix| stiff(matrix, 0.0, 0.0)).collect()
     }
 
-    /// How far (2-norm) h t² Vᵀ K V of each clock is from that of all stiffnesses within ε; a kick divides its entries by roots.
+    /// How far (2-norm) h t² Vᵀ K V of each clock is from that of all stiffnesses within ε; a kick divides
+    /// its entries by roots.
     fn kick_errors(&self, step: f64, epsilon: f64) -> Vec<f64> {
         let modes = self.nested.modes_of_all();
         let error = |k: usize| {
@@ -122,10 +126,11 @@ impl Steps<'_> {
 
     /// The kind that discs prove at all outer steps between two, or at one, of all stiffnesses within ε.
     ///
-    /// With kicks (1 + η) (F + ζ E), ζ E within the errors at ζ = 1, S = Bᵀ C is a polynomial in η and ζ, within r of what is computed of F where kicks are off by
-    /// at most t of their sizes. So Cauchy's bounds on its coefficients leave little beyond S(0, 0) + S_E + S₁ η + S₂ η² (`proofs/REGION.md`, section 10),
-    /// and S of F in the middle and at both ends has S₁ and S₂; S_E, linear in E, is a sum of products about it. Where a cell is too narrow for these differences,
-    /// S(0, 1) alone is kept.
+    /// With kicks (1 + η) (F + ζ E), ζ E within the errors at ζ = 1, S = Bᵀ C is a polynomial in η and ζ,
+    /// within r of what is computed of F where kicks are off by at most t of their sizes. So Cauchy's bounds
+    /// on its coefficients leave little beyond S(0, 0) + S_E + S₁ η + S₂ η² (`proofs/REGION.md`, section 10),
+    /// and S of F in the middle and at both ends has S₁ and S₂; S_E, linear in E, is a sum of products about
+    /// it. Where a cell is too narrow for these differences, S(0, 1) alone is kept.
     pub(super) fn by_discs_between(&self, ends: [f64; 2], epsilon: f64) -> Option<Kind> {
         let (spectrum, change) = self.discs_between(ends, epsilon)?;
         match change {
@@ -134,7 +139,8 @@ impl Steps<'_> {
         }
     }
 
-    /// The discs of S in the middle of all stiffnesses within ε, and C: of the others S is within x C of these, |x| ≤ 1.
+    /// The discs of S in the middle of all stiffnesses within ε, and C: of the others S is within x C of
+    /// these, |x| ≤ 1.
     fn discs_between(&self, [lo, hi]: [f64; 2], epsilon: f64) -> Option<(Spectrum, Option<Mat<f64>>)> {
         let middle = lo / 2.0 + hi / 2.0;
         let turning = self.turning(middle);
@@ -165,7 +171,8 @@ impl Steps<'_> {
         Some((spectrum.with_terms(&terms)?, Some(change)))
     }
 
-    /// S at a step, and what is near it: see [`Steps::by_discs_between`]; of η what is of this order and beyond it is in the rest, |η| ≤ `eta`.
+    /// S at a step, and what is near it: see [`Steps::by_discs_between`]; of η what is of this order and
+    /// beyond it is in the rest, |η| ≤ `eta`.
     fn near(&self, step: f64, turning: &Turning, eta: f64, order: i32, epsilon: f64) -> Option<Near> {
         let (n, kicks) = (self.nested.size(), self.kicks_at(step, turning));
         let errors = self.kick_errors(step, epsilon);
@@ -216,8 +223,9 @@ impl Steps<'_> {
         [x, p]
     }
 
-    /// Values of s = 1 + μ between modes of one of Krein's signs and of the other, the sign that of vᵀ Aᵀ C v; `None` where some μ are off \[−1, 0\], or where
-    /// signs change too often. Rounded: whatever they are, counts at them prove what they prove.
+    /// Values of s = 1 + μ between modes of one of Krein's signs and of the other, the sign that of vᵀ Aᵀ C
+    /// v; `None` where some μ are off \[−1, 0\], or where signs change too often. Rounded: whatever they are,
+    /// counts at them prove what they prove.
     pub(super) fn twists(&self, step: f64) -> Option<Vec<f64>> {
         let n = self.nested.size();
         let [x, p] = self.rounded_half(step);
@@ -268,8 +276,8 @@ impl Steps<'_> {
     }
 }
 
-/// S of F in doubles within `off`; what it moves by to first order in the errors of the stiffnesses; more than the rest: of η alone, of the errors
-/// alone, of both.
+/// S of F in doubles within `off`; what it moves by to first order in the errors of the stiffnesses; more
+/// than the rest: of η alone, of the errors alone, of both.
 struct Near {
     s: Mat<f64>,
     off: f64,
@@ -277,7 +285,8 @@ struct Near {
     rest: [f64; 3],
 }
 
-/// Σ_j B_jᵀ E (B_j Aᵀ − A_j Bᵀ) C + Bᵀ (C B_jᵀ − D A_jᵀ) E A_j, E = D⁻¹ E_j D⁻¹ with the roots D, of the nodes' sizes of E_j and positions (A_j B_j).
+/// Σ_j B_jᵀ E (B_j Aᵀ − A_j Bᵀ) C + Bᵀ (C B_jᵀ − D A_jᵀ) E A_j, E = D⁻¹ E_j D⁻¹ with the roots D, of the
+/// nodes' sizes of E_j and positions (A_j B_j).
 fn terms(state: &Propagated, nodes: &[(f64, [Mat<f64>; 2])], roots: &[f64]) -> Vec<Term> {
     let (n, h) = (roots.len(), state.matrix());
     let block = |i: usize, j: usize| h.submatrix(i * n, j * n, n, n);
@@ -336,8 +345,8 @@ mod tests {
         k.clone().symmetric_eigen().eigenvalues.amax()
     }
 
-    /// Hundreds of errors of the stiffnesses as large as the accuracy: no row of V⁻¹ S V − D is longer than the discs say, and none is so by far. Errors of rank 1
-    /// that pull at one mode come nearest to it.
+    /// Hundreds of errors of the stiffnesses as large as the accuracy: no row of V⁻¹ S V − D is longer than
+    /// the discs say, and none is so by far. Errors of rank 1 that pull at one mode come nearest to it.
     #[test]
     fn no_error_of_the_data_within_the_accuracy_leaves_the_discs() {
         let (n, epsilon, mut state) = (6, 1e-6, 7);

@@ -20,7 +20,8 @@ pub(super) struct Level {
     pub(super) stiffness: Mat<f64>,
     /// How far (2-norm) it is from the exact restriction of what was given.
     pub(super) error: f64,
-    /// No less than what it is known relative to: its norm, or the sum of those of the potentials on its clock.
+    /// No less than what it is known relative to: its norm, or the sum of those of the potentials on its
+    /// clock.
     pub(super) size: f64,
     pub(super) frobenius: f64,
 }
@@ -52,15 +53,16 @@ pub(super) struct Modes {
     pub(super) defect: f64,
 }
 
-/// Roundings in a term of the action: of the step's quotient and its square, the tick's product, a factor, a shift, products.
+/// Roundings in a term of the action: of the step's quotient and its square, the tick's product, a factor, a
+/// shift, products.
 pub(super) const ROUNDINGS: usize = 12;
 
 /// Times a step may have in half a period: beyond that no matrix of the action fits.
 const MOST_NODES: u64 = 1 << 12;
 
 impl Nested {
-    /// From the mass-weighted stiffness of each potential, those of one clock together, the clocks by increasing step; `whole` is their sum with what
-    /// is projected out.
+    /// From the mass-weighted stiffness of each potential, those of one clock together, the clocks by
+    /// increasing step; `whole` is their sum with what is projected out.
     pub fn new(whole: &Hessians, clocks: &[Vec<DMatrix<f64>>]) -> Result<Nested> {
         let level = |matrixes: &Vec<DMatrix<f64>>| {
             let each: Vec<(Mat<f64>, f64)> = matrixes.iter().map(|k| whole.restricted(k)).collect();
@@ -111,7 +113,8 @@ impl Nested {
         self.levels[1..].iter().map(highest).collect()
     }
 
-    /// These levels with their steps, innermost first, in the stiffnesses' unit of time. The steps are scaled together.
+    /// These levels with their steps, innermost first, in the stiffnesses' unit of time. The steps are scaled
+    /// together.
     ///
     /// # Errors
     /// As many steps as levels; steps that meet too late for the action's matrix.
@@ -184,7 +187,8 @@ impl Nested {
     }
 }
 
-/// A number that makes a stiffness with these eigenvalues, rounded, definite when it is added to them: about the least.
+/// A number that makes a stiffness with these eigenvalues, rounded, definite when it is added to them: about
+/// the least.
 fn lack(level: &Level, squares: &[f64]) -> f64 {
     let least = squares.first().map_or(0.0, |value| value.min(0.0));
     let mut more = 8.0 * (squares.len() as f64 + 8.0) * U * level.frobenius + f64::MIN_POSITIVE;

@@ -1,16 +1,20 @@
-//! Any number of levels of dense stiffnesses in doubles (nested r-RESPA, or one level): the first stable region, margins, a band.
+//! Any number of levels of dense stiffnesses in doubles (nested r-RESPA, or one level): the first stable
+//! region, margins, a band.
 //!
-//! x'' + (K_1 + ... + K_m) x = 0 in mass-weighted coordinates, each K_k on a clock of its own. The theorems of `proofs/REGION.md`, section 1,
-//! are about any palindromic schedule, so the action alone decides, without an eigenbasis. With all steps scaled by t
+//! x'' + (K_1 + ... + K_m) x = 0 in mass-weighted coordinates, each K_k on a clock of its own. The theorems
+//! of `proofs/REGION.md`, section 1, are about any palindromic schedule, so the action alone decides, without
+//! an eigenbasis. With all steps scaled by t
 //!
 //! ```text
 //!     t J[x] = Σ_j |x_j − x_(j−1)|²/τ_j − t² Σ_j x_jᵀ k_j x_j,     k_j the sum of h_k K_k over the clocks at node j, half of it at both ends
 //! ```
 //!
-//! is one matrix over the positions at kick times, block tridiagonal. Cholesky's factorization with its proven bound tells its sign with x held at
-//! 0 at one end. Positive for both ends at K_k + e_k I and Σ K_k > 0: stable at this t *and at all smaller ones*, for all stiffnesses within e_k.
-//! Positive for one end at the larger of two steps, negative for the other end at the smaller one: unstable at all steps between (section 3).
-//! Elsewhere the half period in doubles decides, each kick off by e_k: its forms, or discs about its eigenvalues. Section 10 has the band and all roundings.
+//! is one matrix over the positions at kick times, block tridiagonal. Cholesky's factorization with its
+//! proven bound tells its sign with x held at 0 at one end. Positive for both ends at K_k + e_k I and Σ K_k >
+//! 0: stable at this t *and at all smaller ones*, for all stiffnesses within e_k. Positive for one end at the
+//! larger of two steps, negative for the other end at the smaller one: unstable at all steps between
+//! (section 3). Elsewhere the half period in doubles decides, each kick off by e_k: its forms, or discs about
+//! its eigenvalues. Section 10 has the band and all roundings.
 //!
 //! | file | what is there |
 //! |---|---|
@@ -43,7 +47,8 @@ pub struct AtStep {
     pub holds: Holds,
     /// Whether that is so of every smaller step, too.
     pub is_in_first_region: bool,
-    /// max ln |λ|/T, rounded: 0 where the stiffnesses given are proven stable; `None` where these are not decided.
+    /// max ln |λ|/T, rounded: 0 where the stiffnesses given are proven stable; `None` where these are not
+    /// decided.
     pub rate: Option<f64>,
     /// Real and imaginary part of what grows fastest, in the mass-weighted coordinates given.
     pub growing: Option<[Vec<f64>; 2]>,
@@ -56,7 +61,8 @@ const ROOM: f64 = 1e-12;
 const WIDEST: f64 = 0.05;
 
 impl Steps<'_> {
-    /// Whether all stiffnesses within ε of their sizes are proven stable at this outer step, and at every smaller one.
+    /// Whether all stiffnesses within ε of their sizes are proven stable at this outer step, and at every
+    /// smaller one.
     pub fn is_in_first_region(&self, step: f64, epsilon: f64) -> bool {
         self.nested.is_definite_within(epsilon) && self.is_positive(step, &self.within(epsilon, 1.0))
     }
@@ -66,8 +72,8 @@ impl Steps<'_> {
         if self.is_in_first_region(step, epsilon) { Holds::Stable } else { self.beyond([step; 2], epsilon) }
     }
 
-    /// The verdict that is proven on all outer steps between two, by the index, too. At one step the index rarely decides what discs do not, and costs a dozen
-    /// counts.
+    /// The verdict that is proven on all outer steps between two, by the index, too. At one step the index
+    /// rarely decides what discs do not, and costs a dozen counts.
     fn verdict_between(&self, ends: [f64; 2], epsilon: f64) -> Holds {
         let is_stable = self.is_in_first_region(ends[1], epsilon) || self.is_stable_by_index(ends, epsilon);
         if is_stable { Holds::Stable } else { self.beyond(ends, epsilon) }
@@ -85,8 +91,9 @@ impl Steps<'_> {
         signs::proven(&blocks).or_else(|| self.by_discs_between(ends, epsilon)).or_else(by_clusters).into()
     }
 
-    /// The verdicts that are proven for all stiffnesses within ε of their sizes, as stretches that cover the outer steps from `lo` to `hi`. No interval wider than
-    /// `width` times the larger end is missed that these stiffnesses have in common.
+    /// The verdicts that are proven for all stiffnesses within ε of their sizes, as stretches that cover the
+    /// outer steps from `lo` to `hi`. No interval wider than `width` times the larger end is missed that
+    /// these stiffnesses have in common.
     ///
     /// # Errors
     /// As [`cover`].
@@ -107,8 +114,9 @@ impl Steps<'_> {
         Ok(merged(known.into_iter().chain(rest)))
     }
 
-    /// The products of doubles that so many cells of a range cost, roughly: of each six counts of chains of twice as many nodes at both ends, products at each node, and the eigenvalues. Of
-    /// waters a quarter of the range is narrow cells, those where nothing is proven.
+    /// The products of doubles that so many cells of a range cost, roughly: of each six counts of chains of
+    /// twice as many nodes at both ends, products at each node, and the eigenvalues. Of waters a quarter of
+    /// the range is narrow cells, those where nothing is proven.
     pub fn cost_of_cells(&self, cells: f64) -> f64 {
         let each = 40.0 * self.events.len() as f64 + 40.0;
         cells / 4.0 * each * (self.nested.size() as f64).powi(3)
@@ -130,7 +138,8 @@ impl Steps<'_> {
         }
     }
 
-    /// The largest margin ε, rounded down within a percent in the first region, for which the verdict stands; `None` where nothing is proven.
+    /// The largest margin ε, rounded down within a percent in the first region, for which the verdict stands;
+    /// `None` where nothing is proven.
     pub fn margin(&self, step: f64) -> Option<f64> {
         if self.is_in_first_region(step, 0.0) {
             return largest(1.01, |epsilon| self.is_in_first_region(step, epsilon));
@@ -140,7 +149,8 @@ impl Steps<'_> {
             .then(|| largest(1.1, |epsilon| self.verdict_within(step, epsilon) == holds))?
     }
 
-    /// \[lo, hi\]: every outer step in (0, lo] is proven stable at these ratios, hi is proven unstable. `None` where Σ K_k is not proven definite.
+    /// \[lo, hi\]: every outer step in (0, lo] is proven stable at these ratios, hi is proven unstable.
+    /// `None` where Σ K_k is not proven definite.
     pub fn first_unstable(&self) -> Option<(f64, f64)> {
         let stable = |step: f64| self.is_in_first_region(step, 0.0);
         let (lo, hi) = self.bracket(stable)?;
@@ -159,8 +169,8 @@ impl Steps<'_> {
         (1..40).find(|&k| holds(at(-k))).map(|k| (at(-k), at(1 - k)))
     }
 
-    /// The step up to which every outer one from `at` on is proven unstable by the signs: up to where the step by which a verdict is carried on falls to
-    /// `least`, relative, or 1.5 `at`.
+    /// The step up to which every outer one from `at` on is proven unstable by the signs: up to where the
+    /// step by which a verdict is carried on falls to `least`, relative, or 1.5 `at`.
     pub fn unstable_up_to(&self, at: f64, least: f64) -> f64 {
         let (mut at, last, mut width) = (at, 1.5 * at, least);
         while at < last {
@@ -177,9 +187,10 @@ impl Steps<'_> {
         at.min(last)
     }
 
-    /// Whether it is proven stable at this outer step, and at every smaller one, with every K_1' and s_k K_k in place of the stiffnesses for which
-    /// K_1' ≤ K_1/(1 − b)², (1 + b)⁻² ≤ s_k ≤ (1 − b)⁻² and the sum is definite, b = `band` in \[0, 1): the periods of the innermost level may be shorter
-    /// by b each for itself, or longer, those of each other level by b together. All are known within ε of their sizes.
+    /// Whether it is proven stable at this outer step, and at every smaller one, with every K_1' and s_k K_k
+    /// in place of the stiffnesses for which K_1' ≤ K_1/(1 − b)², (1 + b)⁻² ≤ s_k ≤ (1 − b)⁻² and the sum is
+    /// definite, b = `band` in \[0, 1): the periods of the innermost level may be shorter by b each for
+    /// itself, or longer, those of each other level by b together. All are known within ε of their sizes.
     pub fn covers_band(&self, step: f64, band: f64, epsilon: f64) -> bool {
         let nested = self.nested;
         let [least, most] = [(1.0 + band).powi(-2) * (1.0 - ROOM), (1.0 - band).powi(-2) * (1.0 + ROOM)];
@@ -194,7 +205,8 @@ impl Steps<'_> {
         nested.is_definite_within(0.0) && (0..1 << slower).all(|which| self.is_positive(step, &corner(which)))
     }
 
-    /// The outer step up to which [`Steps::covers_band`] provably holds, within 1e-6 of the longest; `None` where it does for none.
+    /// The outer step up to which [`Steps::covers_band`] provably holds, within 1e-6 of the longest; `None`
+    /// where it does for none.
     pub fn band_edge(&self, band: f64, epsilon: f64) -> Option<f64> {
         let holds = |step: f64| self.covers_band(step, band, epsilon);
         Some(bisected(self.bracket(holds)?, 1e-6, |step| Some(holds(step))).0)

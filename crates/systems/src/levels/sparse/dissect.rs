@@ -1,8 +1,10 @@
-//! Nested dissection: an order of rows in which the factor of a body in space fills up less than in one of least degrees.
+//! Nested dissection: an order of rows in which the factor of a body in space fills up less than in one of
+//! least degrees.
 //!
-//! A part of the graph is cut across its longest way, the nodes on one side of the cut with neighbours on the other come last, and so on with what is
-//! left on both sides (George, SIAM J. Numer. Anal. 10, 1973). Along the way stands the difference of the distances from both ends, smoothed. Rows with
-//! the same neighbours, as the three of an atom, are one node. Any order serves a proof: none rests on what is done here.
+//! A part of the graph is cut across its longest way, the nodes on one side of the cut with neighbours on the
+//! other come last, and so on with what is left on both sides (George, SIAM J. Numer. Anal. 10, 1973). Along
+//! the way stands the difference of the distances from both ends, smoothed. Rows with the same neighbours, as
+//! the three of an atom, are one node. Any order serves a proof: none rests on what is done here.
 
 use std::collections::HashMap;
 
@@ -26,7 +28,8 @@ impl Graph {
     fn new(columns: &[usize], rows: &[usize]) -> Graph {
         let n = columns.len() - 1;
         let lower = || (0..n).flat_map(|j| rows[columns[j]..columns[j + 1]].iter().map(move |&i| (i, j)));
-        // A sum of numbers without a pattern, one a neighbour: rows of one sum are taken for alike, at worst a poor order.
+        // A sum of numbers without a pattern, one a neighbour: rows of one sum are taken for alike, at worst
+        // a poor order.
         let number = |i: usize| {
             (i as u64 + 1)
                 .wrapping_mul(0x9e37_79b9_7f4a_7c15)
@@ -60,7 +63,8 @@ impl Graph {
     }
 }
 
-/// The rows of a symmetric matrix in the order in which they are to be eliminated, from its lower triangle, column by column.
+/// The rows of a symmetric matrix in the order in which they are to be eliminated, from its lower triangle,
+/// column by column.
 pub(super) fn dissected(columns: &[usize], rows: &[usize]) -> Vec<usize> {
     let Graph { mut rows, near } = Graph::new(columns, rows);
     let mut parts = Parts::new(rows.iter().map(Vec::len).collect(), near);
@@ -113,7 +117,8 @@ impl Parts {
         self.near[v].iter().copied().filter(move |&w| self.part[w] == self.part[v])
     }
 
-    /// What comes last of a part, and the parts of the rest: its pieces where it has several, both sides of a cut, or nothing where it is small or has no cut.
+    /// What comes last of a part, and the parts of the rest: its pieces where it has several, both sides of a
+    /// cut, or nothing where it is small or has no cut.
     fn divided(&mut self, indexes: Vec<usize>) -> (Vec<usize>, Vec<Vec<usize>>) {
         if self.weight(&indexes) <= SMALL {
             return (indexes, Vec::new());

@@ -1,9 +1,10 @@
 //! The pivots of a sparse factorization without its factors (multifrontal elimination).
 //!
-//! Each supernode's columns are eliminated in a dense matrix of their own, the front: what belongs there of the matrix and of the supernodes
-//! below it in the elimination tree. What elimination leaves on the rows that follow is handed on; the columns of the factor are dropped. So
-//! memory holds some fronts along a path of the tree in place of the whole factor, and parts of the tree that do not meet are eliminated side
-//! by side.
+//! Each supernode's columns are eliminated in a dense matrix of their own, the front: what belongs there of
+//! the matrix and of the supernodes below it in the elimination tree. What elimination leaves on the rows
+//! that follow is handed on; the columns of the factor are dropped. So memory holds some fronts along a path
+//! of the tree in place of the whole factor, and parts of the tree that do not meet are eliminated side by
+//! side.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -57,12 +58,13 @@ struct Left {
 /// Supernodes with so large a part of all products, theirs and those below, are eliminated side by side.
 const HEAVY: f64 = 1.0 / 64.0;
 
-/// With so large a part they are eliminated one after the other, each by all threads: of 10,000 waters that takes 6.3 GB in place of 7.2.
+/// With so large a part they are eliminated one after the other, each by all threads: of 10,000 waters that
+/// takes 6.3 GB in place of 7.2.
 const LARGE: f64 = 1.0 / 3.0;
 
 impl<'a> Fronts<'a> {
-    /// Of the lower triangle with these rows and values of each column, row i being the `place[i]`-th that is eliminated; `None` where it has
-    /// 2³² rows or more, or memory runs out.
+    /// Of the lower triangle with these rows and values of each column, row i being the `place[i]`-th that is
+    /// eliminated; `None` where it has 2³² rows or more, or memory runs out.
     pub fn new(
         own: &'a SymbolicSupernodalCholesky<usize>,
         place: impl Fn(usize) -> usize,
@@ -117,7 +119,8 @@ impl<'a> Fronts<'a> {
         if !self.has(HEAVY, root) {
             return self.in_turn(root);
         }
-        // A path down to where the tree branches or ends, then back up: depth is that of branches, whatever the length of a chain.
+        // A path down to where the tree branches or ends, then back up: depth is that of branches, whatever
+        // the length of a chain.
         let mut path = vec![root];
         let next = loop {
             let indexes = &self.children[path[path.len() - 1]];
@@ -300,12 +303,14 @@ pub(super) fn supernodes(
     (0..symbolic_supernodal_cholesky.n_supernodes()).map(|k| supernode(symbolic_supernodal_cholesky, k))
 }
 
-/// The products that the elimination of so many columns takes, so many rows below them: half the squares of the columns' lengths.
+/// The products that the elimination of so many columns takes, so many rows below them: half the squares of
+/// the columns' lengths.
 pub(super) fn products_of(columns: usize, below: usize) -> f64 {
     (1..=columns).map(|k| ((k + below) as f64).powi(2) / 2.0).sum()
 }
 
-/// From so many numbers on that is worth the time that the system takes to hand out each page when it is first written to.
+/// From so many numbers on that is worth the time that the system takes to hand out each page when it is
+/// first written to.
 const FRESH: usize = 1 << 26;
 
 /// So many zeros; `None` where memory runs out.
@@ -313,7 +318,8 @@ pub(super) fn zeros<T: Clone>(n: usize, zero: T) -> Option<Vec<T>> {
     let mut numbers = Vec::new();
     numbers.try_reserve_exact(n).ok()?;
     if n > FRESH {
-        // Given back: the system hands out zeros, and pages that nobody writes to, as of upper triangles, take no memory.
+        // Given back: the system hands out zeros, and pages that nobody writes to, as of upper triangles,
+        // take no memory.
         drop(std::hint::black_box(numbers));
         return Some(vec![zero; n]);
     }

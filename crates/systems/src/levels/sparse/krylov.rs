@@ -5,8 +5,9 @@ use faer::{Mat, Side};
 /// How often a space is looked at.
 const EVERY: usize = 16;
 
-/// The eigenvector of the largest eigenvalue of a symmetric operator as a Krylov space from x has it, off the columns of `rigid`: of length 1, rounded. It takes
-/// so many steps at most, fewer where the residual falls below `enough` times the eigenvalue. `None` where nothing is left or something has no image.
+/// The eigenvector of the largest eigenvalue of a symmetric operator as a Krylov space from x has it, off the
+/// columns of `rigid`: of length 1, rounded. It takes so many steps at most, fewer where the residual falls
+/// below `enough` times the eigenvalue. `None` where nothing is left or something has no image.
 pub(super) fn top(
     mut x: Mat<f64>,
     rigid: &Mat<f64>,

@@ -27,20 +27,24 @@ pub(crate) struct Pattern {
     columns: Vec<usize>,
     rows: Vec<usize>,
     symbolic: Arc<SymbolicCholesky<usize>>,
-    /// The most entries of a row of Cholesky's factor: no sum of products in the factorization has more terms.
+    /// The most entries of a row of Cholesky's factor: no sum of products in the factorization has more
+    /// terms.
     terms: usize,
 }
 
-/// A symmetric matrix of n rows as triplets (i, j, x), each pair of entries once or both alike; triplets of one entry add up, in doubles.
+/// A symmetric matrix of n rows as triplets (i, j, x), each pair of entries once or both alike; triplets of
+/// one entry add up, in doubles.
 pub type Triplets = [(usize, usize, f64)];
 
 /// Entries of both triangles may differ by so much, relative to the largest one: the roundings of a product.
 const SYMMETRIC: f64 = 1e-14;
 
-/// The lower triangle of a symmetric matrix of n rows. Where it `is_whole` an entry that is not given is 0, else it is that of the other triangle.
+/// The lower triangle of a symmetric matrix of n rows. Where it `is_whole` an entry that is not given is 0,
+/// else it is that of the other triangle.
 ///
 /// # Errors
-/// Numbers that are not finite, indices beyond the rows, an entry and its mirror image that differ, all by `field`.
+/// Numbers that are not finite, indices beyond the rows, an entry and its mirror image that differ, all by
+/// `field`.
 pub fn symmetric(
     field: &str,
     n: usize,
@@ -184,7 +188,8 @@ impl Pattern {
         y
     }
 
-    /// The largest sum of |entries| of a row: no less than the 2-norm, rounded up; and the largest number of entries of one.
+    /// The largest sum of |entries| of a row: no less than the 2-norm, rounded up; and the largest number of
+    /// entries of one.
     pub fn size_of(&self, values: &[f64]) -> (f64, usize) {
         let (mut sums, mut counts) = (vec![0.0; self.size()], vec![0; self.size()]);
         for j in 0..self.size() {
@@ -227,8 +232,9 @@ impl Pattern {
         )
     }
 
-    /// Whether every matrix within `slack` (2-norm) of c + Σ a_k A_k is proven positive definite, as [`Pattern::factored`] proves it, without the
-    /// factors: memory holds some fronts. False where that proves nothing, or memory runs out.
+    /// Whether every matrix within `slack` (2-norm) of c + Σ a_k A_k is proven positive definite, as
+    /// [`Pattern::factored`] proves it, without the factors: memory holds some fronts. False where that
+    /// proves nothing, or memory runs out.
     pub fn is_definite(&self, c: f64, terms: &[(f64, &[f64])], slack: f64) -> bool {
         match self.symbolic.raw() {
             SymbolicCholeskyRaw::Simplicial(_) => self.factored(c, terms, slack).is_some(),
@@ -254,19 +260,22 @@ impl Pattern {
         fronts.pivots()
     }
 
-    /// The factors of c + Σ a_k A_k minus what makes them prove that every matrix within `slack` of it (2-norm) is positive definite, by
-    /// Rump's criterion (BIT 46, 2006); `None` where that proves nothing, or memory runs out.
+    /// The factors of c + Σ a_k A_k minus what makes them prove that every matrix within `slack` of it
+    /// (2-norm) is positive definite, by Rump's criterion (BIT 46, 2006); `None` where that proves nothing,
+    /// or memory runs out.
     pub fn factored(&self, c: f64, terms: &[(f64, &[f64])], slack: f64) -> Option<Factors> {
         let values = self.factors(&self.lowered(c, terms, slack)?, false)?;
         Some(Factors { symbolic: Arc::clone(&self.symbolic), values })
     }
 
-    /// c + Σ a_k A_k minus as much of the identity as Cholesky's factors may be off by: where they exist, whatever the order of their sums, every
-    /// matrix within `slack` of the sum is positive definite. `None` where a diagonal entry shows that they do not.
+    /// c + Σ a_k A_k minus as much of the identity as Cholesky's factors may be off by: where they exist,
+    /// whatever the order of their sums, every matrix within `slack` of the sum is positive definite. `None`
+    /// where a diagonal entry shows that they do not.
     fn lowered(&self, c: f64, terms: &[(f64, &[f64])], slack: f64) -> Option<Vec<f64>> {
         let n = self.size();
         let (mut values, trace) = self.sum(c, terms);
-        // γ of the longest sum, with room for the reciprocals of pivots, the rounding of the shifted diagonal and of the sums here.
+        // γ of the longest sum, with room for the reciprocals of pivots, the rounding of the shifted diagonal
+        // and of the sums here.
         let shift = 1.01 * (slack + (self.terms as f64 + 24.0) * U * trace)
             + f64::MIN_POSITIVE * (n as f64 + 1.0).powi(2);
         if !shift.is_finite() || (0..n).any(|j| values[self.diagonal(j)] <= shift) {
@@ -276,8 +285,9 @@ impl Pattern {
         Some(values)
     }
 
-    /// \[lo, hi\], which holds the largest eigenvalue of every matrix within `slack` of A (2-norm), to `within` of itself or as near as doubles
-    /// tell: above it c − A is proven positive definite, below it c − A has a negative pivot. `None` where it is not positive.
+    /// \[lo, hi\], which holds the largest eigenvalue of every matrix within `slack` of A (2-norm), to
+    /// `within` of itself or as near as doubles tell: above it c − A is proven positive definite, below it c
+    /// − A has a negative pivot. `None` where it is not positive.
     pub fn largest(&self, values: &[f64], slack: f64, within: f64) -> Option<(f64, f64)> {
         let (mut lo, mut hi) = (0.0, self.size_of(values).0 + slack);
         let minus = [(-1.0, values)];
@@ -296,8 +306,9 @@ impl Pattern {
         (lo > 0.0).then_some((lo, hi))
     }
 
-    /// How many negative eigenvalues a matrix has that is no farther from Σ a_k A_k − c (2-norm) than the number beside: that of the negative
-    /// pivots of L D Lᵀ without exchanges, whose error is γ |L||D||Lᵀ| (Higham, chapter 11) and the roundings of the sum.
+    /// How many negative eigenvalues a matrix has that is no farther from Σ a_k A_k − c (2-norm) than the
+    /// number beside: that of the negative pivots of L D Lᵀ without exchanges, whose error is γ |L||D||Lᵀ|
+    /// (Higham, chapter 11) and the roundings of the sum.
     pub fn negative(&self, c: f64, terms: &[(f64, &[f64])]) -> Option<(usize, f64)> {
         let (values, trace) = self.sum(-c, terms);
         let Pivots { negative, size } = match self.symbolic.raw() {
@@ -317,8 +328,8 @@ impl Pattern {
         2.0 * (self.terms as f64 + 24.0) * U * (sizes + c.abs())
     }
 
-    /// No fewer than the eigenvalues that are not above 0 of any matrix within `slack` of c + Σ a_k A_k: those below a τ that is proven to lie beyond the slack
-    /// and what the factorization may be off by.
+    /// No fewer than the eigenvalues that are not above 0 of any matrix within `slack` of c + Σ a_k A_k:
+    /// those below a τ that is proven to lie beyond the slack and what the factorization may be off by.
     pub fn at_most_negative(&self, c: f64, terms: &[(f64, &[f64])], slack: f64) -> Option<usize> {
         let mut tau = 1.1 * slack;
         for _ in 0..SHIFTS {
@@ -346,7 +357,8 @@ impl Pattern {
         }))
     }
 
-    /// The values of the factors L Lᵀ of a matrix of this pattern, or L D Lᵀ; `None` where a pivot is none, memory runs out, or they are too many to keep.
+    /// The values of the factors L Lᵀ of a matrix of this pattern, or L D Lᵀ; `None` where a pivot is none,
+    /// memory runs out, or they are too many to keep.
     fn factors(&self, entries: &[f64], is_signed: bool) -> Option<Vec<f64>> {
         let (symbolic_cholesky, threads) = (&self.symbolic, faer::get_global_parallelism());
         let scratch = match is_signed {
@@ -375,7 +387,8 @@ impl Pattern {
     }
 }
 
-/// Shifts τ that are tried: from the second one on a tenth above what the factorization with the last one may be off by.
+/// Shifts τ that are tried: from the second one on a tenth above what the factorization with the last one may
+/// be off by.
 const SHIFTS: u32 = 8;
 
 /// So many values of factors are not kept: 8 GB.
@@ -385,7 +398,8 @@ const MOST_KEPT: usize = 1_000_000_000;
 const MANY: usize = 1 << 18;
 const PARTS: usize = 4;
 
-/// The residual, relative to the inverse's eigenvalue, at which a vector is taken: the eigenvalue's error is its square, over the distance of the next one.
+/// The residual, relative to the inverse's eigenvalue, at which a vector is taken: the eigenvalue's error is
+/// its square, over the distance of the next one.
 const ENOUGH: f64 = 1e-3;
 
 /// Cholesky's factors.
@@ -406,13 +420,14 @@ impl Factors {
         Some(x)
     }
 
-    /// The eigenvector of the least eigenvalue as a Krylov space of the inverse has it, so many steps from x, off the columns of `rigid`: of length 1,
-    /// rounded. `None` where memory runs out or nothing is left.
+    /// The eigenvector of the least eigenvalue as a Krylov space of the inverse has it, so many steps from x,
+    /// off the columns of `rigid`: of length 1, rounded. `None` where memory runs out or nothing is left.
     pub fn least(&self, x: Mat<f64>, rigid: &Mat<f64>, steps: usize) -> Option<Mat<f64>> {
         top(x, rigid, steps, ENOUGH, |x| self.solve(x.clone()))
     }
 
-    /// So many rounds of inverse iteration from x, off the columns of `rigid`; of length 1, rounded. `None` where memory runs out or nothing is left.
+    /// So many rounds of inverse iteration from x, off the columns of `rigid`; of length 1, rounded. `None`
+    /// where memory runs out or nothing is left.
     pub fn iterated(&self, mut x: Mat<f64>, rigid: &Mat<f64>, rounds: usize) -> Option<Mat<f64>> {
         for _ in 0..rounds {
             x = self.solve(x)?;
@@ -427,7 +442,8 @@ impl Factors {
     }
 }
 
-/// Cholesky's factors in the order of least degrees, or by dissection where that fills them less; `None` where memory runs out.
+/// Cholesky's factors in the order of least degrees, or by dissection where that fills them less; `None`
+/// where memory runs out.
 fn symbolic(columns: &[usize], rows: &[usize]) -> Option<SymbolicCholesky<usize>> {
     let n = columns.len() - 1;
     let pattern = SymbolicSparseColMatRef::new_checked(n, n, columns, None, rows);
@@ -545,7 +561,8 @@ mod tests {
 
     #[test]
     fn fronts_count_what_is_negative_in_bodies_apart() {
-        // Three lattices that do not meet, each large enough to be eliminated by supernodes; one is twice as stiff.
+        // Three lattices that do not meet, each large enough to be eliminated by supernodes; one is twice as
+        // stiff.
         let (body, n) = (lattice(9, 2), 729);
         let moved = |k: usize| {
             let by = if k == 2 { 2.0 } else { 1.0 };

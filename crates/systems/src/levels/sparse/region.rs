@@ -17,7 +17,8 @@ use number::error::{Error, Result};
 use number::parallel::both;
 use number::{U, bisected};
 
-/// The fast and the slow stiffness, mass-weighted (1/time²), sparse, and the rigid motions that are set apart.
+/// The fast and the slow stiffness, mass-weighted (1/time²), sparse, and the rigid motions that are set
+/// apart.
 ///
 /// ```
 /// use faer::Mat;
@@ -44,8 +45,8 @@ pub struct SparseLevels {
     /// The fast one in its own.
     alone: Pattern,
     fast_alone: Vec<f64>,
-    /// How far these are from the matrices that are meant (2-norm), by what weighing with masses rounds; and how far F + S is from itself
-    /// without what it does along rigid motions.
+    /// How far these are from the matrices that are meant (2-norm), by what weighing with masses rounds; and
+    /// how far F + S is from itself without what it does along rigid motions.
     errors: [f64; 2],
     leak: f64,
     /// No less than their norms.
@@ -71,7 +72,8 @@ struct First {
 struct Held {
     /// The directions along which it is not proven positive; `None` where they are not counted.
     not_proven: Option<usize>,
-    /// Where there are none, the least xᵀ(F + S)x that a Krylov space finds, rounded; `None` where it finds none.
+    /// Where there are none, the least xᵀ(F + S)x that a Krylov space finds, rounded; `None` where it finds
+    /// none.
     least: Option<f64>,
     /// F + S + E is proven positive definite for all E of a 2-norm up to this; 0 where that was not sought.
     above: f64,
@@ -83,14 +85,15 @@ const STEPS: usize = 60;
 /// Rooms that are tried above what it finds, relative to it.
 const ROOMS: [f64; 5] = [1e-9, 1e-7, 1e-5, 1e-3, 3e-2];
 
-/// How far below 0 eigenvalues of F may lie by rounding and differences, relative to its largest one; and if they do more than that.
+/// How far below 0 eigenvalues of F may lie by rounding and differences, relative to its largest one; and if
+/// they do more than that.
 const BELOW: [f64; 2] = [1e-6, 1e-2];
 
 /// Dimensions of the Krylov space of an inverse that tells the vector that is stretched least.
 const STEPS_BELOW: usize = 16;
 
-/// The same of the matrix itself, and the residual at which its vector is taken, relative to the eigenvalue: these lie close together, and the error of what
-/// the vector tells is the square of its own.
+/// The same of the matrix itself, and the residual at which its vector is taken, relative to the eigenvalue:
+/// these lie close together, and the error of what the vector tells is the square of its own.
 const STEPS_ALONG: usize = 240;
 const ALONG: f64 = 1e-4;
 
@@ -100,11 +103,13 @@ const TURNS: usize = 4;
 /// Products of a factorization from which on two are made side by side, as long as they are not large.
 const SIDE_BY_SIDE: f64 = 1e8;
 
-/// Parts of the step that a vector tells, from which the first region's end is sought; then parts of the one at which the fastest mode alone takes half a turn.
+/// Parts of the step that a vector tells, from which the first region's end is sought; then parts of the one
+/// at which the fastest mode alone takes half a turn.
 const BELOW_LIMIT: [f64; 3] = [1.0 - WIDTH / 2.0, 0.999, 0.99];
 const FROM: [f64; 8] = [0.9, 0.5, 0.2, 0.1, 0.03, 0.01, 1e-3, 1e-4];
 
-/// A stiffness's part of its norm up to which a rotation is set apart: of molecules at their minima forces that turn with the atoms hold some hundredths.
+/// A stiffness's part of its norm up to which a rotation is set apart: of molecules at their minima forces
+/// that turn with the atoms hold some hundredths.
 const TURNED: f64 = 0.25;
 
 /// Shifts, relative to the norms, by which F + S is positive definite in doubles.
@@ -113,8 +118,8 @@ const SHIFTED: [f64; 3] = [1e-9, 1e-7, 1e-5];
 /// Steps of Lanczos's recursion for the least eigenvalue of F + S.
 const LOWEST: usize = 1200;
 
-/// Products of a factorization, an entry of the matrix, from which on these steps cost less than to factor twice, and to keep the factors once: some
-/// hundred products with each entry, at the speed of the memory.
+/// Products of a factorization, an entry of the matrix, from which on these steps cost less than to factor
+/// twice, and to keep the factors once: some hundred products with each entry, at the speed of the memory.
 const WORTH_A_RECURSION: f64 = 2e4;
 
 /// How far below what it is at most a margin may be, relative to it.
@@ -124,11 +129,13 @@ const NEAR: f64 = 0.06;
 const WIDTH: f64 = 1e-4;
 
 impl SparseLevels {
-    /// From K of both levels and the mass of each degree of freedom; the columns of `rigid` are orthonormal and mass-weighted, and what the
-    /// stiffnesses do along them is projected out: forms that are definite on all vectors are so on those that are not rigid.
+    /// From K of both levels and the mass of each degree of freedom; the columns of `rigid` are orthonormal
+    /// and mass-weighted, and what the stiffnesses do along them is projected out: forms that are definite on
+    /// all vectors are so on those that are not rigid.
     ///
     /// # Errors
-    /// Masses that are not positive or as many as rows; numbers that are not finite; indices beyond the rows; pairs of entries that differ.
+    /// Masses that are not positive or as many as rows; numbers that are not finite; indices beyond the rows;
+    /// pairs of entries that differ.
     pub fn new(masses: &[f64], [fast, slow]: [&Triplets; 2], rigid: Mat<f64>) -> Result<SparseLevels> {
         let n = masses.len();
         if let Some((i, mass)) = masses.iter().enumerate().find(|(_, m)| !(m.is_finite() && **m > 0.0)) {
@@ -189,8 +196,9 @@ impl SparseLevels {
         })
     }
 
-    /// That no stiffness holds what is set apart, three translations and rotations of particles: the former by no more than its accuracy, the latter by no more
-    /// than forces that turn with the atoms do. A sum that vanishes where both hold is no reason: their kicks fall at different times.
+    /// That no stiffness holds what is set apart, three translations and rotations of particles: the former
+    /// by no more than its accuracy, the latter by no more than forces that turn with the atoms do. A sum
+    /// that vanishes where both hold is no reason: their kicks fall at different times.
     ///
     /// # Errors
     /// Where one does.
@@ -231,17 +239,19 @@ impl SparseLevels {
         }
     }
 
-    /// Whether the mode that is unstable first is proven to grow at an outer step, for all stiffnesses within `epsilon` times their norms.
+    /// Whether the mode that is unstable first is proven to grow at an outer step, for all stiffnesses within
+    /// `epsilon` times their norms.
     pub fn is_unstable(&self, outer: &Outer, epsilon: f64) -> bool {
         self.first(outer.inner_steps)
             .is_some_and(|first| self.resonates_along(first.quotients, outer, epsilon))
     }
 
-    /// The largest ε, rounded down within six percent, for which the verdict is stable for all stiffnesses within ε times their norms; `None`
-    /// where it is not for 0.
+    /// The largest ε, rounded down within six percent, for which the verdict is stable for all stiffnesses
+    /// within ε times their norms; `None` where it is not for 0.
     ///
-    /// Two conditions each hold up to some ε, and the smaller one is asked for. A vector shows what the first is at most; most often what is known of the
-    /// first region's end proves nearly as much, and elsewhere one factorization a little below does.
+    /// Two conditions each hold up to some ε, and the smaller one is asked for. A vector shows what the first
+    /// is at most; most often what is known of the first region's end proves nearly as much, and elsewhere
+    /// one factorization a little below does.
     pub fn margin(&self, outer: &Outer) -> Option<f64> {
         let quotients = self.quotients(&self.stretched_least(outer, self.anywhere())?);
         let is_open = |epsilon: f64| self.form_along(quotients, outer, epsilon) > 0.0;
@@ -273,7 +283,8 @@ impl SparseLevels {
             return (1.0 - 8.0 * U) * (above - off(0.0)) / (self.sizes[0] + self.sizes[1]);
         }
         let is_definite = |epsilon: f64| self.is_total_definite(off(epsilon));
-        // Its least eigenvalue is at most this quotient; what counts eigenvalues proves it by a shift that is larger.
+        // Its least eigenvalue is at most this quotient; what counts eigenvalues proves it by a shift that is
+        // larger.
         let room = if self.rigid.ncols() == 0 { 1.0 } else { 1.1 };
         let least = least.map_or(f64::INFINITY, |least| least / room - off(0.0));
         let value = least.max(0.0) / (self.sizes[0] + self.sizes[1]);
@@ -283,16 +294,18 @@ impl SparseLevels {
         largest_below(most.min(value), NEAR, is_definite)
     }
 
-    /// \[lo, hi\]: every outer step of so many inner ones in (0, lo] is proven stable, hi is proven unstable; `None` where nothing is proven.
+    /// \[lo, hi\]: every outer step of so many inner ones in (0, lo] is proven stable, hi is proven unstable;
+    /// `None` where nothing is proven.
     pub fn first_unstable(&self, inner_steps: u64) -> Option<(f64, f64)> {
         self.first_resonance(inner_steps).filter(|_| self.unheld() == Some(0))
     }
 
-    /// \[lo, hi\]: at every outer step of so many inner ones in (0, lo] all multipliers are on the circle or real and positive, so that what grows
-    /// falls without swinging, as where forces hold no minimum; at hi one is proven below −1. `None` where nothing is proven.
+    /// \[lo, hi\]: at every outer step of so many inner ones in (0, lo] all multipliers are on the circle or
+    /// real and positive, so that what grows falls without swinging, as where forces hold no minimum; at hi
+    /// one is proven below −1. `None` where nothing is proven.
     ///
-    /// With a, b, d of the inner steps' half, μ + 1 are the eigenvalues of b d(h² F) (a/b(h² F) − (p/2) h² S) (proofs/REGION.md): b d > 0 by (2), so
-    /// they are real, and have the signs of (1).
+    /// With a, b, d of the inner steps' half, μ + 1 are the eigenvalues of b d(h² F) (a/b(h² F) − (p/2) h² S)
+    /// (proofs/REGION.md): b d > 0 by (2), so they are real, and have the signs of (1).
     pub fn first_resonance(&self, inner_steps: u64) -> Option<(f64, f64)> {
         self.first(inner_steps).map(|first| first.step)
     }
@@ -316,7 +329,8 @@ impl SparseLevels {
         // At the latest where the fastest mode alone has p θ = π.
         let angle = std::f64::consts::PI / (2.0 * inner_steps as f64);
         let top = inner_steps as f64 * 2.0 * angle.sin() / high.sqrt();
-        // The vector that is stretched least tells how far the line may prove anything; the nearer the step, the sharper.
+        // The vector that is stretched least tells how far the line may prove anything; the nearer the step,
+        // the sharper.
         let limit = |along: &Mat<f64>, range: (f64, f64)| {
             let quotients = self.quotients(along);
             let is_open =
@@ -389,7 +403,8 @@ impl SparseLevels {
         self.both.factored(line[0], &[(fast, &self.fast), (slow, &self.slow)], slack)
     }
 
-    /// Whether (1) and (2) follow at an outer step from what is proven at the end of the first region, without another factorization.
+    /// Whether (1) and (2) follow at an outer step from what is proven at the end of the first region,
+    /// without another factorization.
     ///
     /// There α₁ + a₁F + b₁S > 0 with b₁ < 0, so S < (α₁ + a₁F)/−b₁, and with r = b/b₁ > 0
     /// α + aF + bS > (α − r α₁) + (a − r a₁)F: a line over the spectrum of F, no lower than at its ends.
@@ -411,7 +426,8 @@ impl SparseLevels {
         found().unwrap_or(false)
     }
 
-    /// α − β h² F − M of a line α − β s: its factors of F and S, and how far the sum may be from it for stiffnesses within ε times their norms.
+    /// α − β h² F − M of a line α − β s: its factors of F and S, and how far the sum may be from it for
+    /// stiffnesses within ε times their norms.
     fn form(&self, outer: &Outer, [offset, slope]: [f64; 2], epsilon: f64) -> ([f64; 2], f64) {
         let off = [0, 1].map(|k| self.errors[k] + epsilon * self.sizes[k]);
         let [fast, slow] = [-slope * outer.inner_square, -outer.half_kick()];
@@ -435,8 +451,8 @@ impl SparseLevels {
         found.map(|[low, high]| [low - off, high + off])
     }
 
-    /// The number of directions, rigid motions aside, along which F + S is not proven positive: it is negative there, or too small for doubles to
-    /// tell. `None` where the factorization does not count them.
+    /// The number of directions, rigid motions aside, along which F + S is not proven positive: it is
+    /// negative there, or too small for doubles to tell. `None` where the factorization does not count them.
     pub fn unheld(&self) -> Option<usize> {
         self.held().not_proven
     }
@@ -452,12 +468,14 @@ impl SparseLevels {
         })
     }
 
-    /// Whether a factorization costs so much that one is saved by a recursion, and that two at once take too much memory.
+    /// Whether a factorization costs so much that one is saved by a recursion, and that two at once take too
+    /// much memory.
     fn is_large(&self) -> bool {
         self.products() > WORTH_A_RECURSION * self.both.entries() as f64
     }
 
-    /// What one factorization proves of F + S where Lanczos's recursion finds its least eigenvalue: that it is above nearly as much.
+    /// What one factorization proves of F + S where Lanczos's recursion finds its least eigenvalue: that it
+    /// is above nearly as much.
     fn held_by_as_much(&self) -> Option<Held> {
         if self.rigid.ncols() > 0 || !self.is_large() {
             return None;
@@ -490,8 +508,8 @@ impl SparseLevels {
         [(1.0, &self.fast), (1.0, &self.slow)]
     }
 
-    /// What most answers ask for first: where the first region ends, and whether F + S is positive. Side by side, or one after the other where
-    /// each takes much memory.
+    /// What most answers ask for first: where the first region ends, and whether F + S is positive. Side by
+    /// side, or one after the other where each takes much memory.
     pub fn look(&self, inner_steps: u64) {
         both(self.products() > SIDE_BY_SIDE && !self.is_large(), || self.first(inner_steps), || self.held());
     }
@@ -503,8 +521,9 @@ impl SparseLevels {
         found == Some(0)
     }
 
-    /// The eigenvalues of F + S that are not proven above `off` and the roundings: F + S − τ has as many negative ones, and of these there are as
-    /// many as rigid motions in any case, along which F + S vanishes. The factors that prove it, where there are any.
+    /// The eigenvalues of F + S that are not proven above `off` and the roundings: F + S − τ has as many
+    /// negative ones, and of these there are as many as rigid motions in any case, along which F + S
+    /// vanishes. The factors that prove it, where there are any.
     fn not_above_zero(&self, off: f64) -> (Option<usize>, Option<Factors>) {
         let slack = self.total_slack(off);
         let factors =
@@ -522,8 +541,8 @@ impl SparseLevels {
         Mat::from_fn(self.size(), 1, |i, _| begin[i])
     }
 
-    /// xᵀ(α − β h² F − M)x of a vector with these quotients, less what stiffnesses within ε times their norms and roundings take; rounded. −∞ where there is no
-    /// line.
+    /// xᵀ(α − β h² F − M)x of a vector with these quotients, less what stiffnesses within ε times their norms
+    /// and roundings take; rounded. −∞ where there is no line.
     fn form_along(&self, [fast, slow]: [f64; 2], outer: &Outer, epsilon: f64) -> f64 {
         let line = self.ends(epsilon).and_then(|[low, high]| chord(outer, low, high));
         line.map_or(f64::NEG_INFINITY, |line| {
@@ -546,8 +565,8 @@ impl SparseLevels {
         [of(0, &self.fast), of(1, &self.slow)]
     }
 
-    /// Whether E(h² xᵀFx) < xᵀMx for sure for a vector with these quotients, all eigenvalues of h² F being where E is concave: a multiplier is
-    /// below −1, for all stiffnesses within `epsilon` times their norms.
+    /// Whether E(h² xᵀFx) < xᵀMx for sure for a vector with these quotients, all eigenvalues of h² F being
+    /// where E is concave: a multiplier is below −1, for all stiffnesses within `epsilon` times their norms.
     fn resonates_along(&self, quotients: [f64; 2], outer: &Outer, epsilon: f64) -> bool {
         let Some([low, high]) = self.ends(epsilon) else { return false };
         // Of one rounding each.
@@ -564,7 +583,8 @@ impl SparseLevels {
     }
 }
 
-/// A step that is proven between lo and hi, near hi; `None` where these are as near to each other as they are to be. `hi` falls to what is not proven.
+/// A step that is proven between lo and hi, near hi; `None` where these are as near to each other as they are
+/// to be. `hi` falls to what is not proven.
 fn nearer(lo: f64, hi: &mut f64, is_proven: impl Fn(f64) -> bool) -> Option<f64> {
     let mut is_first = true;
     while *hi > lo * (1.0 + WIDTH) {
@@ -580,7 +600,8 @@ fn nearer(lo: f64, hi: &mut f64, is_proven: impl Fn(f64) -> bool) -> Option<f64>
     None
 }
 
-/// The largest number that holds, rounded down within `width`, where none above `most` does: 0 where it is below 10^-15.
+/// The largest number that holds, rounded down within `width`, where none above `most` does: 0 where it is
+/// below 10^-15.
 fn largest_below(most: f64, width: f64, holds: impl Fn(f64) -> bool) -> f64 {
     let (mut hi, mut part) = (most, 1.0 / (1.0 + 0.9 * width));
     while hi > LEAST_MARGIN {

@@ -1,12 +1,13 @@
 //! The half period of systems on a line, modulo a prime, with bounds on its invariants.
 //!
-//! *Degree.* Minors of size k of a product are sums of products of minors of its factors (Cauchy and Binet). Those of a kick K₀ + s K₁ have
-//! a degree of at most min(k, rank K₁). Those of a drift, times δ(s) = Π det (islands of M that vary), have at most the rank of M₁ as
-//! theirs, since minors of M⁻¹ are those of M over det M (Jacobi). The coefficients c_k of χ are such sums over S = Bᵀ C, two half
-//! periods.
+//! *Degree.* Minors of size k of a product are sums of products of minors of its factors (Cauchy and Binet).
+//! Those of a kick K₀ + s K₁ have a degree of at most min(k, rank K₁). Those of a drift, times δ(s) = Π det
+//! (islands of M that vary), have at most the rank of M₁ as theirs, since minors of M⁻¹ are those of M over
+//! det M (Jacobi). The coefficients c_k of χ are such sums over S = Bᵀ C, two half periods.
 //!
-//! *Length.* On |s| = 1 no entry of kicks and drifts exceeds the sum of its coefficients' sizes, so no product of their row sums is
-//! exceeded by a row sum of H or Hᵀ. A polynomial that is at most b on |s| = 1 has no coefficient beyond b (Cauchy).
+//! *Length.* On |s| = 1 no entry of kicks and drifts exceeds the sum of its coefficients' sizes, so no
+//! product of their row sums is exceeded by a row sum of H or Hᵀ. A polynomial that is at most b on |s| = 1
+//! has no coefficient beyond b (Cauchy).
 
 use std::collections::BTreeSet;
 
@@ -52,11 +53,13 @@ pub(super) struct Half {
     unit: BigInt,
     /// Integer multiples: the entries of `scale` δ^E S are in ℤ\[s\], and those of `scale` e δ^E H.
     scale: BigInt,
-    /// Whether D = Aᵀ, so that S + 1 = Dᵀ A = A², and 0 and −1 are not always eigenvalues of (A − 1)/2: at some places modulo a prime.
+    /// Whether D = Aᵀ, so that S + 1 = Dᵀ A = A², and 0 and −1 are not always eigenvalues of (A − 1)/2: at
+    /// some places modulo a prime.
     pub is_square: bool,
     /// Whether S is self-adjoint in the metric of M, as it is where potentials commute.
     pub is_selfadjoint: bool,
-    /// A matrix that commutes with S and with every matrix that does; its eigenspaces have no μ in common that could couple.
+    /// A matrix that commutes with S and with every matrix that does; its eigenspaces have no μ in common
+    /// that could couple.
     symmetry: Option<DMatrix<Rational>>,
 }
 
@@ -149,7 +152,8 @@ impl Half {
         self.symmetry.is_some()
     }
 
-    /// The eigenspaces of the symmetry; `None` where there is none, and where the prime does not have all of its eigenvalues.
+    /// The eigenspaces of the symmetry; `None` where there is none, and where the prime does not have all of
+    /// its eigenvalues.
     pub fn eigenspaces(&self, field: &PrimeField) -> Option<Eigenspaces> {
         let symmetry = self.symmetry.as_ref()?;
         let entries = symmetry.iter().map(|x| field.of_rational(x)).collect::<Option<Vec<_>>>()?;
@@ -209,8 +213,8 @@ impl Half {
         2 * kicks.map(|clock| self.ranks[clock].min(k)).sum::<usize>() + self.degree_of_masses()
     }
 
-    /// More than log₂ of row sums on |s| = 1: of [`Half::scale`] δ^E times the product, of that times 1, and how much more of `scale` e δ^E H
-    /// than of `scale` δ^E S.
+    /// More than log₂ of row sums on |s| = 1: of [`Half::scale`] δ^E times the product, of that times 1, and
+    /// how much more of `scale` e δ^E H than of `scale` δ^E S.
     pub fn bits(&self) -> [f64; 3] {
         let size = |x: &BigInt| to_f64(&Rational::from_integer(x.abs()));
         let row = |row: &Row<Linear<Rational>>| {
@@ -250,8 +254,8 @@ impl Half {
         if self.is_square { [sums[0] + sums[2] + 1.0, sums[1] + sums[2] + 1.0, sums[2]] } else { sums }
     }
 
-    /// e, and f^(2 kicks) with a common denominator f, times that of the frame squared: over momenta p/e every kick is 1/f of an integer
-    /// one, every drift an integer one over δ.
+    /// e, and f^(2 kicks) with a common denominator f, times that of the frame squared: over momenta p/e
+    /// every kick is 1/f of an integer one, every drift an integer one over δ.
     fn common(&self) -> (BigInt, BigInt) {
         let lcm = |lcm: BigInt, x: &Rational| lcm.lcm(x.denom());
         let e = self.program.inverse_mass.iter().flatten().map(|(_, x)| &x[0]).fold(BigInt::one(), lcm);

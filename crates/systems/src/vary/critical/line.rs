@@ -62,8 +62,8 @@ impl Line {
         Ok(Frame::new(&System::new(lo.mass().clone(), both)?))
     }
 
-    /// The connected parts that some potential acts on, split where all potentials of all systems commute and masses do not vary, and along
-    /// the symmetries that all systems have in common.
+    /// The connected parts that some potential acts on, split where all potentials of all systems commute and
+    /// masses do not vary, and along the symmetries that all systems have in common.
     pub fn parts(&self) -> Vec<Line> {
         let [lo, hi] = &self.ends;
         let matrices = |system: &System| {
@@ -106,12 +106,14 @@ impl Line {
         spaces.iter().map(along).collect()
     }
 
-    /// The eigenspaces of a symmetry, each split in turn; where they are not rational, all of it with a symmetry beside it.
+    /// The eigenspaces of a symmetry, each split in turn; where they are not rational, all of it with a
+    /// symmetry beside it.
     fn along_symmetries(mut self) -> Vec<Line> {
         let [lo, hi] = &self.ends;
         let stiffnesses =
             self.ends.iter().flat_map(|end| end.potentials()).map(|potential| &potential.stiffness);
-        // A subspace that is invariant under M of one end, and under its inverse times M of the other end, splits the masses in between, too.
+        // A subspace that is invariant under M of one end, and under its inverse times M of the other end,
+        // splits the masses in between, too.
         let all: Vec<_> = stiffnesses.chain([hi.mass()]).collect();
         let spaces = match symmetry(lo, &all) {
             Some(Symmetry::Subspaces(spaces)) => spaces,

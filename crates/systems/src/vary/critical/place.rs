@@ -17,7 +17,8 @@ pub struct Gap {
     pub hi: f64,
     /// That place, where it is rational, of a small denominator or a double, and the only one.
     pub exact: Option<Rational>,
-    /// The parts of the system whose polynomials have roots there, increasing, and whether each has but one, a simple root of one polynomial.
+    /// The parts of the system whose polynomials have roots there, increasing, and whether each has but one,
+    /// a simple root of one polynomial.
     pub parts: Vec<(usize, bool)>,
 }
 

@@ -1,4 +1,5 @@
-//! The polynomials whose real roots are all places where the verdict can change: from values modulo primes, exactly.
+//! The polynomials whose real roots are all places where the verdict can change: from values modulo primes,
+//! exactly.
 
 use std::cmp::Reverse;
 
@@ -31,7 +32,8 @@ pub(super) struct Shape {
     kind: Kind,
     /// Whether no multiplier has a Jordan block.
     is_semisimple: bool,
-    /// The degrees of g(0, s), g(−1, s) and disc g, and of two sums of entries that vanish together where no multiplier has a Jordan block.
+    /// The degrees of g(0, s), g(−1, s) and disc g, and of two sums of entries that vanish together where no
+    /// multiplier has a Jordan block.
     degrees: Vec<usize>,
     /// Places from which kind and semisimplicity follow.
     places: usize,
@@ -121,15 +123,16 @@ impl Shape {
         let is_multiple = kind.count < n;
         // Factors of χ have no greater degree in s than it, but for their leading coefficient.
         let whole = if is_multiple { 2 * half.degree(n) } else { half.degree(n) };
-        // Homogeneous of degree 2k − 2 in the coefficients, of weight k (k − 1): at most with all weights k/2.
+        // Homogeneous of degree 2k − 2 in the coefficients, of weight k (k − 1): at most with all weights
+        // k/2.
         let pair =
             |k: usize, of: &dyn Fn(usize) -> usize| k.saturating_sub(1) * (of(k / 2) + of(k.div_ceil(2)));
         let degree = |k: usize| if is_multiple { whole } else { half.degree(k) };
         let meeting = if half.is_selfadjoint { 0 } else { pair(m, &degree) };
         // Entries of g(S), times S + 1 or S, times A, B, C or D.
         let entry = whole + (m + 2) * half.degree(1);
-        // There are no more distinct μ if fewer meet everywhere, or if S, a zero of a polynomial of this degree, has its powers
-        // dependent everywhere.
+        // There are no more distinct μ if fewer meet everywhere, or if S, a zero of a polynomial of this
+        // degree, has its powers dependent everywhere.
         let powers = kind.count * (kind.count + 1) / 2;
         let counted = match (half.is_selfadjoint || !is_multiple, is_semisimple) {
             (true, _) => 0,
@@ -163,7 +166,8 @@ impl Shape {
         Shape { kind, is_semisimple, degrees, places, bits: bits + places as f64 + 2.0 }
     }
 
-    /// Evaluations, interpolations, and isolation of the roots: some hundred times the additions of a shift by 1.
+    /// Evaluations, interpolations, and isolation of the roots: some hundred times the additions of a shift
+    /// by 1.
     pub fn cost(&self, half: &Half) -> f64 {
         let primes = self.bits / 61.0 + 1.0;
         let degree = self.degrees.iter().copied().max().unwrap_or(0) as f64;
@@ -226,7 +230,8 @@ impl Shape {
 /// A place on the line modulo a prime, looked at.
 struct Own {
     kind: Kind,
-    /// Monic, with the μ other than 0 and −1 as its roots: each once, or as often as it is one where all are known to be semisimple.
+    /// Monic, with the μ other than 0 and −1 as its roots: each once, or as often as it is one where all are
+    /// known to be semisimple.
     g: Vec<u64>,
     /// Whether no multiplier has a Jordan block.
     is_semisimple: bool,
@@ -279,7 +284,8 @@ impl Own {
                     })
                     .collect(),
             };
-            // Weights below 2^16, powers of two numbers modulo a prime: weights that are linear in the place are lost on [[1, -1], [-1, 1]].
+            // Weights below 2^16, powers of two numbers modulo a prime: weights that are linear in the place
+            // are lost on [[1, -1], [-1, 1]].
             let mut weights = [1; 2];
             for &x in matrices.iter().flat_map(|matrix| matrix.iter()) {
                 is_semisimple &= x == 0;
@@ -292,8 +298,9 @@ impl Own {
         Own { kind: Kind { count, ends }, g, is_semisimple, off }
     }
 
-    /// The discriminant of g. Of motions of different symmetry μ meet without consequence: each eigenspace has a discriminant of its own, and
-    /// their product, in which conjugate ones are together, is one over ℤ\[s\].
+    /// The discriminant of g. Of motions of different symmetry μ meet without consequence: each eigenspace
+    /// has a discriminant of its own, and their product, in which conjugate ones are together, is one over
+    /// ℤ\[s\].
     fn meeting(&self, half: &Half, field: &PrimeField, at: &At, spaces: Option<&Eigenspaces>) -> u64 {
         let Some(spaces) = spaces else { return discriminant(field, &self.g) };
         let end = field.sub(0, field.of_big(&half.scale()));
@@ -336,7 +343,8 @@ fn discriminant(field: &PrimeField, f: &[u64]) -> u64 {
     field.resultant(f.to_vec(), modular::derivative(field, f))
 }
 
-/// The coefficients of the polynomial with these values at some of the places 1, 2, ... (Newton); `inverses[k]` = 1/k.
+/// The coefficients of the polynomial with these values at some of the places 1, 2, ... (Newton);
+/// `inverses[k]` = 1/k.
 fn interpolated(field: &PrimeField, places: &[u64], mut values: Vec<u64>, inverses: &[u64]) -> Vec<u64> {
     let n = places.len();
     for k in 1..n {

@@ -1,9 +1,10 @@
 //! Products of very many slowly varying factors: a giant partial quotient, two steps near a simple ratio.
 //!
-//! The branch's interval is halved until on each piece one of two forms holds. Where the factor's two multipliers stay apart, it
-//! is brought to [`Normal`] form, in which factors commute and their product is a closed sum. Where they meet, at |Tr| = 2, the
-//! piece is so short that all its factors together do little: they are [`Near`] the identity in fit coordinates, and powers of
-//! two of them are functions on all of the piece. So the pieces are as many as the logarithm of the quotient.
+//! The branch's interval is halved until on each piece one of two forms holds. Where the factor's two
+//! multipliers stay apart, it is brought to [`Normal`] form, in which factors commute and their product is a
+//! closed sum. Where they meet, at |Tr| = 2, the piece is so short that all its factors together do little:
+//! they are [`Near`] the identity in fit coordinates, and powers of two of them are functions on all of the
+//! piece. So the pieces are as many as the logarithm of the quotient.
 
 mod near;
 mod normal;
@@ -90,8 +91,9 @@ impl<T: Coefficient> Slow<T> {
 
     /// P_n on start..start + length, which is not longer than a stride; at a point where the length is 0.
     ///
-    /// In the coordinates of each piece its factors have norms near 1. So what leads from those of one piece to those of the next, as
-    /// near to 1, is multiplied first, and no bound grows by what coordinates distort.
+    /// In the coordinates of each piece its factors have norms near 1. So what leads from those of one piece
+    /// to those of the next, as near to 1, is multiplied first, and no bound grows by what coordinates
+    /// distort.
     pub fn product(&mut self, n: u128, start: i128, length: i128, budget: &mut Budget) -> Option<Map<T>> {
         if roundings::<T>(n) > HOPELESS {
             return None;

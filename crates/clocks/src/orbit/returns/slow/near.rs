@@ -1,8 +1,9 @@
 //! Factors so near to ±1, in fit coordinates, that all those of a piece together do little.
 //!
-//! At |Tr| = 2 a factor A is ±(1 + N), N² = 0. In coordinates G in which N's entry and what the other one becomes along the piece
-//! are equally small, B = G A G⁻¹ = c + X with n |X| of some units for all n steps of the piece. So the products of 2^i factors
-//! vary like exponentials of 2^i X, and are functions on all of the piece as long as 2^i |X| < 1.
+//! At |Tr| = 2 a factor A is ±(1 + N), N² = 0. In coordinates G in which N's entry and what the other one
+//! becomes along the piece are equally small, B = G A G⁻¹ = c + X with n |X| of some units for all n steps of
+//! the piece. So the products of 2^i factors vary like exponentials of 2^i X, and are functions on all of the
+//! piece as long as 2^i |X| < 1.
 
 use super::super::branch::{Branch, Budget};
 use super::super::coefficient::Coefficient;
@@ -41,8 +42,8 @@ fn distance<T: Coefficient>(map: &Map<T>) -> f64 {
     (first + rest) / centre
 }
 
-/// The coordinates in which a matrix function is nearest to a multiple of 1: a turn that makes its middle's other entry least,
-/// then a stretch that makes both alike.
+/// The coordinates in which a matrix function is nearest to a multiple of 1: a turn that makes its middle's
+/// other entry least, then a stretch that makes both alike.
 fn fit<T: Coefficient>(map: &Map<T>) -> Option<[f64; 4]> {
     let [a, b, c, d] = middle(map);
     let (alpha, even, odd) = (0.5 * (a - d), 0.5 * (b + c), 0.5 * (b - c));
@@ -62,7 +63,8 @@ fn fit<T: Coefficient>(map: &Map<T>) -> Option<[f64; 4]> {
 }
 
 impl<T: Coefficient> Near<T> {
-    /// Within `Some`, `None` where the factors of the piece do too much; `None` where the budget does not last.
+    /// Within `Some`, `None` where the factors of the piece do too much; `None` where the budget does not
+    /// last.
     #[allow(clippy::option_option)]
     pub fn new(piece: &Branch<T>, steps: u128, budget: &mut Budget) -> Option<Option<Self>> {
         let Some(entries) = fit(&piece.map) else { return Some(None) };

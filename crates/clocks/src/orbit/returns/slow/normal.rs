@@ -1,17 +1,19 @@
 //! Normal forms: coordinates in which all factors of a piece commute, so that their product is a closed sum.
 //!
-//! A factor A(x) with the step d has a row w with w(x + d) A(x) = μ(x) w(x): a left eigenvector that knows the next factor. With
-//! w = (1, z) that is z(x) = (b + d z⁺)/(a + c z⁺), z⁺ = z(x + d), and corrections δ = −r/(1 − μ⁻²) of what is left, r, gain a
-//! factor of about 1/n each on a piece of n steps (they are those of Newton's method, but for δ⁺ − δ). Two such rows make W. So
+//! A factor A(x) with the step d has a row w with w(x + d) A(x) = μ(x) w(x): a left eigenvector that knows
+//! the next factor. With w = (1, z) that is z(x) = (b + d z⁺)/(a + c z⁺), z⁺ = z(x + d), and corrections δ =
+//! −r/(1 − μ⁻²) of what is left, r, gain a factor of about 1/n each on a piece of n steps (they are those of
+//! Newton's method, but for δ⁺ − δ). Two such rows make W. So
 //!
 //! ```text
 //!     W(x + d) A(x) = e^L(x) W(x) + R(x),
 //!     P_n(x) = W(x + n d)⁻¹ (e^S + E) W(x),     S = Σ L(x + j d),     |E| ≤ |e^S| ((1 + |R W⁻¹|/|e^L|)^n − 1).
 //! ```
 //!
-//! *Elliptic*: the rows are Re w and Im w, L = [[a, −b], [b, a]]; all norms are moduli. *Hyperbolic*: two real rows, L diagonal, the
-//! first multiplier the larger one on all of the piece. W and L are polynomials with floating coefficients, exactly; how they
-//! were found is of no concern, R is bounded by maps. The sum is Q(x + n d) − Q(x), Q the polynomial with Q(x + d) − Q(x) = L(x).
+//! *Elliptic*: the rows are Re w and Im w, L = [[a, −b], [b, a]]; all norms are moduli. *Hyperbolic*: two
+//! real rows, L diagonal, the first multiplier the larger one on all of the piece. W and L are polynomials
+//! with floating coefficients, exactly; how they were found is of no concern, R is bounded by maps. The sum
+//! is Q(x + n d) − Q(x), Q the polynomial with Q(x + d) − Q(x) = L(x).
 
 use super::super::branch::Branch;
 use super::super::coefficient::Coefficient;
@@ -252,7 +254,8 @@ impl Kind {
         };
         let mut first = Map::of_balls(&[self.entries(first, Ball::zero(), Ball::neg)]);
         first.exponent = first.exponent.checked_add(log2.to_i128()?)?;
-        // e^R, R = S without its constant term: of a long sum a small part, whose own power of two is none of S.
+        // e^R, R = S without its constant term: of a long sum a small part, whose own power of two is none of
+        // S.
         let scale = i32::try_from(scale).ok()?;
         let mut terms = exponent.terms().to_vec();
         terms[0] = std::array::from_fn(|_| T::zero());
@@ -281,7 +284,8 @@ impl Kind {
     }
 }
 
-/// The inverse of a matrix function: the adjugate over the determinant, V. With V W = 1 + R, W⁻¹ = (1 + R)⁻¹ V.
+/// The inverse of a matrix function: the adjugate over the determinant, V. With V W = 1 + R, W⁻¹ = (1 + R)⁻¹
+/// V.
 fn inverse<T: Coefficient>(given: &Map<T>) -> Option<Map<T>> {
     let [a, b, c, d] = series(given);
     let determinant = a.times(&d).minus(&b.times(&c));
@@ -372,7 +376,8 @@ impl<T: Coefficient> Normal<T> {
         Some(if self.is_negative && n % 2 == 1 { product.negative() } else { product })
     }
 
-    /// The whole turns of one factor beside e^L, elliptic, or its half turns, hyperbolic: what the turn of the one in the middle is.
+    /// The whole turns of one factor beside e^L, elliptic, or its half turns, hyperbolic: what the turn of
+    /// the one in the middle is.
     fn own_turns(&self, factor: &Map<T>, multiplier: &Map<T>, angle: f64, tau: &T) -> Option<i128> {
         let half_turns = i128::from(self.is_negative);
         let mut product = multiplier.at(&T::zero());
