@@ -153,9 +153,9 @@ fn intervals_of_the_bar_in_the_scenes_are_those_of_the_scheme_run() {
     for k in 1..300 {
         let dt = 1.0 + 0.005 * f64::from(k);
         let own = found.stretches.iter().find(|own| own.lo <= dt && dt <= own.hi);
-        let verdict = own.map_or(Holds::NotTold, |own| own.verdict);
+        let verdict = own.map_or(Holds::Undecided, |own| own.verdict);
         match (told(element_by_element(&bars, &levels, dt)), verdict) {
-            (_, Holds::NotTold) => open += 1,
+            (_, Holds::Undecided) => open += 1,
             (Some(stable), verdict) => {
                 assert_eq!(verdict == Holds::Stable, stable, "{dt}");
                 seen[usize::from(stable)] += 1;

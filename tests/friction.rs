@@ -348,7 +348,7 @@ fn what_grows_too_slowly_to_be_told_is_not_said_not_to_grow() {
         (verdict, damped_system(&system, &ratio(1, 1_000_000_000), &Limits::default()).unwrap().masking)
     };
     assert_eq!(masking(ratio(1, 1)), (Holds::Stable, Mask::NotNeeded));
-    assert_eq!(masking(ratio(-2, 1)), (Holds::Unstable, Mask::NotTold));
+    assert_eq!(masking(ratio(-2, 1)), (Holds::Unstable, Mask::Undecided));
 }
 
 type Entries<'a> = &'a [(usize, usize, Rational)];

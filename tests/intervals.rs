@@ -74,7 +74,7 @@ fn number(value: &Value) -> Rational {
 /// nothing open.
 fn assert_whole(all: &[Stretch], (lo, hi): (f64, f64), what: &str) {
     assert!(all[0].lo == lo && all[all.len() - 1].hi == hi, "{what}: {all:?}");
-    assert!(all.iter().all(|own| own.verdict != Holds::NotTold && own.lo <= own.hi), "{what}: {all:?}");
+    assert!(all.iter().all(|own| own.verdict != Holds::Undecided && own.lo <= own.hi), "{what}: {all:?}");
     for pair in all.windows(2) {
         let [a, b] = pair else { unreachable!("two") };
         assert!(a.hi.next_up() == b.lo && a.verdict != b.verdict, "{what}: {pair:?}");
@@ -423,7 +423,7 @@ mod nearest {
             let is_in = |all: &[(f64, f64)]| all.iter().any(|(a, b)| *a < x && x < *b);
             match (is_in(unstable), is_in(untold)) {
                 (true, _) => Holds::Unstable,
-                (_, true) => Holds::NotTold,
+                (_, true) => Holds::Undecided,
                 _ => Holds::Stable,
             }
         };

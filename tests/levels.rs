@@ -300,7 +300,7 @@ fn stretches_cover_their_range_and_the_dense_period_agrees_with_each() {
         assert!(stretches.iter().any(|own| own.verdict == Holds::Unstable));
         // What is not told of is thin: the neighbourhoods of edges.
         let untold: f64 =
-            stretches.iter().filter(|own| own.verdict == Holds::NotTold).map(|own| own.hi - own.lo).sum();
+            stretches.iter().filter(|own| own.verdict == Holds::Undecided).map(|own| own.hi - own.lo).sum();
         assert!(untold < 1e-3 * first, "{untold} of {first}: {stretches:?}");
         for own in &stretches {
             for k in 1..20 {
@@ -309,7 +309,7 @@ fn stretches_cover_their_range_and_the_dense_period_agrees_with_each() {
                 match own.verdict {
                     Holds::Stable => assert!(largest < 1.0 + 1e-6, "{step} {largest}"),
                     Holds::Unstable => assert!(largest > 1.0 + 1e-9, "{step} {largest}"),
-                    Holds::NotTold => {}
+                    Holds::Undecided => {}
                 }
             }
         }
@@ -358,7 +358,7 @@ fn stretches_hold_for_all_stiffnesses_within_the_accuracy_and_leave_open_what_th
             let near = within(&mut numbers, &levels, accuracy);
             for own in &found {
                 seen[own.verdict as usize] += 1;
-                if own.verdict == Holds::NotTold {
+                if own.verdict == Holds::Undecided {
                     continue;
                 }
                 for part in [0.0, 0.5, 1.0] {
@@ -367,7 +367,7 @@ fn stretches_hold_for_all_stiffnesses_within_the_accuracy_and_leave_open_what_th
                     assert!(all.all(|told| told == own.verdict), "{accuracy} {step} {own:?}");
                 }
             }
-            let open = found.iter().position(|own| own.verdict == Holds::NotTold).unwrap();
+            let open = found.iter().position(|own| own.verdict == Holds::Undecided).unwrap();
             let (own, next) = (found[open], found[open + 1].verdict);
             // Thin intervals within the resolution are open as a whole.
             let is_edge = found[open - 1].verdict == Holds::Stable && next == Holds::Unstable;
@@ -407,7 +407,7 @@ fn a_range_of_scales_is_told_and_the_dense_period_agrees() {
             while at < 1.1 {
                 let ends = (at, 1.002 * at);
                 let verdict = cells.verdict_scaled(&outer, level, ends);
-                if verdict != Holds::NotTold {
+                if verdict != Holds::Undecided {
                     seen[usize::from(verdict == Holds::Stable)] += 1;
                     for k in 0..=4 {
                         let scale = ends.0 + (ends.1 - ends.0) * f64::from(k) / 4.0;
@@ -466,7 +466,7 @@ fn what_accuracy_does_not_tell_is_not_told() {
     let told = |accuracy: f64| kernel.decide(&outer, &ratio(1, 1), accuracy).measured.unwrap();
     let margin = told(1e-9).margin.unwrap();
     assert_eq!(told(margin / 2.0).holds, Holds::Stable);
-    assert_eq!(told(margin * 2.0).holds, Holds::NotTold);
+    assert_eq!(told(margin * 2.0).holds, Holds::Undecided);
     let beyond = Outer::new(1.0005 * hi, 4).unwrap();
     let analysis = kernel.decide(&beyond, &ratio(1, 1), 1e-9);
     assert!(analysis.kind.unwrap() == Kind::Hyperbolic && analysis.parts[0].evidence != Evidence::Estimate);
@@ -487,7 +487,7 @@ fn an_estimate_names_no_kind() {
         assert_eq!((analysis.kind, analysis.kind_name()), (None, "not decided"));
         assert_eq!(analysis.parts[0].evidence, Evidence::Estimate);
         assert!(!analysis.is_stable() && !analysis.is_unstable());
-        assert_eq!(analysis.holds(), Holds::NotTold);
+        assert_eq!(analysis.holds(), Holds::Undecided);
         assert!(analysis.warnings.iter().any(|own| own.contains("doubles do not decide")));
     }
     // Beside edges a verdict is a proof, or there is none.
@@ -598,7 +598,7 @@ fn potentials_that_cancel_on_one_clock_are_each_known_to_their_own_norm() {
     let shared = hessians.of_shares(0, &[fast.clone(), slow]);
     let told = Kernel::new(&shared).unwrap().decide(&outer, &ratio(1, 10), 1e-6).measured.unwrap();
     // Both may move by half of what is left of them.
-    assert_eq!(told.holds, Holds::NotTold);
+    assert_eq!(told.holds, Holds::Undecided);
     let margin = told.margin.unwrap();
     assert!(4.8e-8 < margin && margin < 5e-8, "{margin}");
 }
@@ -640,10 +640,10 @@ fn what_leaves_the_circle_twice_at_once_is_decided_up_to_the_resolution() {
         let grows = largest_multiplier(&fast, &slow, own.lo / 2.0 + own.hi / 2.0, 6) > 1.0 + 1e-4;
         match own.verdict {
             // Cells of the resolution are wide enough for what lies beside an edge.
-            Holds::NotTold => assert!(own.hi - own.lo < width * range.1, "{own:?}"),
+            Holds::Undecided => assert!(own.hi - own.lo < width * range.1, "{own:?}"),
             holds => assert_eq!(holds == Holds::Unstable, grows, "{own:?}"),
         }
-        open += usize::from(own.verdict == Holds::NotTold);
+        open += usize::from(own.verdict == Holds::Undecided);
         told.extend(own.verdict.is_stable());
     }
     assert!(told == [false, true, false, true, false] && open == 4, "{found:?}");
@@ -674,7 +674,7 @@ fn a_file_in_which_two_potentials_of_one_step_cancel_does_not_promise_what_movin
     let analysis = scene.model().decide(kickdrift::system::Route::Cheapest, &Limits::default()).unwrap();
     std::fs::remove_dir_all(&folder).unwrap();
     let told = analysis.measured.as_ref().unwrap();
-    assert!(analysis.is_stable() && told.holds == Holds::NotTold, "{told:?}");
+    assert!(analysis.is_stable() && told.holds == Holds::Undecided, "{told:?}");
     assert!(told.margin.unwrap() < 5e-8, "{told:?}");
 }
 
@@ -761,7 +761,7 @@ fn intervals_on_three_clocks_end_and_agree_with_each_verdict() {
     assert!(length(Holds::Stable) > 0.0026 && length(Holds::Unstable) > 0.00015, "{found:?}");
     // They hold within the accuracy, which leaves some open.
     assert!(found.open.is_some_and(|open| open > 0), "{found:?}");
-    for own in found.stretches.iter().filter(|own| own.verdict != Holds::NotTold) {
+    for own in found.stretches.iter().filter(|own| own.verdict != Holds::Undecided) {
         for k in 0..=4 {
             let step = own.lo + (own.hi - own.lo) * f64::from(k) / 4.0;
             let analysis = scene.model().decide_at(&from_f64_exact(step).unwrap(), &limits).unwrap();

@@ -145,7 +145,7 @@ fn agree_with_dense_eigenvalues(seed: u64, count: usize) {
                 ),
                 Holds::Unstable if largest < 1.0 + 1e-7 => near += 1,
                 Holds::Unstable => {}
-                Holds::NotTold => open += 1,
+                Holds::Undecided => open += 1,
             }
             decided[usize::from(holds == Holds::Stable)] += 1;
             // What grows visibly is not stable and is told; what the verdict tells of all near matrices, it
@@ -154,7 +154,7 @@ fn agree_with_dense_eigenvalues(seed: u64, count: usize) {
                 assert_ne!(holds, Holds::Stable, "{method} {trial}");
             }
             let within = kernel.verdict_within(&outer, 1e-6);
-            assert!(within == Holds::NotTold || within == holds, "{method} {trial}: {within:?} {holds:?}");
+            assert!(within == Holds::Undecided || within == holds, "{method} {trial}: {within:?} {holds:?}");
         }
         println!("{method}: {decided:?} open {open} near {near}");
         // Cases on an edge to roundings: some in a thousand.
@@ -216,7 +216,7 @@ fn stretches_of_steps_agree_with_dense_eigenvalues_between_their_ends() {
             // Where the filter of a mode is 0 the mode stands on an edge, and near to it for as long as the
             // filter is flat.
             let told: f64 =
-                all.iter().filter(|own| own.verdict != Holds::NotTold).map(|own| own.hi - own.lo).sum();
+                all.iter().filter(|own| own.verdict != Holds::Undecided).map(|own| own.hi - own.lo).sum();
             assert!(told > 0.85 * (reach - 0.1), "{method}: {told} of {reach}");
             for own in all {
                 seen[own.verdict as usize] += 1;
@@ -227,7 +227,7 @@ fn stretches_of_steps_agree_with_dense_eigenvalues_between_their_ends() {
                         Holds::Stable => assert!(largest < 1.0 + 1e-5, "{method} {h}: {largest}"),
                         // Thin intervals grow by little.
                         Holds::Unstable => assert!(largest > 1.0 + 1e-9, "{method} {h}: {largest}"),
-                        Holds::NotTold => {}
+                        Holds::Undecided => {}
                     }
                 }
             }
@@ -249,7 +249,7 @@ fn no_perturbation_within_the_accuracy_flips_a_stretch() {
                 Kernel::new(&Hessians::new(&fast, &slow, 1e-6).unwrap()).unwrap().with_method(method);
             let reach = if method.has_inner_steps() { 1.9 * inner as f64 } else { 7.0 };
             for own in kernel.stretches(inner, (0.1, reach), 1e-3, accuracy).unwrap() {
-                if own.verdict == Holds::NotTold {
+                if own.verdict == Holds::Undecided {
                     continue;
                 }
                 told[usize::from(own.verdict == Holds::Stable)] += (own.hi - own.lo) / reach;
@@ -440,7 +440,7 @@ fn rational_levels_that_are_solved_for_are_decided_exactly() {
             Holds::Stable => assert!(largest < 1.0 + 1e-5, "{trial}: {largest} {levels:?} {masses:?} {h}"),
             // At h² S = 4 what grows does so step by step alone.
             Holds::Unstable => near += usize::from(largest < 1.0 + 1e-5),
-            Holds::NotTold => panic!("{trial}: exact numbers"),
+            Holds::Undecided => panic!("{trial}: exact numbers"),
         }
         seen[usize::from(analysis.is_stable())] += 1;
     }
@@ -459,7 +459,7 @@ fn the_steps_of_rational_levels_that_are_solved_for_end_where_the_theorem_says()
     let stable: Vec<_> = all.iter().filter(|own| own.verdict == Holds::Stable).collect();
     assert_eq!(stable.len(), 1);
     assert!(stable[0].lo == 0.1 && stable[0].hi <= 2.0 && stable[0].hi > 1.999_999, "{all:?}");
-    assert!(all.iter().all(|own| own.verdict != Holds::NotTold), "{all:?}");
+    assert!(all.iter().all(|own| own.verdict != Holds::Undecided), "{all:?}");
     assert_eq!(at(ratio(2, 1)).exact_kind(&limits).unwrap(), Kind::Parabolic);
     let nearest = at(ratio(3, 2)).nearest_unstable(1e-6, &limits).unwrap();
     assert!(

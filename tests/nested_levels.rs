@@ -113,7 +113,7 @@ fn three_levels_have_the_verdicts_of_the_rational_system() {
             for k in 1..40 {
                 let step = 0.05 * f64::from(k) * lo;
                 let (told, true_one) = (at.verdict_within(step, 0.0), decided(&levels, &steps, step));
-                assert!(told == Holds::NotTold || told == true_one, "{n} {step}: {told:?} {true_one:?}");
+                assert!(told == Holds::Undecided || told == true_one, "{n} {step}: {told:?} {true_one:?}");
                 assert!(step > lo || told == Holds::Stable, "{n} {step}");
                 assert!(!(hi..upper).contains(&step) || told == Holds::Unstable, "{n} {step}");
                 seen[told as usize] += 1;
@@ -206,7 +206,7 @@ fn stretches_hold_for_all_stiffnesses_within_the_accuracy() {
         assert!(beyond > 0, "{n} {found:?}");
         for own in &found {
             length[own.verdict as usize] += (own.hi - own.lo) / (range.1 - range.0) / 3.0;
-            if own.verdict == Holds::NotTold {
+            if own.verdict == Holds::Undecided {
                 continue;
             }
             for k in 0..3 {

@@ -306,7 +306,7 @@ fn advice_tells_of_each_multiple_what_the_steps_add_and_which_friction_masks_it(
         match rung.adds {
             Adds::Little => assert!(rate < TIMES * most + 1e-9),
             Adds::Much => assert!(rate > TIMES * least - 1e-9),
-            Adds::NotTold => {}
+            Adds::Undecided => {}
         }
         let radius = damped_radius(&given, to_f64(&friction));
         assert_eq!(rung.is_damped, Some(radius < 1.0), "{}: {radius}", rung.outer);

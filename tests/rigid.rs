@@ -133,7 +133,7 @@ fn a_fall_within_the_accuracy_of_the_sum_and_beyond_that_of_its_own_stiffness_is
     // The root of 0.009, and a little by the steps.
     assert!(lo <= 0.0949 && 0.0947 <= hi, "{lo} {hi}");
     // Which may be none, for all that is known.
-    assert_eq!(found.measured.unwrap().holds, Holds::NotTold);
+    assert_eq!(found.measured.unwrap().holds, Holds::Undecided);
 }
 
 #[test]
@@ -290,7 +290,7 @@ fn compare(tally: &mut Tally, name: &str, analysis: &Analysis, given: &Given) {
     tally.with_rigid += usize::from(apart > 0);
     let truth = given.is_stable(apart > 0);
     match analysis.holds() {
-        Holds::NotTold => tally.open += 1,
+        Holds::Undecided => tally.open += 1,
         own => {
             assert_eq!(own == Holds::Stable, truth, "{name}: {} is wrong: {given:?}", own.name());
             if truth { tally.stable += 1 } else { tally.unstable += 1 }

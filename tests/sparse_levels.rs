@@ -91,7 +91,7 @@ fn the_first_region_is_that_of_the_dense_kernel() {
             for k in 1..40 {
                 let outer = Outer::new(edge * 1.5 * f64::from(k) / 40.0, inner_steps).unwrap();
                 let (own, truth) = (sparse.verdict(&outer, 0.0), dense.verdict_within(&outer, 0.0));
-                assert!(own == truth || own == Holds::NotTold, "{} {own:?} {truth:?}", outer.step());
+                assert!(own == truth || own == Holds::Undecided, "{} {own:?} {truth:?}", outer.step());
                 assert!(own == Holds::Stable || outer.step() > lo, "{}", outer.step());
             }
             let outer = Outer::new(0.9 * lo, inner_steps).unwrap();
@@ -109,7 +109,7 @@ fn a_total_that_is_not_definite_is_never_stable() {
     droplet.slow *= -1.0;
     let sparse = droplet.sparse();
     let outer = Outer::new(1e-4, 4).unwrap();
-    assert_eq!(sparse.verdict(&outer, 0.0), Holds::NotTold);
+    assert_eq!(sparse.verdict(&outer, 0.0), Holds::Undecided);
     assert_eq!((sparse.margin(&outer), sparse.first_unstable(4)), (None, None));
 }
 
@@ -355,7 +355,7 @@ fn what_is_proven_of_small_systems_is_what_their_dense_period_does() {
             match told {
                 Holds::Stable => assert!(radius(step) < 1.0 + 1e-6 && least > 0.0, "{case} {step} {least}"),
                 Holds::Unstable => assert!(radius(step) > 1.0, "{case} {step} {least}"),
-                Holds::NotTold => {}
+                Holds::Undecided => {}
             }
         }
         if let Some((lo, _)) = levels.first_unstable(inner_steps) {
@@ -492,7 +492,7 @@ fn resonances_are_proven_where_the_forces_hold_no_minimum() {
     assert!(lo < end && other < hi, "{lo} {hi} {other} {end}");
     let verdict = |levels: &SparseLevels, step: f64| levels.verdict(&Outer::new(step, 8).unwrap(), 0.0);
     assert_eq!([verdict(&held, 2.0), verdict(&held, 1.01 * hi)], [Holds::Stable, Holds::Unstable]);
-    assert_eq!([verdict(&falling, 2.0), verdict(&falling, 1.01 * end)], [Holds::NotTold, Holds::Unstable]);
+    assert_eq!([verdict(&falling, 2.0), verdict(&falling, 1.01 * end)], [Holds::Undecided, Holds::Unstable]);
     // The multipliers of the dense period: positive where they grow below, and one below −1 beyond.
     let dense = |own: &[(usize, usize, f64)]| {
         let mut matrix = DMatrix::zeros(n, n);
@@ -540,12 +540,12 @@ fn verdicts_for_all_stiffnesses_within_an_accuracy_are_those_at_its_ends() {
             for (k, epsilon) in [3e-10, 1e-6, 1e-4].into_iter().enumerate() {
                 let told = sparse.verdict(&outer, epsilon);
                 seen[k.min(1)][told as usize] += 1;
-                if told == Holds::NotTold {
+                if told == Holds::Undecided {
                     continue;
                 }
                 let within = dense.verdict_within(&outer, epsilon);
                 assert!(
-                    within == told || within == Holds::NotTold,
+                    within == told || within == Holds::Undecided,
                     "{side} {above} {epsilon}: {told:?} {within:?}"
                 );
                 for signs in [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]] {
@@ -554,7 +554,7 @@ fn verdicts_for_all_stiffnesses_within_an_accuracy_are_those_at_its_ends() {
                     let (masses, positions) = (droplet.masses.clone(), droplet.positions.clone());
                     let truth = Droplet { masses, positions, fast, slow }.dense().verdict_within(&outer, 0.0);
                     assert!(
-                        truth == told || truth == Holds::NotTold,
+                        truth == told || truth == Holds::Undecided,
                         "{side} {above} {epsilon}: {told:?} {truth:?}"
                     );
                 }

@@ -83,7 +83,7 @@ fn verdicts_and_growth_are_those_of_dense_eigenvalues() {
             match sparse.verdict(dt) {
                 Holds::Stable => assert!(beyond < CLEAR, "{case} {dt} {all:?}"),
                 Holds::Unstable => assert!(beyond > -CLEAR, "{case} {dt} {all:?}"),
-                Holds::NotTold => assert!(beyond.abs() < CLEAR, "{case} {dt} {all:?}"),
+                Holds::Undecided => assert!(beyond.abs() < CLEAR, "{case} {dt} {all:?}"),
             }
             if beyond.abs() > CLEAR {
                 seen[usize::from(beyond > 0.0)] += 1;
@@ -187,7 +187,7 @@ fn all_together_are_set_apart_only_where_rows_sum_to_0_within_the_rounding_of_th
     let mut many = chain(&vec![1.0; n + 1], true);
     many.iter_mut().filter(|own| own.0 == own.1).for_each(|own| own.2 += 3e-14);
     let steps = SparseSteps::new(&vec![1.0; n], &many, levels).unwrap();
-    assert_eq!((steps.rigid_motions(), steps.verdict(1.0)), (0, Holds::NotTold));
+    assert_eq!((steps.rigid_motions(), steps.verdict(1.0)), (0, Holds::Undecided));
     let model = Model::Sparse(Box::new(SparseSystem::with_local_steps(steps, &ratio(1, 1)).unwrap()));
     let found = model.decide(Route::Cheapest, &Limits::default()).unwrap();
     assert!(
@@ -201,7 +201,7 @@ fn all_together_are_set_apart_only_where_rows_sum_to_0_within_the_rounding_of_th
 fn a_full_turn_of_a_fine_motion_is_no_rigid_motion() {
     let levels = vec![Level { fine: [1].into(), substeps: 4 }];
     let steps = SparseSteps::new(&[1.0; 2], &[(0, 0, 0.5), (1, 1, 8.0), (1, 0, 0.1)], levels).unwrap();
-    assert_eq!((steps.rigid_motions(), steps.verdict(2.0)), (0, Holds::NotTold));
+    assert_eq!((steps.rigid_motions(), steps.verdict(2.0)), (0, Holds::Undecided));
     let model = Model::Sparse(Box::new(SparseSystem::with_local_steps(steps, &ratio(2, 1)).unwrap()));
     let found = model.decide(Route::Cheapest, &Limits::default()).unwrap();
     assert!(!found.is_stable() && found.rigid_modes.is_empty(), "{found:?}");
@@ -234,7 +234,7 @@ fn what_is_proven_of_small_schemes_is_so_in_exact_arithmetic() {
             match told {
                 Holds::Stable => assert!(truth.is_stable() || is_free, "{case} {step} {truth:?}"),
                 Holds::Unstable => assert!(!truth.is_stable(), "{case} {step} {truth:?}"),
-                Holds::NotTold => {
+                Holds::Undecided => {
                     let model = SparseSystem::with_local_steps(sparse.clone(), &step).unwrap();
                     let model = Model::Sparse(Box::new(model));
                     let found = model.decide(Route::Cheapest, &Limits::default()).unwrap();

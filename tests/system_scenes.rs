@@ -541,7 +541,7 @@ fn where_pairs_leave_the_circle_together_stretches_are_proven_for_measured_level
     let found = scene.intervals(&asked.parse().unwrap(), 1e-4, &Limits::default()).unwrap();
     let (mut open, mut unstable) = (0.0, 0);
     for own in &found.stretches {
-        if own.verdict == Holds::NotTold {
+        if own.verdict == Holds::Undecided {
             open += own.hi - own.lo;
             continue;
         }
@@ -568,7 +568,7 @@ fn intervals_of_any_number_cover_their_range_and_each_point_agrees_with_its_own_
         // An edge lies between two neighbouring doubles, and nothing is left open.
         assert!(all.windows(2).all(|pair| pair[0].hi.next_up() == pair[1].lo), "{text}: {all:?}");
         let is = |verdict| all.iter().filter(|own| own.verdict == verdict).count();
-        let seen = (is(Holds::Stable), is(Holds::Unstable), is(Holds::NotTold));
+        let seen = (is(Holds::Stable), is(Holds::Unstable), is(Holds::Undecided));
         assert_eq!(seen, (1, 1, 0), "{text}: {all:?}");
         if let Some((lo, hi)) = found.first_unstable() {
             assert!(hi == lo.next_up(), "{text}: {lo} to {hi}");

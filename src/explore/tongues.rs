@@ -18,7 +18,7 @@ const MOST_SEGMENTS: f64 = 3000.0;
 /// Masses and springs that are laid out for all ratios together.
 pub(super) const MOST_KICKS: u64 = 2_000_000;
 
-/// The sums p + q that are tried, from the one that is always allowed.
+/// Candidates for the largest p + q; the first one is always allowed.
 const SUMS: [u64; 20] =
     [6, 8, 12, 16, 24, 32, 40, 48, 64, 96, 128, 192, 256, 384, 512, 1024, 2048, 4096, 8192, 16384];
 

@@ -34,7 +34,7 @@ fn alanine_dipeptide_has_the_published_window_and_a_grid_of_half_a_femtosecond_m
     assert!(last.tenfold_steps().unwrap() > steps);
     assert!(
         beyond.rate.is_none_or(|rate| rate == 0.0)
-            && matches!(beyond.status, Status::Island | Status::NotTold)
+            && matches!(beyond.status, Status::Island | Status::Undecided)
     );
     // Where it begins is proven; growth is sampled; behind each interval it is proven stable again.
     let (Some(first), [thin, own]) = (worst.first, &worst.growing[..]) else { unreachable!() };

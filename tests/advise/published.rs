@@ -22,7 +22,7 @@ fn without_a_fast_period_nothing_is_called_safe() {
     for (modes, steps) in cases {
         let advice = question(modes, &[steps]).with_levers(true).answer().unwrap();
         let own = &advice.schemes[0];
-        assert!(advice.lacks_fast && own.status == Status::NotTold, "{modes:?} {steps}: {:?}", own.status);
+        assert!(advice.lacks_fast && own.status == Status::Undecided, "{modes:?} {steps}: {:?}", own.status);
         assert_eq!((&own.safe, &own.largest, own.needs), (&None, &None, None), "{modes:?}");
         assert!(advice.levers.unwrap().rows.is_empty(), "{modes:?}");
     }
@@ -190,7 +190,7 @@ fn the_advice_on_ring_polymers_is_of_their_centroids_alone() {
         question(&TWO, &["1/2,3"]).with_beads(Some(Beads { count, ..beads.clone() })).answer().unwrap()
     };
     let (one, many) = (of(1), of(16));
-    assert_eq!([one.schemes[0].status, many.schemes[0].status], [Status::Safe, Status::NotTold]);
+    assert_eq!([one.schemes[0].status, many.schemes[0].status], [Status::Safe, Status::Undecided]);
     assert!(many.schemes[0].safe.is_none() && many.beads.is_some());
     // 16 beads at 300 K are unstable up to 2.4996 fs, half the period of the top ring mode.
     assert_eq!(format!("{:.4}", beads.ends().unwrap()[0] / 2.0), "2.4996");

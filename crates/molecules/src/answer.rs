@@ -36,7 +36,7 @@ named! {
         Island = "island",
         /// Within the accuracy of the measured stiffnesses no verdict is proven; or nothing is known of the
         /// fastest motion.
-        NotTold = "not told",
+        Undecided = "not told",
         /// Unstable.
         Unstable = "unstable",
     }
@@ -191,12 +191,12 @@ impl Question {
         let largest = if is_known { self.largest(scheme)? } else { None };
         let (safe, bound) = caps.safe(scheme, largest.as_ref()).filter(|_| self.beads.is_none()).unzip();
         let status = if self.lacks_fast() {
-            Status::NotTold
+            Status::Undecided
         } else if rows.iter().any(|row| !row.found.kind.is_stable()) {
             Status::Unstable
         } else if in_band {
             match () {
-                () if self.beads.is_some() => Status::NotTold,
+                () if self.beads.is_some() => Status::Undecided,
                 () if caps.hold(scheme) => Status::Safe,
                 () => Status::Caution,
             }

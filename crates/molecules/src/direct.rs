@@ -53,13 +53,13 @@ named! {
     /// The growth that the steps add to that of the forces.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub enum Adds {
-        /// Growth is proven to be at most [`TIMES`] that without steps, none where that is none; or tenfold
-        /// after 1 µs at the earliest.
+        /// Growth is proven to be at most [`TIMES`] the growth without steps, so none where nothing grows without
+        /// steps; or it is tenfold after 1 µs at the earliest.
         Little = "little",
         /// It is proven to be more.
         Much = "much",
         /// Neither is proven.
-        NotTold = "not told",
+        Undecided = "not told",
     }
 }
 
@@ -328,6 +328,6 @@ fn adds(rate: Option<(f64, f64)>, without: Option<(f64, f64)>, slow: f64) -> Add
         (Some((_, hi)), _) if hi <= slow => Adds::Little,
         (Some((_, hi)), Some((least, _))) if hi <= TIMES * least => Adds::Little,
         (Some((lo, _)), Some((_, most))) if lo > (TIMES * most).max(slow) => Adds::Much,
-        _ => Adds::NotTold,
+        _ => Adds::Undecided,
     }
 }

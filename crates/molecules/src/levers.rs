@@ -85,7 +85,7 @@ impl Lever {
     }
 }
 
-/// The kind of a lever: who has it.
+/// The kind of change that a lever makes; the engines that support it stand in its row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Way {
     /// Kicks and drifts on one clock.

@@ -307,7 +307,7 @@ impl Molecule {
         let is_in_band = self.source.covers_band(&steps, part, self.accuracy)?;
         let status = match decided.holds {
             Holds::Unstable => Status::Unstable,
-            Holds::NotTold => Status::NotTold,
+            Holds::Undecided => Status::Undecided,
             Holds::Stable if is_in_band && caps.hold(scheme) => Status::Safe,
             Holds::Stable if is_in_band => Status::Caution,
             Holds::Stable if decided.is_in_first_region => Status::Near,

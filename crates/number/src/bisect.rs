@@ -1,8 +1,8 @@
 //! Bisection over doubles.
 
-/// Two numbers from lo to hi, in this order and no more than `width` times the first apart, or neighbours, of
-/// which the first has what lo has and the second lacks what hi lacks; farther apart where `holds` does not
-/// know between.
+/// Bisects [lo, hi] to the relative width: `holds` is true at the first number and false at the second, given
+/// that it is so at lo and hi. They are neighbouring doubles at least, and farther apart where `holds` is
+/// `None` between.
 pub fn bisected((mut lo, mut hi): (f64, f64), width: f64, holds: impl Fn(f64) -> Option<bool>) -> (f64, f64) {
     while hi - lo > width * lo && lo.next_up() < hi {
         let middle = lo + (hi - lo) / 2.0;

@@ -157,7 +157,7 @@ impl Args {
         Ok(())
     }
 
-    /// Flags that say nothing together.
+    /// Rejects combinations of flags that have no meaning.
     fn check(&self, format: Format) -> Result<()> {
         let figure = format.is_figure();
         self.paper.check(figure)?;

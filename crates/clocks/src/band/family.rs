@@ -28,9 +28,9 @@ const ORDERS: usize = 3;
 /// Their coefficients at most.
 const MOST: [usize; ORDERS] = [32, 20, 14];
 
-/// So small a rest of V is left out, and so small a share of F and of G.
-const LEAST: f64 = 1e-8;
-const LEAST_SHARES: [f64; 2] = [3e-4, 3e-3];
+/// Terms are cut where the rest of V is below this, and where it is below these shares of F and of G.
+const TRUNCATION_V: f64 = 1e-8;
+const TRUNCATION_FG: [f64; 2] = [3e-4, 3e-3];
 
 /// An entry of a coefficient passes through fewer than 115 roundings on its way through a product or to a
 /// part, 2^-53 each; in the norm of Frobenius twice that (proofs/BANDS.md).
@@ -146,8 +146,8 @@ impl Family {
         for order in 0..ORDERS {
             let norms = self.norms(order);
             let most = match (order, norms) {
-                (0, _) => LEAST,
-                (_, [first, ..]) => LEAST_SHARES[order - 1] * first,
+                (0, _) => TRUNCATION_V,
+                (_, [first, ..]) => TRUNCATION_FG[order - 1] * first,
                 _ => 0.0,
             };
             let (mut length, mut left_out) = (norms.len(), 0.0);

@@ -348,7 +348,7 @@ struct Sharp {
 }
 
 impl Sharp {
-    /// e^{iθ/2} = (√(4 − s) + i √s)/2, `rest` being 4 − s; `None` where a root is none.
+    /// e^{iθ/2} = (√(4 − s) + i √s)/2, `rest` being 4 − s; `None` where 4 − s or s is negative.
     fn half(s: &Ball, rest: &Ball) -> Option<Sharp> {
         Some(Sharp { re: rest.sqrt(BITS)?.scale2(-1), im: s.sqrt(BITS)?.scale2(-1) })
     }

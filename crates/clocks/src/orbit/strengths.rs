@@ -173,8 +173,8 @@ impl InLanes for Placed {
             (s[0][i], s[1][i]) = (pair.s.hi, pair.s.lo);
         }
         let odd: [[f64; L]; 2] = [each(|i| parity(p[i])), each(|i| parity(q[i]))];
-        // Doubles divide whole numbers below 2^50 as integers: where p/q is none it is 1/q below the next one
-        // at least.
+        // Doubles divide whole numbers below 2^50 as integers: if p/q is no integer, its distance to the next
+        // integer is at least 1/q.
         let whole: [f64; L] = each(|i| (p[i] / q[i]).floor());
         let rest = each(|i| (-whole[i]).mul_add(q[i], p[i]));
         let (mut half, mut back) = (Phases([[[0.0; L]; 2]; 2]), Phases([[[0.0; L]; 2]; 2]));

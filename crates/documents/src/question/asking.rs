@@ -134,7 +134,7 @@ pub struct Work<'a> {
     /// The most kicks that one tier composes for one pair, and each question's own measure of what it costs;
     /// its own limit unless given.
     pub budget: Option<u64>,
-    /// Who hears of long work; nobody unless given.
+    /// The sink of progress; `None` is silent.
     pub watch: Option<&'a dyn Watch>,
     /// The threads of a map, which has its own; 0 for one a core.
     pub threads: usize,
@@ -146,7 +146,7 @@ pub struct Work<'a> {
 pub trait Watch: Sync {
     /// Work is about to begin that takes so many seconds of one core.
     fn announce(&self, work: &str, seconds: f64);
-    /// So many `things` are about to be done; what is returned hears of each.
+    /// So many `things` are about to be done; returns their counter.
     fn count(&self, length: u64, things: &str) -> Box<dyn Progress + '_>;
 }
 
@@ -161,7 +161,7 @@ impl Work<'_> {
         self.watch.inspect(|watch| watch.announce(work, seconds));
     }
 
-    /// Who hears of each of so many things that are done.
+    /// The counter of so many things.
     pub fn count(&self, length: u64, things: &str) -> Box<dyn Progress + '_> {
         self.watch.map_or_else(|| Box::new(()) as Box<dyn Progress>, |watch| watch.count(length, things))
     }

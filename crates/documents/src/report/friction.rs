@@ -16,7 +16,7 @@ pub fn value(own: &Friction) -> Value {
             json!({"lo": mask.grows, "hi": mask.least(), "stays": mask.stays(), "ranges": ranges})
         }
         Mask::NotNeeded => json!("nothing grows"),
-        Mask::NotTold => json!("not told"),
+        Mask::Undecided => json!("not told"),
     };
     json!({
         "rate": own.rate.to_string(),
@@ -40,7 +40,7 @@ pub fn lines(own: &Friction) -> Vec<String> {
     lines.push(match &own.masking {
         Mask::At(mask) => format!("  {} all growth{}", masking(mask, 1.0, ""), others(mask)),
         Mask::NotNeeded => "  nothing grows without friction".into(),
-        Mask::NotTold => "  a friction that masks what may grow was not found".into(),
+        Mask::Undecided => "  a friction that masks what may grow was not found".into(),
     });
     lines
 }

@@ -70,8 +70,8 @@ pub fn decide_along(
 
 const NOT_DECIDED: &str = "doubles do not decide along the orbit";
 
-/// The factor between the accuracies whose verdicts enclose the margin.
-const FINER: f64 = 2.0;
+/// The margin is searched for by doubling the accuracy.
+const MARGIN_GROWTH: f64 = 2.0;
 
 /// Margins beyond so many times the accuracy, or below its inverse, are not looked for.
 const MARGINS: i32 = 40;
@@ -453,7 +453,7 @@ impl Half<'_> {
 
 /// The largest number of times the accuracy at which a verdict is proven, but for a factor 2.
 fn margin(proven: impl Fn(f64) -> Option<Kind>) -> Option<f64> {
-    let powers = |sign: i32| (0..MARGINS).map(move |k| FINER.powi(sign * k));
+    let powers = |sign: i32| (0..MARGINS).map(move |k| MARGIN_GROWTH.powi(sign * k));
     if proven(1.0).is_some() {
         return powers(1).take_while(|times| proven(*times).is_some()).last();
     }

@@ -10,7 +10,7 @@ pub enum Mask {
     /// Something does, and these mask it.
     At(Masked),
     /// Not found: no friction that is proven to mask, or doubles that cannot decide whether anything grows.
-    NotTold,
+    Undecided,
 }
 
 /// The frictions that mask the resonances of a system.
@@ -35,12 +35,12 @@ impl Mask {
                 let ranges = a.ranges.iter().flat_map(common).filter(|(lo, hi)| lo <= hi).collect();
                 Mask::found(a.grows.max(b.grows), ranges)
             }
-            _ => Mask::NotTold,
+            _ => Mask::Undecided,
         }
     }
 
     pub fn found(grows: f64, ranges: Vec<(f64, f64)>) -> Mask {
-        if ranges.is_empty() { Mask::NotTold } else { Mask::At(Masked { grows, ranges }) }
+        if ranges.is_empty() { Mask::Undecided } else { Mask::At(Masked { grows, ranges }) }
     }
 }
 

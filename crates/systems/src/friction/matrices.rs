@@ -254,7 +254,7 @@ impl<'a> Damped<'a> {
                 Some(kind) if kind.is_stable() => return Ok(Mask::NotNeeded),
                 // Without any.
                 Some(Kind::Hyperbolic) => 0.0,
-                _ => return Ok(Mask::NotTold),
+                _ => return Ok(Mask::Undecided),
             },
             _ => return Ok(Mask::NotNeeded),
         };

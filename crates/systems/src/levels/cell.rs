@@ -95,7 +95,7 @@ impl<'a> Cells<'a> {
     /// to hi times as stiff.
     pub fn verdict_scaled(&self, outer: &Outer, level: usize, (lo, hi): (f64, f64)) -> Holds {
         if level == 0 && lo <= 0.0 {
-            return Holds::NotTold;
+            return Holds::Undecided;
         }
         let room = Interval { lo: 1.0 - STEP_ERROR, hi: 1.0 + STEP_ERROR };
         let (scale, square) =
@@ -109,14 +109,14 @@ impl<'a> Cells<'a> {
 
     fn holds_over(&self, cell: &Cell) -> Holds {
         let counts = self.counts(cell);
-        if counts.as_ref().is_some_and(Counts::tell_instability) {
+        if counts.as_ref().is_some_and(Counts::prove_instability) {
             return Holds::Unstable;
         }
         let spectrum = self.spectrum(cell);
         if let Some(counts) = &counts {
             let twists = spectrum.as_ref().and_then(|(spectrum, _)| self.twists(cell, spectrum));
             // Beyond the limits of the discs the modes of the fast level place the twists.
-            if twists.or_else(|| counts.twists()).is_some_and(|or_else| counts.tell_stability(&or_else)) {
+            if twists.or_else(|| counts.twists()).is_some_and(|or_else| counts.prove_stability(&or_else)) {
                 return Holds::Stable;
             }
         }

@@ -23,12 +23,12 @@ const MOST_TWISTS: usize = 6;
 
 /// The counts that all kicks between two have in common: neg J_hh and neg J_hf, which fall apart into modes.
 pub(super) struct Counts {
-    /// The modes with the least and the greatest fast kicks,
+    /// The modes at the lower and the upper bound of the fast kicks.
     less: Vec<Half>,
     more: Vec<Half>,
-    /// M with the least and the greatest slow ones,
+    /// M at the lower and the upper bound of the slow stiffness.
     slow: [Mat<f64>; 2],
-    /// and how far (2-norm) these can be off.
+    /// The 2-norm of their errors, at most.
     slack: f64,
     hh: usize,
     hf: usize,
@@ -71,7 +71,7 @@ impl Counts {
     }
 
     /// Whether the counts at the ends prove a real multiplier off the circle.
-    pub fn tell_instability(&self) -> bool {
+    pub fn prove_instability(&self) -> bool {
         let (hh, hf, m) = (self.hh, self.hf, self.less.len());
         // J_fh is J_hh and a/b − M, J_ff is J_hf and c/d − M.
         let differ = |s: f64, more: usize, other: usize| {
@@ -82,7 +82,7 @@ impl Counts {
     }
 
     /// Whether Σ |i(s_(k+1)) − i(s_k)| = n over the twists between 1 and 0.
-    pub fn tell_stability(&self, twists: &[f64]) -> bool {
+    pub fn prove_stability(&self, twists: &[f64]) -> bool {
         let at = [1.0].into_iter().chain(twists.iter().copied()).chain([0.0]);
         let one = |s: f64| Some(self.bounds(s)).filter(|(least, most)| least == most).map(|(count, _)| count);
         let counts: Option<Vec<usize>> = at.map(one).collect();
@@ -123,13 +123,13 @@ impl Kernel {
     /// Whether all F + E₁, S + E₂, ‖E₁‖₂ ≤ ε ‖F‖₂, ‖E₂‖₂ ≤ ε ‖S‖₂, are proven by counts to have a real
     /// multiplier off the circle.
     pub fn has_real_unstable_mode(&self, outer: &Outer, epsilon: f64) -> bool {
-        self.counts(outer, epsilon).is_some_and(|counts| counts.tell_instability())
+        self.counts(outer, epsilon).is_some_and(|counts| counts.prove_instability())
     }
 
     /// Whether all these are proven stable by the index of the twisted period.
     pub fn is_stable_by_index(&self, outer: &Outer, epsilon: f64) -> bool {
         let counts = self.counts(outer, epsilon);
-        counts.is_some_and(|counts| counts.twists().is_some_and(|twists| counts.tell_stability(&twists)))
+        counts.is_some_and(|counts| counts.twists().is_some_and(|twists| counts.prove_stability(&twists)))
     }
 
     /// Whether all these are proven stable, in the first region or by the index.

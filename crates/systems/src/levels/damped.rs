@@ -80,13 +80,13 @@ impl Kernel {
         // A friction that is next to none: does anything grow?
         match self.damping(outer, 1e-6 / outer.step) {
             Some(Damping::Growing) => {}
-            None if !self.is_stable(outer, 0.0) => return Mask::NotTold,
+            None if !self.is_stable(outer, 0.0) => return Mask::Undecided,
             _ => return Mask::NotNeeded,
         }
-        let Some(least) = self.masking_friction(outer) else { return Mask::NotTold };
+        let Some(least) = self.masking_friction(outer) else { return Mask::Undecided };
         let grows = |friction: &f64| self.damping(outer, *friction) == Some(Damping::Growing);
         let Some(below) = [0.9995, 0.998, 0.99].map(|part| part * least).into_iter().find(grows) else {
-            return Mask::NotTold;
+            return Mask::Undecided;
         };
         Mask::found(below, vec![from_edge(least, |from| self.masked_up(outer, from))])
     }

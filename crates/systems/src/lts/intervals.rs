@@ -43,7 +43,7 @@ impl LocalSteps {
         // At a simple root one eigenvalue passes an end. On the side where it is within both, others are
         // unstable, and stay so.
         let within = |gap: &Gap, around: Holds| {
-            Ok(if gap.is_simple() && around == Holds::Unstable { around } else { Holds::NotTold })
+            Ok(if gap.is_simple() && around == Holds::Unstable { around } else { Holds::Undecided })
         };
         between(range, &self.gaps(range, limits)?, &verdict, &within)
     }

@@ -206,7 +206,7 @@ impl SparseSteps {
         match (self.above(&values, off), self.below(&values, off, 4.0)) {
             (Holds::Stable, Holds::Stable) => Holds::Stable,
             (Holds::Unstable, _) | (_, Holds::Unstable) => Holds::Unstable,
-            _ => Holds::NotTold,
+            _ => Holds::Undecided,
         }
     }
 
@@ -233,7 +233,7 @@ impl SparseSteps {
         let off = off + 3.1 * (norm::frobenius(&image) + rounding);
         let mut tau = 1.1 * off;
         for _ in 0..TRIES {
-            let Some((count, value)) = self.pattern.negative(tau, &terms) else { return Holds::NotTold };
+            let Some((count, value)) = self.pattern.negative(tau, &terms) else { return Holds::Undecided };
             if tau > 1.01 * (value + off) {
                 if count <= self.rigid.ncols() {
                     return Holds::Stable;
@@ -247,7 +247,7 @@ impl SparseSteps {
 
     /// Unstable where some vector proves that c + a f has a negative eigenvalue, a = ±1.
     fn unstable_along(&self, values: &[f64], a: f64, off: f64, c: f64) -> Holds {
-        self.beyond(values, off, (a, c), false).map_or(Holds::NotTold, |_| Holds::Unstable)
+        self.beyond(values, off, (a, c), false).map_or(Holds::Undecided, |_| Holds::Unstable)
     }
 
     /// Of the motion that grows fastest at an unstable step: an enclosure of the largest ln |λ| of a step,

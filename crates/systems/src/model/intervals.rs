@@ -16,7 +16,7 @@ use number::Rational;
 use number::error::Result;
 use number::rational::{from_f64_exact, to_f64};
 
-/// A stretch that is open at an accuracy and decided at one so many times as good is left open by the
+/// A stretch that is open with the data and decided with data this many times as accurate is open by the
 /// accuracy.
 const BETTER: f64 = 1e3;
 
@@ -80,11 +80,11 @@ impl Model {
                 }
                 _ => own.stretches(range, width, accuracy)?,
             };
-            let told = found.iter().filter(|of| of.verdict != Holds::NotTold).map(|of| of.hi - of.lo);
+            let told = found.iter().filter(|of| of.verdict != Holds::Undecided).map(|of| of.hi - of.lo);
             Ok(told.sum::<f64>() > all / 2.0)
         };
         // A place between neighbouring doubles is none.
-        let untold = stretches.iter().filter(|of| of.verdict == Holds::NotTold && of.lo.next_up() < of.hi);
+        let untold = stretches.iter().filter(|of| of.verdict == Holds::Undecided && of.lo.next_up() < of.hi);
         let told = untold.map(is_told).collect::<Result<Vec<_>>>()?;
         Ok(Some(told.into_iter().filter(|told| *told).count()))
     }

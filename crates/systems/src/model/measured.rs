@@ -192,9 +192,9 @@ impl MeasuredSystem {
         }
     }
 
-    /// Takes over the accuracy and the method of another of the same body, whether it keeps rigid motions,
-    /// and its eigenbasis where the stiffnesses are the same.
-    pub fn follow(&mut self, other: &MeasuredSystem) {
+    /// Copies accuracy, method and the choice to keep rigid motions from another system of the same body, and
+    /// its eigenbasis where the stiffnesses are the same.
+    pub fn copy_settings_from(&mut self, other: &MeasuredSystem) {
         (self.accuracy, self.keeps_rigid, self.method) = (other.accuracy, other.keeps_rigid, other.method);
         if self.potentials.iter().map(|(_, k)| k).eq(other.potentials.iter().map(|(_, k)| k)) {
             self.kernel = Arc::clone(&other.kernel);
@@ -347,7 +347,7 @@ impl MeasuredSystem {
         (width, accuracy): (f64, f64),
     ) -> Result<Vec<Stretch>> {
         let Some((outer, _)) = self.outer() else {
-            return Ok(vec![Stretch { lo, hi, verdict: Holds::NotTold }]);
+            return Ok(vec![Stretch { lo, hi, verdict: Holds::Undecided }]);
         };
         let cells = Cells::new(self.kernel()?, accuracy)?;
         cover((lo, hi), width, |lo, hi| {

@@ -25,14 +25,14 @@ use number::{Laurent, Rational};
 /// Sparse stiffnesses with their steps.
 #[derive(Clone, Debug)]
 pub struct SparseSystem {
-    of: Of,
+    kind: SparseKind,
     step: Rational,
     /// With the size and the clocks alone.
     clocks: System,
 }
 
 #[derive(Clone, Debug)]
-enum Of {
+enum SparseKind {
     /// Two levels, and how well they are known.
     Levels { levels: Arc<SparseLevels>, outer: Outer, accuracy: f64, removed: Option<Removed> },
     /// One stiffness, with local time steps.
@@ -102,7 +102,7 @@ impl SparseSystem {
             )
         })?;
         Ok(SparseSystem {
-            of: Of::Levels { levels, outer: at, accuracy, removed },
+            kind: SparseKind::Levels { levels, outer: at, accuracy, removed },
             step: outer.clone(),
             clocks,
         })
@@ -113,7 +113,7 @@ impl SparseSystem {
     /// # Errors
     /// A step that is not positive.
     pub fn with_local_steps(steps: SparseSteps, step: &Rational) -> Result<SparseSystem> {
-        SparseSystem::of_one(steps.size(), Of::Steps(Box::new(steps)), step)
+        SparseSystem::of_one(steps.size(), SparseKind::Steps(Box::new(steps)), step)
     }
 
     fn of_one(n: usize, of: Of, step: &Rational) -> Result<SparseSystem> {
@@ -124,32 +124,32 @@ impl SparseSystem {
 
     /// Both levels with the outer step, where it has them.
     pub fn levels(&self) -> Option<(&SparseLevels, &Outer)> {
-        match &self.of {
-            Of::Levels { levels, outer, .. } => Some((levels, outer)),
+        match &self.kind {
+            SparseKind::Levels { levels, outer, .. } => Some((levels, outer)),
             _ => None,
         }
     }
 
     /// Where it has local time steps.
     pub fn local_steps(&self) -> Option<&SparseSteps> {
-        match &self.of {
-            Of::Steps(sparse_steps) => Some(sparse_steps),
+        match &self.kind {
+            SparseKind::Steps(sparse_steps) => Some(sparse_steps),
             _ => None,
         }
     }
 
     /// The summary of its scheme in answers, where it has one.
     pub(super) fn summary(&self) -> Option<SchemeSummary> {
-        match &self.of {
-            Of::Levels { .. } => None,
-            Of::Steps(sparse_steps) => Some(sparse_steps.summary()),
+        match &self.kind {
+            SparseKind::Levels { .. } => None,
+            SparseKind::Steps(sparse_steps) => Some(sparse_steps.summary()),
         }
     }
 
     /// Local time steps in another step; `None` for two levels.
     pub(super) fn at_step(&self, step: &Rational) -> Option<Result<SparseSystem>> {
-        let of = match &self.of {
-            Of::Levels { .. } => return None,
+        let of = match &self.kind {
+            SparseKind::Levels { .. } => return None,
             of => of.clone(),
         };
         Some(SparseSystem::of_one(self.clocks.size(), of, step))
@@ -161,22 +161,24 @@ impl SparseSystem {
     /// One that is not in (0, 1/10).
     pub fn at_accuracy(self, accuracy: f64) -> Result<SparseSystem> {
         check_accuracy(accuracy)?;
-        match self.of {
-            Of::Levels { levels, outer, removed, .. } => {
+        match self.kind {
+            SparseKind::Levels { levels, outer, removed, .. } => {
                 if removed.is_some() {
                     levels.check_rigid(accuracy)?;
                 }
-                Ok(SparseSystem { of: Of::Levels { levels, outer, accuracy, removed }, ..self })
+                Ok(SparseSystem { kind: SparseKind::Levels { levels, outer, accuracy, removed }, ..self })
             }
-            Of::Steps(_) => {
+            SparseKind::Steps(_) => {
                 Err(Error::input("accuracy", accuracy, "has no meaning with local steps: leave it out"))
             }
         }
     }
 
     /// Takes over the accuracy of two other levels.
-    pub fn follow(&mut self, other: &SparseSystem) {
-        if let (Of::Levels { accuracy, .. }, Of::Levels { accuracy: value, .. }) = (&mut self.of, &other.of) {
+    pub fn copy_settings_from(&mut self, other: &SparseSystem) {
+        if let (SparseKind::Levels { accuracy, .. }, SparseKind::Levels { accuracy: value, .. }) =
+            (&mut self.kind, &other.kind)
+        {
             *accuracy = *value;
         }
     }
@@ -184,7 +186,7 @@ impl SparseSystem {
     /// Both levels with other steps; what is known of their stiffnesses stays known. `None` for local time
     /// steps.
     pub fn with_steps(&self, steps: [&Rational; 2]) -> Option<Result<SparseSystem>> {
-        let Of::Levels { levels, accuracy, removed, .. } = &self.of else { return None };
+        let SparseKind::Levels { levels, accuracy, removed, .. } = &self.kind else { return None };
         Some(SparseSystem::of_levels(Arc::clone(levels), steps, *accuracy, removed.clone()))
     }
 
@@ -195,9 +197,9 @@ impl SparseSystem {
 
     /// Products, at the pace of eigenvalue iterations.
     pub(super) fn cost(&self) -> u64 {
-        let products = match &self.of {
-            Of::Levels { levels, .. } => OF_LEVELS * levels.products(),
-            Of::Steps(sparse_steps) => FACTORIZATIONS * sparse_steps.products(),
+        let products = match &self.kind {
+            SparseKind::Levels { levels, .. } => OF_LEVELS * levels.products(),
+            SparseKind::Steps(sparse_steps) => FACTORIZATIONS * sparse_steps.products(),
         };
         (products / FASTER).min(1e19) as u64
     }
@@ -209,9 +211,9 @@ impl SparseSystem {
     /// The verdict, how far it stands, and where the first region ends.
     pub(super) fn decide(&self, limits: &Limits) -> Result<Analysis> {
         self.allow(limits)?;
-        let (levels, outer, accuracy, removed) = match &self.of {
-            Of::Levels { levels, outer, accuracy, removed } => (levels, outer, *accuracy, removed),
-            Of::Steps(sparse_steps) => return self.of_steps(sparse_steps, limits),
+        let (levels, outer, accuracy, removed) = match &self.kind {
+            SparseKind::Levels { levels, outer, accuracy, removed } => (levels, outer, *accuracy, removed),
+            SparseKind::Steps(sparse_steps) => return self.of_steps(sparse_steps, limits),
         };
         levels.look(outer.inner_steps());
         let margin = if levels.is_unstable(outer, 0.0) { None } else { levels.margin(outer) };
@@ -220,7 +222,7 @@ impl SparseSystem {
         let holds = match margin {
             Some(margin) if accuracy <= margin => Holds::Stable,
             None if levels.is_unstable(outer, accuracy) => Holds::Unstable,
-            _ => Holds::NotTold,
+            _ => Holds::Undecided,
         };
         let first_unstable = levels.first_unstable(outer.inner_steps());
         let part = self.of_levels_part(verdict);
@@ -240,7 +242,7 @@ impl SparseSystem {
 
     /// The verdict and no more: what a scan shows of each point.
     pub(super) fn at_point(&self, limits: &Limits) -> Result<Analysis> {
-        let Of::Levels { levels, outer, .. } = &self.of else { return self.decide(limits) };
+        let SparseKind::Levels { levels, outer, .. } = &self.kind else { return self.decide(limits) };
         self.allow(limits)?;
         levels.look(outer.inner_steps());
         Ok(Analysis::of_part(self.of_levels_part(levels.verdict(outer, 0.0)), 2, Vec::new()))
@@ -255,9 +257,9 @@ impl SparseSystem {
     /// The proven verdict and nothing else.
     pub(super) fn verdict(&self, limits: &Limits) -> Result<Holds> {
         self.allow(limits)?;
-        Ok(match &self.of {
-            Of::Levels { levels, outer, .. } => levels.verdict(outer, 0.0),
-            Of::Steps(sparse_steps) => sparse_steps.verdict(to_f64(&self.step)),
+        Ok(match &self.kind {
+            SparseKind::Levels { levels, outer, .. } => levels.verdict(outer, 0.0),
+            SparseKind::Steps(sparse_steps) => sparse_steps.verdict(to_f64(&self.step)),
         })
     }
 
@@ -265,7 +267,7 @@ impl SparseSystem {
     fn of_steps(&self, sparse_steps: &SparseSteps, limits: &Limits) -> Result<Analysis> {
         let (dt, period) = (to_f64(&self.step), Laurent::from_rational(self.step.clone()));
         let verdict = sparse_steps.verdict(dt);
-        if verdict == Holds::NotTold
+        if verdict == Holds::Undecided
             && let Some(found) = self.exactly(sparse_steps, limits)?
         {
             return Ok(found);
@@ -296,7 +298,7 @@ impl SparseSystem {
         if sparse_steps.rigid_motions() > 0 {
             notes.push(TOGETHER.into());
         }
-        notes.extend(sparse_steps.nearly_free().filter(|_| verdict == Holds::NotTold).map(|sums| {
+        notes.extend(sparse_steps.nearly_free().filter(|_| verdict == Holds::Undecided).map(|sums| {
             format!(
                 "the rows of the stiffness sum to nearly 0 ({sums:.0e} of their entries): all together are neither clearly free nor clearly held, and \
                  nothing is proven; assemble it so that they sum to 0 to rounding, or hold a node"
@@ -323,7 +325,7 @@ impl SparseSystem {
 
 /// Notes where both stiffnesses together are not proven positive.
 fn falls(levels: &SparseLevels, outer: &Outer) -> Vec<String> {
-    let directions = match levels.unheld() {
+    let directions = match levels.unproven_directions() {
         Some(0) => return Vec::new(),
         Some(1) => "1 direction".into(),
         Some(count) => format!("{count} directions"),
@@ -346,6 +348,6 @@ fn decided(verdict: Holds) -> (Option<Kind>, Evidence) {
     match verdict {
         Holds::Stable => (Some(Kind::Elliptic), Evidence::Signs),
         Holds::Unstable => (Some(Kind::Hyperbolic), Evidence::Signs),
-        Holds::NotTold => (None, Evidence::Estimate),
+        Holds::Undecided => (None, Evidence::Estimate),
     }
 }

@@ -64,7 +64,7 @@ pub fn is_stable(system: &System, frame: &Frame) -> Option<bool> {
 
 /// Whether counts of negative eigenvalues prove a real multiplier off the circle.
 fn has_real_unstable_mode(system: &System, frame: &Frame) -> bool {
-    // J_hh and J_hf must be regular: the signs of all their eigenvalues are known.
+    // Counts prove something only where no eigenvalue of J_hh and J_hf is undecided.
     let are_regular = |counts: &Counts| {
         let is_sharp = |held| {
             counts.count(held, Bound::Least).is_some_and(|a| counts.count(held, Bound::Most) == Some(a))

@@ -102,7 +102,7 @@ impl<'a> Cells<'a> {
                 || lo.rigid_modes() != rigid
                 || hi.rigid_modes() != rigid
             {
-                return Ok(Holds::NotTold);
+                return Ok(Holds::Undecided);
             }
         }
         let pairs = lo.potentials().iter().zip(hi.potentials()).filter(|_| !self.is_scaled);
@@ -111,7 +111,7 @@ impl<'a> Cells<'a> {
         let frame = if self.is_scaled { self.frame.get_or_init(frame).clone() } else { frame() };
         let cell = Cell { ends, systems, frame, courses, cells: self };
         Ok(match cell.by_action()? {
-            Holds::NotTold => cell.by_half_period()?,
+            Holds::Undecided => cell.by_half_period()?,
             known => known,
         })
     }
@@ -245,14 +245,14 @@ impl Cell<'_> {
     fn by_action(&self) -> Result<Holds> {
         let [lo, middle, hi] = self.systems;
         if !middle.mass().is_diagonal() {
-            return Ok(Holds::NotTold);
+            return Ok(Holds::Undecided);
         }
         match self.rises() {
             Some(true) => self.between_kicks([lo, hi], Some(true)),
             Some(false) => self.between_kicks([hi, lo], Some(false)),
             None => match self.around()? {
                 Some([less, more]) => self.between_kicks([&less, &more], None),
-                None => Ok(Holds::NotTold),
+                None => Ok(Holds::Undecided),
             },
         }
     }
@@ -304,19 +304,19 @@ impl Cell<'_> {
     fn between_kicks(&self, [less, more]: [&System; 2], rises: Option<bool>) -> Result<Holds> {
         // Where a kick vanishes the schedule is another, and nothing can be compared.
         if self.clocks() != more.clocks().len() || self.clocks() != less.clocks().len() {
-            return Ok(Holds::NotTold);
+            return Ok(Holds::Undecided);
         }
-        let Some(stiffer) = action::signs(more) else { return Ok(Holds::NotTold) };
+        let Some(stiffer) = action::signs(more) else { return Ok(Holds::Undecided) };
         if stiffer == [Some(Sign::Positive); 2] {
             let is_stable = self.is_definite(less);
-            return Ok(if is_stable { Holds::Stable } else { Holds::NotTold });
+            return Ok(if is_stable { Holds::Stable } else { Holds::Undecided });
         }
         let softer = action::signs(less).unwrap_or_default();
         let is_unstable =
             |k: usize| stiffer[k] == Some(Sign::Positive) && softer[1 - k] == Some(Sign::Negative);
         let is_unstable =
             is_unstable(0) || is_unstable(1) || self.has_real_unstable_mode([less, more], rises)?;
-        Ok(if is_unstable { Holds::Unstable } else { Holds::NotTold })
+        Ok(if is_unstable { Holds::Unstable } else { Holds::Undecided })
     }
 
     /// Whether Σ K_k is proven positive definite modulo the rigid modes.
@@ -342,7 +342,7 @@ impl Cell<'_> {
         let [lo, middle, hi] = self.systems;
         let reduced = self.reduced(middle)?;
         if reduced.clocks().len() != self.clocks() {
-            return Ok(Holds::NotTold);
+            return Ok(Holds::Undecided);
         }
         let m = reduced.size();
         let (program, scales) = scaled_program(&reduced, &Frame::whole(m));
@@ -401,7 +401,7 @@ impl Cell<'_> {
         let drifts = Drifts { inverse_mass: &program.inverse_mass, decay: &Rational::zero(), off };
         let events = reduced.schedule().half_period();
         let Some(state) = follow_proven(&drifts, events, |_, clock| &kicks[clock]) else {
-            return Ok(Holds::NotTold);
+            return Ok(Holds::Undecided);
         };
         let blocks = state.blocks(scales);
         let proven = signs::proven(&blocks).or_else(|| Spectrum::new(&blocks)?.certified(&blocks));

@@ -173,7 +173,7 @@ pub fn between(
         if gap.map_or(Ok(true), |gap| Ok(holds(gap)? == own.verdict))? {
             all.last_mut().expect("just seen").hi = own.hi;
         } else {
-            all.extend([Stretch { lo: last.hi, hi: own.lo, verdict: Holds::NotTold }, own]);
+            all.extend([Stretch { lo: last.hi, hi: own.lo, verdict: Holds::Undecided }, own]);
         }
     }
     Ok(all)

@@ -11,7 +11,7 @@ pub struct Stretch {
     pub lo: f64,
     /// to this one.
     pub hi: f64,
-    /// The verdict that is proven for all numbers in between, [`Holds::NotTold`] where none is.
+    /// The verdict that is proven for all numbers in between, [`Holds::Undecided`] where none is.
     pub verdict: Holds,
 }
 
@@ -43,7 +43,7 @@ pub fn cover(
     let coarse = merged(found.into_iter().flatten());
     // An open stretch gives its neighbours the parts that smaller cells prove.
     let shrink = |stretch: &Stretch| match stretch.verdict {
-        Holds::NotTold => shrunk(stretch, FINER * floor, &verdict),
+        Holds::Undecided => shrunk(stretch, FINER * floor, &verdict),
         _ => Ok(vec![*stretch]),
     };
     Ok(merged(try_map(&coarse, shrink)?.into_iter().flatten()))
@@ -84,7 +84,7 @@ fn cells(
         let end = if at + 1.01 * step >= hi { hi } else { at + step };
         match verdict(at, end)? {
             // Half as much again: at + floor may be a rounding farther than floor.
-            Holds::NotTold if end - at > 1.5 * floor => step = ((end - at) / 4.0).max(floor),
+            Holds::Undecided if end - at > 1.5 * floor => step = ((end - at) / 4.0).max(floor),
             decided => {
                 found.push(Stretch { lo: at, hi: end, verdict: decided });
                 at = end;
@@ -112,7 +112,7 @@ fn shrunk(
             }
             let cell = if k == 0 { (lo, (lo + step).min(hi)) } else { ((hi - step).max(lo), hi) };
             match verdict(cell.0, cell.1)? {
-                Holds::NotTold => step /= 2.0,
+                Holds::Undecided => step /= 2.0,
                 decided => {
                     found.push(Stretch { lo: cell.0, hi: cell.1, verdict: decided });
                     *(if k == 0 { &mut lo } else { &mut hi }) = if k == 0 { cell.1 } else { cell.0 };
@@ -121,7 +121,7 @@ fn shrunk(
         }
     }
     let [left, right] = ends;
-    let rest = (lo < hi).then_some(Stretch { lo, hi, verdict: Holds::NotTold });
+    let rest = (lo < hi).then_some(Stretch { lo, hi, verdict: Holds::Undecided });
     Ok(left.into_iter().chain(rest).chain(right.into_iter().rev()).collect())
 }
 

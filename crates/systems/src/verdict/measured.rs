@@ -52,7 +52,7 @@ named! {
         Unstable = "unstable",
         /// The data cannot decide: some matrices are stable and some are not, or no verdict was proven for
         /// all.
-        NotTold = "the data do not tell",
+        Undecided = "the data do not tell",
     }
 }
 
@@ -61,7 +61,7 @@ impl From<Option<Kind>> for Holds {
         match proven {
             Some(kind) if kind.is_stable() => Holds::Stable,
             Some(_) => Holds::Unstable,
-            None => Holds::NotTold,
+            None => Holds::Undecided,
         }
     }
 }
@@ -69,7 +69,7 @@ impl From<Option<Kind>> for Holds {
 impl Holds {
     /// Whether it is stable, where that is decided.
     pub fn is_stable(self) -> Option<bool> {
-        (self != Holds::NotTold).then_some(self == Holds::Stable)
+        (self != Holds::Undecided).then_some(self == Holds::Stable)
     }
 }
 

@@ -37,8 +37,8 @@ const FLOOR: f64 = 1e-150;
 pub const FEW: usize = 16;
 pub const MOST: usize = 48;
 
-/// Where the sum of all terms' norms is so little more than the first, nothing less is looked for.
-const NEARLY: f64 = 1.01;
+/// The sharper norm bound is skipped where the sum of all norms is at most this times the first.
+const SHARPER_FROM: f64 = 1.01;
 
 /// [[a, b], [c, d]] in a row.
 pub type Entries<T> = [T; 4];
@@ -93,11 +93,11 @@ pub fn sizes<T: Coefficient, const N: usize>(terms: &[Entries<T>]) -> [f64; N] {
 #[inline(always)]
 fn largest<T: Coefficient, const N: usize>(terms: &[Entries<T>], known: f64) -> f64 {
     let first = norm(&terms[0]);
-    if known <= NEARLY * first {
+    if known <= SHARPER_FROM * first {
         return known;
     }
     let sum = (first + terms[1..].iter().map(about).sum::<f64>()) * UP;
-    if sum <= NEARLY * first {
+    if sum <= SHARPER_FROM * first {
         return known.min(sum);
     }
     // r_k of z and of w, and those of their imaginary parts: in two lanes each.
@@ -184,7 +184,7 @@ impl<T: Coefficient> Map<T> {
         Map { norm: largest_of(&terms, known), terms, error, exponent, turn: None, least: 0.25 * T::UNIT }
     }
 
-    /// Without a turn, balanced; known by nothing where the power of two leaves the range of its number.
+    /// Without a turn, balanced; the error is ∞ where the exponent overflows.
     #[inline(always)]
     pub fn bounded(terms: Vec<Entries<T>>, error: f64, known: f64, exponent: i128) -> Self {
         let error = if exponent.unsigned_abs() > 1 << 125 { f64::INFINITY } else { error };

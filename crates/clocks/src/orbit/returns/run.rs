@@ -11,8 +11,8 @@ use super::coefficient::Coefficient;
 use super::map::Map;
 use super::slow::{self, Slow, after};
 
-/// At a point, the logarithm of so many rows as cost no less than a piece.
-const MANY: u32 = 3;
+/// log2 of the rows at a point that cost as much as one piece.
+const LOG2_ROWS_A_PIECE: u32 = 3;
 
 /// A branch and what is known of its products.
 pub struct Run<T> {
@@ -56,7 +56,8 @@ impl<T: Coefficient> Run<T> {
         }
         let long = self.branch.length >> log2;
         // At a point, some factors cost less than a piece that is not known yet.
-        let is_worth = || length > 0 || log2 >= T::ROW + MANY || self.known(log2, start).is_some();
+        let is_worth =
+            || length > 0 || log2 >= T::ROW + LOG2_ROWS_A_PIECE || self.known(log2, start).is_some();
         if long >= 2.max(2 * length) && is_worth() {
             return Some(self.piece(log2, start, budget)?.on(start, length));
         }

@@ -111,7 +111,7 @@ impl EntryFunction {
         }
     }
 
-    /// The zeros below the s of an orbit, where its signs are certain and s is none.
+    /// The number of zeros below the s of an orbit; `None` if its signs are not certain or s may be a zero.
     pub fn counted(&self, end: &End) -> Option<u64> {
         let (changes, (x, v)) = (end.nodes?, (end.signs.0?, end.signs.1?));
         Some(if self.entry.ends_free() { self.free_count(changes, x != v) } else { changes })

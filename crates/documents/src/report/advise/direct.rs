@@ -167,7 +167,7 @@ fn line(findings: &DirectFindings, direct_finding: &DirectFinding) -> String {
             "grows more than twice as fast as the forces do by themselves (proven), {}",
             rate(direct_finding.rate)
         ),
-        Adds::NotTold => {
+        Adds::Undecided => {
             format!(
                 "not told: {} with the steps, {} without",
                 rate(direct_finding.rate),

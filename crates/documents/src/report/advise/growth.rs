@@ -74,7 +74,7 @@ fn panel(findings: &DirectFindings, step: &Rational, schemes: &[&DirectFinding])
     let dots = |adds: Adds| {
         let at = |rung: &Rung| {
             // What is not known stands a little above the frame, which would hide it.
-            let least = if adds == Adds::NotTold { 0.03 * top } else { 0.0 };
+            let least = if adds == Adds::Undecided { 0.03 * top } else { 0.0 };
             [to_f64(&rung.outer), height(rung.rate).max(least)]
         };
         first.ladder.iter().filter(|rung| rung.adds == adds).map(at).collect::<Vec<_>>()
@@ -82,7 +82,7 @@ fn panel(findings: &DirectFindings, step: &Rational, schemes: &[&DirectFinding])
     for (adds, shape, colour, name) in [
         (Adds::Little, Shape::Ring, COEXISTENCE, "the steps add little, proven"),
         (Adds::Much, Shape::Disc, HYPERBOLIC, "they add more, proven"),
-        (Adds::NotTold, Shape::Cross, INK, "neither is proven"),
+        (Adds::Undecided, Shape::Cross, INK, "neither is proven"),
     ] {
         let values = dots(adds);
         if !values.is_empty() {
@@ -103,7 +103,7 @@ fn panel(findings: &DirectFindings, step: &Rational, schemes: &[&DirectFinding])
         let outer = to_f64(direct_finding.scheme.outer());
         let (anchor, shift) = if outer > 0.7 * right { (Anchor::End, -3.0) } else { (Anchor::Start, 3.0) };
         let adds =
-            if direct_finding.adds == Adds::NotTold { "not proven" } else { direct_finding.adds.name() };
+            if direct_finding.adds == Adds::Undecided { "not proven" } else { direct_finding.adds.name() };
         // Neighbours in lines of their own.
         let line = (0.93 - NEXT * f64::from(n % 4)) * top;
         let note = Note::new([outer, line], &format!("{}: {adds}", fs(direct_finding.scheme.outer())));

@@ -107,12 +107,12 @@ fn line(advice: &Advice, answer: &Answer) -> String {
         }
         Status::Near => format!("stable{next}: less than the band of {}: do not use", percent(&advice.band)),
         Status::Island => island(answer, unit),
-        Status::NotTold if advice.lacks_fast => {
+        Status::Undecided if advice.lacks_fast => {
             format!(
                 "not told: the fastest period is not given, so nothing is called safe{next}, by the periods given alone"
             )
         }
-        Status::NotTold => {
+        Status::Undecided => {
             format!("not told: ring polymers have faster modes of their own{next}, by their centroids alone")
         }
         Status::Unstable => unstable(answer, worst, unit),

@@ -110,7 +110,7 @@ fn summary(findings: &Findings, reading: Option<&Reading>, notes: &[String]) -> 
     lines
 }
 
-/// By its motion, or by who moves in the fastest of it.
+/// Name of the motion, else the atoms that move most.
 pub(super) fn called(group: &Group) -> &str {
     group.name.as_deref().unwrap_or(&group.atoms)
 }
@@ -205,7 +205,7 @@ fn line(findings: &Findings, finding: &Finding) -> String {
         Status::Island => {
             format!("stable, but above the unstable {}: do not use", interval(finding).unwrap_or_default())
         }
-        Status::NotTold => {
+        Status::Undecided => {
             format!(
                 "not told: nothing is proven of all Hessians within {:.0e} of their norms{}: do not use",
                 findings.accuracy,

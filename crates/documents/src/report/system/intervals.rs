@@ -72,7 +72,7 @@ pub fn figure(intervals: &Intervals, rates: &[Option<f64>], title: &str, number:
         );
     for (verdict, colour, hatch, name) in [
         (Holds::Unstable, HYPERBOLIC, None, "proven unstable"),
-        (Holds::NotTold, GREY, Some(Hatch::Falling), "nothing proven"),
+        (Holds::Undecided, GREY, Some(Hatch::Falling), "nothing proven"),
     ] {
         let outlines = shade(verdict);
         if !outlines.is_empty() {
@@ -100,9 +100,9 @@ pub fn document(intervals: &Intervals) -> Document {
         .field(Column::new("verdict").left(), |stretch| stretch.verdict.name().into());
     let number =
         |verdict: Holds| intervals.stretches.iter().filter(|stretch| stretch.verdict == verdict).count();
-    let (unstable, undecided) = (number(Holds::Unstable), number(Holds::NotTold));
+    let (unstable, undecided) = (number(Holds::Unstable), number(Holds::Undecided));
     let is_place =
-        |stretch: &&Stretch| stretch.verdict == Holds::NotTold && stretch.lo.next_up() == stretch.hi;
+        |stretch: &&Stretch| stretch.verdict == Holds::Undecided && stretch.lo.next_up() == stretch.hi;
     let places = intervals.stretches.iter().filter(is_place).count();
     let name = if intervals.number == "outer" { "the outer step" } else { &intervals.number };
     let inner = |steps| format!(", with {} in each", counted(steps as usize, "inner step", "inner steps"));
@@ -154,9 +154,9 @@ mod tests {
         let after = 1f64.next_up();
         let stretches = vec![
             stretch(0.5, 1.0, Holds::Stable),
-            stretch(1.0, after, Holds::NotTold),
+            stretch(1.0, after, Holds::Undecided),
             stretch(after, 1.5, Holds::Stable),
-            stretch(1.5, 1.75, Holds::NotTold),
+            stretch(1.5, 1.75, Holds::Undecided),
         ];
         let intervals =
             Intervals { number: "x".into(), is_discrete: false, inner_steps: None, stretches, open: None };

@@ -53,7 +53,7 @@ pub(super) fn lines(measured: &Measured, (clocks, is_stable): (usize, bool), uni
     lines.push(match measured.holds {
         Holds::Stable => format!("  stable for all stiffnesses within {accuracy:.0e} of their norms"),
         Holds::Unstable => format!("  unstable for all stiffnesses within {accuracy:.0e} of their norms"),
-        Holds::NotTold => {
+        Holds::Undecided => {
             let place = match measured.is_above_unstable {
                 true => "below the first unstable one",
                 false => "farther from the edge of stability",

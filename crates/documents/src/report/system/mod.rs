@@ -116,7 +116,7 @@ fn lines(analysis: &Analysis, beside: &Beside) -> Vec<String> {
     let headline = match analysis.holds() {
         Holds::Stable => format!("stable: {} (proven)", analysis.kind_name()),
         Holds::Unstable => format!("unstable: {} (proven)", analysis.kind_name()),
-        Holds::NotTold => "not decided: doubles do not prove a verdict".into(),
+        Holds::Undecided => "not decided: doubles do not prove a verdict".into(),
     };
     let mut lines = vec![
         headline,

@@ -76,7 +76,7 @@ impl Route for Many<'_> {
     fn row(&self, finding: &Finding) -> Checked {
         let levels = finding.scheme.steps().len();
         let as_given = vec![1.0; levels];
-        if finding.holds != Holds::NotTold {
+        if finding.holds != Holds::Undecided {
             self.is(
                 finding.holds,
                 (&finding.scheme, to_f64(finding.scheme.outer()), &as_given),

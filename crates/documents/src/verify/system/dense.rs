@@ -189,7 +189,7 @@ mod tests {
         assert!(!is_right(&Measured { first_unstable: Some((lo * (1.0 + 1e-4), hi)), ..found.clone() }));
         assert!(!is_right(&Measured { first_unstable: Some((lo, hi * (1.0 - 1e-4))), ..found.clone() }));
         let unseen = |measured: &Measured| Stands::of(&scene, measured).unwrap().unseen().unwrap_or_default();
-        // Paths prove the accuracy, and a margin as large; twice the margin is true of none.
+        // The action must prove the accuracy and the margin, and must not prove twice the margin.
         assert_eq!(unseen(&Measured { margin: Some(found.accuracy), ..found.clone() }), "");
         let twice = 2.0 * found.margin.unwrap();
         assert!(unseen(&Measured { margin: Some(twice), ..found.clone() }).starts_with("the margin: "));

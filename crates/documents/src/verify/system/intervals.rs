@@ -123,7 +123,7 @@ impl Claim {
         if !matches!(scene.model(), Model::Measured(_)) || found.is_discrete {
             return outcome(context, ALONE, Ok(()));
         }
-        let all = (1..).zip(stretches).filter(|(_, stretch)| stretch.verdict != Holds::NotTold);
+        let all = (1..).zip(stretches).filter(|(_, stretch)| stretch.verdict != Holds::Undecided);
         let decided = Decided { count: stretches.len() as u64, drawn: all.collect(), context };
         let seed = scene.source().to_string();
         let width = self.input.width().unwrap_or_default();

@@ -17,7 +17,7 @@ const GROWN: f64 = 1e3;
 /// Holds a verdict against the run; beside it the claims that no run can check.
 pub fn run(sparse_levels: &SparseLevels, outer: &Outer, analysis: &Analysis) -> (Checked, Vec<String>) {
     let told = analysis.holds();
-    if told == Holds::NotTold {
+    if told == Holds::Undecided {
         return (Ok(()), vec!["where the first region ends: by factorizations alone".into()]);
     }
     let has_grown = growth(sparse_levels, outer) > GROWN.ln();

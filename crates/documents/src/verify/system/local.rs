@@ -19,8 +19,8 @@ pub const SEEN: usize = 120;
 /// dozen terms.
 const ROUNDED: f64 = 1e-10;
 
-/// Relative to what grows: its enclosure is as wide.
-const SHARP: f64 = 0.02;
+/// The relative width of the enclosure of what grows.
+const GROWTH_REL_WIDTH: f64 = 0.02;
 
 /// How far below 4 f may be, relative to it, where a resonance is known to 10^-6: as the square of that times
 /// the substeps.
@@ -67,7 +67,8 @@ pub fn sparse(
         // λ + 1/λ = ±(2 + excess).
         let excess = |rate: f64| 4.0 * (0.5 * rate * dt).sinh().powi(2);
         let found = shapes.fold(ritz.excess, f64::max);
-        let right = (1.0 - SHARP) * excess(lo) <= found + ritz.room && found <= excess(hi) + ritz.room;
+        let right =
+            (1.0 - GROWTH_REL_WIDTH) * excess(lo) <= found + ritz.room && found <= excess(hi) + ritz.room;
         holds(right, || {
             format!("the scheme, run, has f beyond its ends by {found}, not as it is said to grow")
         })?;
@@ -95,7 +96,7 @@ fn verdict(sparse_steps: &SparseSteps, dt: f64, said: Holds) -> Checked {
     let right = match said {
         Holds::Stable => excess <= room,
         Holds::Unstable => sparse_steps.size() > SEEN || excess >= -room,
-        Holds::NotTold => true,
+        Holds::Undecided => true,
     };
     holds(right, || {
         format!("at a step of {dt} the scheme, run, has f beyond its ends by {excess}: not {}", said.name())

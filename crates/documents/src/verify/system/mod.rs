@@ -197,7 +197,7 @@ impl Recheck for Simulated {
     }
 }
 
-/// Kinds agree, a part that is at rest apart.
+/// Kinds agree, undecided parts excluded.
 fn same_kind(found: Option<Kind>, truth: Kind) -> Checked {
     same("kind", found.map_or("not decided", Kind::name), truth.name())
 }

@@ -86,7 +86,7 @@ impl Steps<'_> {
         if ends[0] < ends[1] {
             return self.by_discs_between(ends, epsilon).into();
         }
-        let Some(blocks) = self.half_period(ends[0], epsilon) else { return Holds::NotTold };
+        let Some(blocks) = self.half_period(ends[0], epsilon) else { return Holds::Undecided };
         let by_clusters = || Spectrum::new(&blocks)?.certified(&blocks);
         signs::proven(&blocks).or_else(|| self.by_discs_between(ends, epsilon)).or_else(by_clusters).into()
     }
@@ -126,11 +126,11 @@ impl Steps<'_> {
     pub fn decide(&self, step: f64, accuracy: f64) -> AtStep {
         let is_in_first_region = self.is_in_first_region(step, accuracy);
         let holds = if is_in_first_region { Holds::Stable } else { self.verdict_within(step, accuracy) };
-        let given = if holds == Holds::NotTold { self.verdict_within(step, 0.0) } else { holds };
+        let given = if holds == Holds::Undecided { self.verdict_within(step, 0.0) } else { holds };
         let found = AtStep { holds, is_in_first_region, rate: None, growing: None };
         match given {
             Holds::Stable => AtStep { rate: Some(0.0), ..found },
-            Holds::NotTold => found,
+            Holds::Undecided => found,
             Holds::Unstable => {
                 let (rate, growing) = self.fastest(step).unzip();
                 AtStep { rate, growing, ..found }
@@ -145,7 +145,7 @@ impl Steps<'_> {
             return largest(1.01, |epsilon| self.is_in_first_region(step, epsilon));
         }
         let holds = self.verdict_within(step, 0.0);
-        (holds != Holds::NotTold)
+        (holds != Holds::Undecided)
             .then(|| largest(1.1, |epsilon| self.verdict_within(step, epsilon) == holds))?
     }
 

@@ -53,7 +53,7 @@ pub struct SparseLevels {
     sizes: [f64; 2],
     /// Orthonormal, mass-weighted.
     rigid: Mat<f64>,
-    /// No less than the largest eigenvalue of F, and no more than −λ if some λ < 0 is one.
+    /// Bounds of the eigenvalues of F, from below and from above.
     ends: OnceLock<Option<[f64; 2]>>,
     held: OnceLock<Held>,
     /// By the number of inner steps.
@@ -67,7 +67,7 @@ struct First {
     quotients: [f64; 2],
 }
 
-/// What holds the place: F + S, off the rigid motions.
+/// Positive definiteness of F + S on the complement of the rigid motions.
 #[derive(Clone, Copy, Debug)]
 struct Held {
     /// The directions along which it is not proven positive; `None` where they are not counted.
@@ -85,20 +85,22 @@ const STEPS: usize = 60;
 /// Rooms that are tried above what it finds, relative to it.
 const ROOMS: [f64; 5] = [1e-9, 1e-7, 1e-5, 1e-3, 3e-2];
 
-/// How far below 0 eigenvalues of F may lie by rounding and differences, relative to its largest one; and if
-/// they do more than that.
-const BELOW: [f64; 2] = [1e-6, 1e-2];
+/// Eigenvalues of F may lie so far below 0 by rounding and differences, relative to its largest one.
+const NEGATIVE_TOL: f64 = 1e-6;
 
-/// Dimensions of the Krylov space of an inverse that tells the vector that is stretched least.
-const STEPS_BELOW: usize = 16;
+/// Beyond the tolerance they may lie so far below 0, which the answer then says.
+const NEGATIVE_LIMIT: f64 = 1e-2;
 
-/// The same of the matrix itself, and the residual at which its vector is taken, relative to the eigenvalue:
-/// these lie close together, and the error of what the vector tells is the square of its own.
-const STEPS_ALONG: usize = 240;
-const ALONG: f64 = 1e-4;
+/// Dimension of the Krylov space of an inverse, from which the least stretched vector comes.
+const INVERSE_KRYLOV_DIM: usize = 16;
 
-/// How often the vector that is stretched least is sought at the step that the last one told.
-const TURNS: usize = 4;
+/// Dimension of the Krylov space of the matrix itself, and the residual of an accepted Ritz vector, relative
+/// to its eigenvalue: eigenvalues lie close together, and the quotient errs by the square of the residual.
+const KRYLOV_DIM: usize = 240;
+const RITZ_REL_TOL: f64 = 1e-4;
+
+/// Iterations: the least stretched vector at a step, then the step at which that vector is stretched no more.
+const STEP_ITERATIONS: usize = 4;
 
 /// Products of a factorization from which on two are made side by side, as long as they are not large.
 const SIDE_BY_SIDE: f64 = 1e8;
@@ -116,14 +118,14 @@ const TURNED: f64 = 0.25;
 const SHIFTED: [f64; 3] = [1e-9, 1e-7, 1e-5];
 
 /// Steps of Lanczos's recursion for the least eigenvalue of F + S.
-const LOWEST: usize = 1200;
+const LANCZOS_STEPS: usize = 1200;
 
 /// Products of a factorization, an entry of the matrix, from which on these steps cost less than to factor
 /// twice, and to keep the factors once: some hundred products with each entry, at the speed of the memory.
 const WORTH_A_RECURSION: f64 = 2e4;
 
-/// How far below what it is at most a margin may be, relative to it.
-const NEAR: f64 = 0.06;
+/// The margin is bracketed within 6 %.
+const MARGIN_REL_TOL: f64 = 0.06;
 
 /// The relative width within which the first unstable step is sought.
 const WIDTH: f64 = 1e-4;
@@ -235,7 +237,7 @@ impl SparseLevels {
         match self.is_proven(outer, epsilon) {
             true => Holds::Stable,
             false if self.is_unstable(outer, epsilon) => Holds::Unstable,
-            false => Holds::NotTold,
+            false => Holds::Undecided,
         }
     }
 
@@ -253,15 +255,15 @@ impl SparseLevels {
     /// is at most; most often what is known of the first region's end proves nearly as much, and elsewhere
     /// one factorization a little below does.
     pub fn margin(&self, outer: &Outer) -> Option<f64> {
-        let quotients = self.quotients(&self.stretched_least(outer, self.anywhere())?);
+        let quotients = self.quotients(&self.stretched_least(outer, self.start_vector())?);
         let is_open = |epsilon: f64| self.form_along(quotients, outer, epsilon) > 0.0;
-        if !is_open(0.0) || self.unheld() != Some(0) {
+        if !is_open(0.0) || self.unproven_directions() != Some(0) {
             return None;
         }
         let most = bisected((0.0, 1.0), 1e-6, |epsilon| Some(is_open(epsilon))).1;
         let total = self.total_margin(most);
         let known = bisected((0.0, most), 1e-3, |epsilon| Some(self.is_below_first(outer, epsilon))).0;
-        let line = if known >= total.min(most / (1.0 + NEAR)) {
+        let line = if known >= total.min(most / (1.0 + MARGIN_REL_TOL)) {
             known
         } else if total < most && self.is_above(outer, total) {
             total
@@ -291,13 +293,13 @@ impl SparseLevels {
         if value > most && is_definite(most) {
             return most;
         }
-        largest_below(most.min(value), NEAR, is_definite)
+        largest_below(most.min(value), MARGIN_REL_TOL, is_definite)
     }
 
     /// \[lo, hi\]: every outer step of so many inner ones in (0, lo] is proven stable, hi is proven unstable;
     /// `None` where nothing is proven.
     pub fn first_unstable(&self, inner_steps: u64) -> Option<(f64, f64)> {
-        self.first_resonance(inner_steps).filter(|_| self.unheld() == Some(0))
+        self.first_resonance(inner_steps).filter(|_| self.unproven_directions() == Some(0))
     }
 
     /// \[lo, hi\]: at every outer step of so many inner ones in (0, lo] all multipliers are on the circle or
@@ -311,7 +313,7 @@ impl SparseLevels {
     }
 
     /// F y and S y without what they do along rigid motions, mass-weighted and rounded.
-    pub fn pulls(&self, y: &[f64]) -> [Vec<f64>; 2] {
+    pub fn apply_stiffnesses(&self, y: &[f64]) -> [Vec<f64>; 2] {
         let free = |y: Mat<f64>| &y - &self.rigid * (self.rigid.transpose() * &y);
         let y = free(Mat::from_fn(y.len(), 1, |i, _| y[i]));
         [&self.fast, &self.slow].map(|values| free(self.both.times(values, &y)).col_as_slice(0).to_vec())
@@ -337,8 +339,8 @@ impl SparseLevels {
                 |step: f64| at(step).is_some_and(|outer| self.form_along(quotients, &outer, 0.0) > 0.0);
             bisected(range, WIDTH / 8.0, |step| Some(is_open(step))).1
         };
-        let (mut hi, mut along) = (top, self.anywhere());
-        for _ in 0..TURNS {
+        let (mut hi, mut along) = (top, self.start_vector());
+        for _ in 0..STEP_ITERATIONS {
             let last = hi;
             along = self.stretched_least(&at(hi * (1.0 - WIDTH))?, along)?;
             hi = hi.min(limit(&along, (0.0, hi)));
@@ -349,8 +351,9 @@ impl SparseLevels {
         let begin = BELOW_LIMIT.iter().map(|part| part * hi).chain(FROM.iter().map(|part| part * top));
         let mut lo = begin.into_iter().find(|&step| step < hi && is_proven(step))?;
         while hi > lo * (1.0 + WIDTH) {
-            let Some(next) =
-                self.above(&at(lo)?).and_then(|above| above.least(along.clone(), &self.rigid, STEPS_BELOW))
+            let Some(next) = self
+                .above(&at(lo)?)
+                .and_then(|above| above.least(along.clone(), &self.rigid, INVERSE_KRYLOV_DIM))
             else {
                 break;
             };
@@ -373,7 +376,7 @@ impl SparseLevels {
         let [low, high] = self.ends(0.0)?;
         let ([fast, slow], _) = self.form(outer, chord(outer, low, high)?, 0.0);
         let taken: Vec<f64> = self.fast.iter().zip(&self.slow).map(|(f, s)| -fast * f - slow * s).collect();
-        top(from, &self.rigid, STEPS_ALONG, ALONG, |x| Some(self.both.times(&taken, x)))
+        top(from, &self.rigid, KRYLOV_DIM, RITZ_REL_TOL, |x| Some(self.both.times(&taken, x)))
     }
 
     /// Whether the first region is proven, rigid motions apart.
@@ -444,7 +447,10 @@ impl SparseLevels {
             let is_above = |high: f64| self.alone.is_definite(high, &[(-1.0, &self.fast_alone)], slack);
             let is_below = |low: f64| self.alone.is_definite(low, &[(1.0, &self.fast_alone)], slack);
             let high = ROOMS.iter().map(|room| top * (1.0 + room)).find(|&high| is_above(high))?;
-            let below = BELOW.iter().map(|room| room * high).find(|&below| is_below(below))?;
+            let below = [NEGATIVE_TOL, NEGATIVE_LIMIT]
+                .iter()
+                .map(|room| room * high)
+                .find(|&below| is_below(below))?;
             Some([-below, high])
         });
         let off = epsilon * self.sizes[0];
@@ -453,7 +459,7 @@ impl SparseLevels {
 
     /// The number of directions, rigid motions aside, along which F + S is not proven positive: it is
     /// negative there, or too small for doubles to tell. `None` where the factorization does not count them.
-    pub fn unheld(&self) -> Option<usize> {
+    pub fn unproven_directions(&self) -> Option<usize> {
         self.held().not_proven
     }
 
@@ -482,10 +488,10 @@ impl SparseLevels {
         }
         let least = {
             let total: Vec<f64> = self.fast.iter().zip(&self.slow).map(|(f, s)| f + s).collect();
-            lowest(self.size(), LOWEST, NEAR / 3.0, |x| self.both.times(&total, x))?
+            lowest(self.size(), LANCZOS_STEPS, MARGIN_REL_TOL / 3.0, |x| self.both.times(&total, x))?
         };
         let off = self.errors[0] + self.errors[1];
-        let above = off + (least - off) / (1.0 + 0.9 * NEAR);
+        let above = off + (least - off) / (1.0 + 0.9 * MARGIN_REL_TOL);
         let slack = self.total_slack(above);
         let is_held = least > off && self.both.is_definite(0.0, &self.total(), slack);
         is_held.then_some(Held { not_proven: Some(0), least: Some(least), above })
@@ -500,7 +506,7 @@ impl SparseLevels {
     fn least_total(&self, factors: Option<Factors>) -> Option<f64> {
         let size = self.sizes[0] + self.sizes[1];
         let shifted = || SHIFTED.iter().find_map(|part| self.both.factored(part * size, &self.total(), 0.0));
-        let along = factors.or_else(shifted)?.least(self.anywhere(), &self.rigid, STEPS_BELOW)?;
+        let along = factors.or_else(shifted)?.least(self.start_vector(), &self.rigid, INVERSE_KRYLOV_DIM)?;
         Some(self.quotients(&along).iter().sum())
     }
 
@@ -517,7 +523,7 @@ impl SparseLevels {
     /// Whether F + S + E > 0 off the rigid motions for all E no larger than `off`.
     fn is_total_definite(&self, off: f64) -> bool {
         let is_known = off <= self.held().above.max(self.errors[0] + self.errors[1]);
-        let found = if is_known { self.unheld() } else { self.not_above_zero(off).0 };
+        let found = if is_known { self.unproven_directions() } else { self.not_above_zero(off).0 };
         found == Some(0)
     }
 
@@ -536,7 +542,7 @@ impl SparseLevels {
     }
 
     /// Where a recursion for a vector begins.
-    fn anywhere(&self) -> Mat<f64> {
+    fn start_vector(&self) -> Mat<f64> {
         let begin = start(self.size());
         Mat::from_fn(self.size(), 1, |i, _| begin[i])
     }

@@ -29,8 +29,8 @@ pub fn roundings<T: Coefficient>(n: u128) -> f64 {
     1000.0 * T::UNIT * n as f64
 }
 
-/// A normal form may lack so many times what its factor does.
-const KNOWN: f64 = 64.0;
+/// Largest error of a normal form, in errors of its factor.
+const MAX_FORM_ERROR: f64 = 64.0;
 
 /// The most corrections: more of them gain less than rounding takes.
 const CORRECTIONS: usize = 24;
@@ -254,8 +254,8 @@ impl Kind {
         };
         let mut first = Map::of_balls(&[self.entries(first, Ball::zero(), Ball::neg)]);
         first.exponent = first.exponent.checked_add(log2.to_i128()?)?;
-        // e^R, R = S without its constant term: of a long sum a small part, whose own power of two is none of
-        // S.
+        // e^R, R = S without its constant term: a small part of a long sum, so it is scaled
+        // apart from S.
         let scale = i32::try_from(scale).ok()?;
         let mut terms = exponent.terms().to_vec();
         terms[0] = std::array::from_fn(|_| T::zero());
@@ -339,7 +339,7 @@ impl<T: Coefficient> Normal<T> {
         let error = rest * columns.map.size() * (varied - first).exp() * (1.0 + 1e-9);
         let lost = error * steps as f64;
         // Shorter pieces do not know their factors better.
-        let known = KNOWN * factor_error * steps as f64;
+        let known = MAX_FORM_ERROR * factor_error * steps as f64;
         if lost.is_nan() || lost > allowed.max(roundings::<T>(steps)).max(known) {
             return None;
         }
