@@ -485,7 +485,7 @@ fn resonances_are_proven_where_the_forces_hold_no_minimum() {
     let levels =
         |falls| SparseLevels::new(&vec![1.0; n], [&fast, &slow(falls)], faer::Mat::zeros(n, 0)).unwrap();
     let [held, falling] = [0.02, -0.02].map(levels);
-    assert_eq!((held.unheld(), falling.unheld()), (Some(0), Some(2)));
+    assert_eq!((held.unproven_directions(), falling.unproven_directions()), (Some(0), Some(2)));
     assert_eq!(held.first_unstable(8), held.first_resonance(8));
     assert_eq!(falling.first_unstable(8), None);
     let ((lo, hi), (other, end)) = (held.first_resonance(8).unwrap(), falling.first_resonance(8).unwrap());

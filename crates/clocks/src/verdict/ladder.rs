@@ -46,26 +46,36 @@ pub fn decide<S: Decidable>(clocks: &TwoClocks<S>, limits: &Limits) -> Result<An
 /// As [`decide`].
 pub fn decide_from<S: Decidable>(first: Tier, clocks: &TwoClocks<S>, limits: &Limits) -> Result<Answer<S>> {
     let mut runs = Runs::default();
+    let (verdict, decided_by) = by_tiers(first, clocks, limits, &mut runs)?;
+    Ok(Answer { verdict, decided_by, clocks: clocks.clone(), limits: *limits, runs, growth: OnceLock::new() })
+}
+
+/// The first tier from `first` on that proves a verdict.
+fn by_tiers<S: Decidable>(
+    first: Tier,
+    clocks: &TwoClocks<S>,
+    limits: &Limits,
+    runs: &mut Runs,
+) -> Result<(Verdict, Tier)> {
     if first == Tier::Filter
         && let Some(verdict) = lone::verdict(clocks)
     {
-        return Ok(answer(verdict, Tier::Filter, clocks, limits, runs));
+        return Ok((verdict, Tier::Filter));
     }
     if first != Tier::Exact && returns::is_worth(clocks.ratio(), 53) {
         let least = if first == Tier::Filter { 53 } else { 106 };
-        if let Some((verdict, bits)) = by_returns(clocks, least..=256, &mut runs)? {
-            let decided_by = if bits == 53 { Tier::Filter } else { Tier::Refine };
-            return Ok(answer(verdict, decided_by, clocks, limits, runs));
+        if let Some((verdict, bits)) = by_returns(clocks, least..=256, runs)? {
+            return Ok((verdict, if bits == 53 { Tier::Filter } else { Tier::Refine }));
         }
     }
-    for decided_by in Tier::ALL.into_iter().filter(|&tier| tier >= first) {
-        let verdict = match decided_by {
-            Tier::Filter => by_filter(clocks, limits, &mut runs)?,
-            Tier::Refine => by_refine(clocks, limits, &mut runs)?,
+    for tier in Tier::ALL.into_iter().filter(|&tier| tier >= first) {
+        let verdict = match tier {
+            Tier::Filter => by_filter(clocks, limits, runs)?,
+            Tier::Refine => by_refine(clocks, limits, runs)?,
             Tier::Exact => Some(by_exact(clocks, limits)?),
         };
         if let Some(verdict) = verdict {
-            return Ok(answer(verdict, decided_by, clocks, limits, runs));
+            return Ok((verdict, tier));
         }
     }
     unreachable!("the exact tier decides every pair")
@@ -169,16 +179,6 @@ pub fn decide_with_growth(
             Ok((answer.decision(), answer.growth()?.clone()))
         }
     }
-}
-
-fn answer<S: Decidable>(
-    verdict: Verdict,
-    decided_by: Tier,
-    clocks: &TwoClocks<S>,
-    limits: &Limits,
-    runs: Runs,
-) -> Answer<S> {
-    Answer { verdict, decided_by, clocks: clocks.clone(), limits: *limits, runs, growth: OnceLock::new() }
 }
 
 /// By return maps in the least of these bits, then in more; with the bits that decide. `None` where no

@@ -116,10 +116,10 @@ impl SparseSystem {
         SparseSystem::of_one(steps.size(), SparseKind::Steps(Box::new(steps)), step)
     }
 
-    fn of_one(n: usize, of: Of, step: &Rational) -> Result<SparseSystem> {
+    fn of_one(n: usize, kind: SparseKind, step: &Rational) -> Result<SparseSystem> {
         let clock = Potential::new(Symmetric::zero(n), step.clone());
         let clocks = System::new(Symmetric::diagonal(&vec![Rational::one(); n]), vec![clock])?;
-        Ok(SparseSystem { of, step: step.clone(), clocks })
+        Ok(SparseSystem { kind, step: step.clone(), clocks })
     }
 
     /// Both levels with the outer step, where it has them.
@@ -148,11 +148,11 @@ impl SparseSystem {
 
     /// Local time steps in another step; `None` for two levels.
     pub(super) fn at_step(&self, step: &Rational) -> Option<Result<SparseSystem>> {
-        let of = match &self.kind {
+        let kind = match &self.kind {
             SparseKind::Levels { .. } => return None,
-            of => of.clone(),
+            kind => kind.clone(),
         };
-        Some(SparseSystem::of_one(self.clocks.size(), of, step))
+        Some(SparseSystem::of_one(self.clocks.size(), kind, step))
     }
 
     /// This system with another accuracy.

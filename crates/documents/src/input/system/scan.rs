@@ -214,10 +214,10 @@ impl SystemScene {
             scene.model = with_method(scene.model, scene.bonds.as_ref(), method)?;
         }
         if let (Model::Measured(measured_system), Model::Measured(old)) = (&mut scene.model, &self.model) {
-            measured_system.follow(old);
+            measured_system.copy_settings_from(old);
         }
         if let (Model::Sparse(sparse_system), Model::Sparse(old)) = (&mut scene.model, &self.model) {
-            sparse_system.follow(old);
+            sparse_system.copy_settings_from(old);
         }
         Ok(scene)
     }

@@ -55,12 +55,12 @@ fn period(sparse_levels: &SparseLevels, outer: &Outer, y: &[f64]) -> Vec<f64> {
     let kick =
         |p: &mut [f64], pull: &[f64], by: f64| p.iter_mut().zip(pull).for_each(|(p, pull)| *p -= by * pull);
     let (mut x, mut p) = (y.to_vec(), vec![0.0; y.len()]);
-    let [mut fast, slow] = sparse_levels.pulls(&x);
+    let [mut fast, slow] = sparse_levels.apply_stiffnesses(&x);
     kick(&mut p, &slow, outer.step() / 2.0);
     for _ in 0..outer.inner_steps() {
         kick(&mut p, &fast, h / 2.0);
         x.iter_mut().zip(&p).for_each(|(x, p)| *x += h * p);
-        [fast, _] = sparse_levels.pulls(&x);
+        [fast, _] = sparse_levels.apply_stiffnesses(&x);
         kick(&mut p, &fast, h / 2.0);
     }
     x
