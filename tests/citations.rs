@@ -36,7 +36,7 @@ fn every_cited_theorem_exists() {
     let theorem = |line: &str| line.strip_prefix("Theorem ")?.split([' ', ':']).next().map(str::to_string);
     let proven: BTreeSet<String> = statements.lines().filter_map(theorem).collect();
     let mut all = BTreeSet::new();
-    for path in sources(&root.join("src")) {
+    for path in ["src", "crates"].iter().flat_map(|folder| sources(&root.join(folder))) {
         for name in cited(&fs::read_to_string(&path).unwrap()) {
             assert!(proven.contains(&name), "{} cites `{name}`, which proofs/ does not have", path.display());
             all.insert(name);

@@ -392,7 +392,7 @@ fn chains_beyond_the_exact_budget_are_unstable_where_counts_prove_it_and_every_n
         "schema": "kickdrift/system/1",
         "build": {"kind": "chain", "masses": 30, "stiffness": ["4", "2", "1/2"], "steps": steps},
     }));
-    let limits = Limits { products: 200_000_000, ..Limits::default() };
+    let limits = Limits { products: 1_100_000_000, ..Limits::default() };
     let found = own.intervals(&"outer=22/25..19/20".parse().unwrap(), 1e-2, &limits).unwrap();
     let unstable = || found.stretches.iter().filter(|own| own.verdict == Holds::Unstable);
     let length: f64 = unstable().map(|own| own.hi - own.lo).sum();

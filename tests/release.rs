@@ -153,22 +153,6 @@ fn programs_are_static_for_old_machines_and_wheels_are_there_without_the_lock() 
     assert!(!unquoted.is_match(&wheels) && wheels.contains("linux: \"2_28\""));
 }
 
-/// The default is the whole program, so whoever installs, tests or downloads it has the same one.
-#[test]
-fn every_feature_is_part_of_the_default() {
-    let manifest = std::fs::read_to_string(root().join("Cargo.toml")).unwrap();
-    let section = manifest.split_once("\n[features]\n").unwrap().1.split("\n[").next().unwrap();
-    let features: Vec<(&str, &str)> = section.lines().filter_map(|line| line.split_once(" = ")).collect();
-    let (mut reached, mut next) = (Vec::new(), vec!["default"]);
-    while let Some(name) = next.pop().filter(|name| !reached.contains(name)) {
-        reached.push(name);
-        let parts = features.iter().find(|(own, _)| *own == name).unwrap().1;
-        next.extend(features.iter().map(|(own, _)| *own).filter(|own| parts.contains(&format!("\"{own}\""))));
-        next.retain(|name| !reached.contains(name));
-    }
-    assert!(features.iter().all(|(name, _)| reached.contains(name)), "{reached:?} of {features:?}");
-}
-
 /// What a reader is told to run is what is run on a fresh machine.
 #[test]
 fn the_tests_are_run_by_the_command_that_readme_names() {

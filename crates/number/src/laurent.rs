@@ -46,6 +46,7 @@ impl Laurent {
     }
 
     /// c π^k.
+    #[inline]
     pub fn monomial(c: Rational, k: i32) -> Laurent {
         Laurent { terms: if c.is_zero() { Vec::new() } else { vec![(k, c)] } }
     }

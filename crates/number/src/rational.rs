@@ -17,6 +17,7 @@ use super::{Rational, float};
 /// The rational p/q of two machine integers.
 ///
 /// **Panics** if q = 0.
+#[inline]
 pub fn ratio(p: i64, q: i64) -> Rational {
     Rational::new(p.into(), q.into())
 }

@@ -134,6 +134,7 @@ impl Twofold {
     }
 
     /// a/b to within 2^-104 relative, for whole numbers that doubles hold.
+    #[inline]
     pub fn quotient(a: u64, b: u64) -> Option<Twofold> {
         const EXACT: u64 = 1 << 53;
         (a.max(b) <= EXACT).then(|| Twofold::of_whole(a as f64, b as f64))
