@@ -24,7 +24,7 @@ impl Beads {
     /// The period in fs of ring mode k, rounded; `None` of mode 0 and where the temperature is not known.
     ///
     /// ```
-    /// use kickdrift::{advise::Beads, number::rational::ratio};
+    /// use kickdrift_molecules::{Beads, number::rational::ratio};
     /// let beads = Beads { count: 32, kelvin: Some(ratio(300, 1)) };
     /// // Half of it is where a kick meets the fastest ring mode.
     /// assert_eq!(format!("{:.4}", beads.period(16).unwrap() / 2.0), "1.2498");

@@ -230,7 +230,7 @@ pub fn period_of_wavenumber(wavenumber: &Laurent) -> Option<Laurent> {
 /// A rational as people write it: a decimal where it ends within 12 places, else a fraction.
 ///
 /// ```
-/// use kickdrift::{advise::unit::decimal, number::rational::ratio};
+/// use kickdrift_molecules::{number::rational::ratio, unit::decimal};
 /// assert_eq!([ratio(1, 2), ratio(4, 1), ratio(1, 3)].map(|x| decimal(&x)), ["0.5", "4", "1/3"]);
 /// ```
 pub fn decimal(x: &Rational) -> String {

@@ -17,9 +17,10 @@ thread_local! {
 ///
 /// ```
 /// use std::sync::{Arc, atomic::AtomicBool};
-/// use kickdrift::{error::Kind, number::rational::ratio, parallel::stoppable, tongue::survey};
+/// use kickdrift_number::error::Kind;
+/// use kickdrift_number::parallel::{go_on, stoppable};
 /// let flag = Arc::new(AtomicBool::new(true));
-/// assert_eq!(stoppable(&flag, || survey(300, &ratio(1, 25), 3)).unwrap_err().kind(), Kind::Stopped);
+/// assert_eq!(stoppable(&flag, go_on).unwrap_err().kind(), Kind::Stopped);
 /// ```
 pub fn stoppable<R>(flag: &Arc<AtomicBool>, work: impl FnOnce() -> R) -> R {
     under(Some(flag.clone()), work)
