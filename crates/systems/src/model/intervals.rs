@@ -125,6 +125,10 @@ impl Model {
         check_width(width)?;
         let step = to_f64(&self.outer_step());
         let cells = Nearest::most_cells(step, width);
+        // Of two measured levels all below the first unstable step is one proof, and of waters a quarter of
+        // what is above it is narrow cells.
+        let is_measured = matches!(self, Model::Measured(levels) if levels.is_of_two_levels());
+        let cells = if is_measured { cells / 4.0 } else { cells };
         self.cost_of_cells(&Number::Outer, Nearest::reach(step), cells, limits)
     }
 
