@@ -80,7 +80,7 @@
 //! | `kickdrift-documents` | [`question`], [`format`](mod@format), [`scene`], [`report`], [`recheck`] | what is asked, typed, with its answer as a document; documents verified |
 //! | `kickdrift` | [`cli`], [`explore`] | the program, and the page that it serves |
 //!
-//! A library that needs verdicts alone depends on `kickdrift-clocks` and builds some twenty crates.
+//! A library that needs verdicts alone depends on `kickdrift-clocks` and builds some thirty crates.
 
 pub mod cli;
 pub mod explore;

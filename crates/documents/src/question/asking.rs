@@ -18,8 +18,7 @@ macro_rules! question {
         }
     ) => {
         $(#[$meta])*
-        #[derive(Clone, Debug, PartialEq)]
-        #[derive(clap::Args)]
+        #[derive(Clone, Debug, PartialEq, clap::Args)]
         pub struct $Name {
             $($(#[doc = $help])* #[arg($($arg)* $(, default_value = $default)?)] pub $field: $type,)*
         }
