@@ -570,7 +570,7 @@ fn verdicts_for_all_stiffnesses_within_an_accuracy_are_those_at_its_ends() {
 #[test]
 fn documents_are_held_against_a_run_kick_by_kick_and_say_what_it_does_not_see() {
     use kickdrift::question::{Question, System, Work};
-    use kickdrift::recheck::{Claim, Options};
+    use kickdrift::recheck::{CheckedDocument, Options};
     use kickdrift::report::npz::{self, Element};
     let droplet = Droplet::new(2, &mut Numbers(9));
     let (n, folder) = (droplet.masses.len(), tempfile::tempdir().unwrap());
@@ -625,7 +625,7 @@ fn documents_are_held_against_a_run_kick_by_kick_and_say_what_it_does_not_see() 
             "{text}"
         );
         let options = Options { folder: folder.path().into(), ..Options::default() };
-        let outcome = Claim::read(&text).unwrap().recheck(&options, None).unwrap();
+        let outcome = CheckedDocument::read(&text).unwrap().verify(&options, None).unwrap();
         assert!(outcome.failures.is_empty() && outcome.route.contains("kick by kick"), "{outcome:?}");
         assert!(outcome.not_rechecked.iter().any(|own| own.starts_with(what)), "{outcome:?}");
     }

@@ -9,7 +9,7 @@ use kickdrift::cli;
 use kickdrift::error::Error;
 use kickdrift::format::Format;
 use kickdrift::question::{self, Work};
-use kickdrift::recheck::{Claim, Options};
+use kickdrift::recheck::{CheckedDocument, Options};
 use kickdrift::report::document::Document;
 use kickdrift::report::figure::file;
 use kickdrift::scene::{Array, Arrays};
@@ -140,7 +140,7 @@ pub fn recheck(
 ) -> PyResult<Outcome> {
     job::run(py, move |_| {
         let options = Options { budget: budget.0, all, folder };
-        let outcome = Claim::read(&text)?.recheck(&options, None)?;
+        let outcome = CheckedDocument::read(&text)?.verify(&options, None)?;
         let not_rechecked = outcome.not_rechecked.iter().map(ToString::to_string).collect();
         let failures = outcome.failures.iter();
         let failures = failures.map(|own| (own.row, own.place.clone(), own.why.to_string())).collect();

@@ -1,4 +1,4 @@
-//! `kickdrift verify`: a document computed again, and rechecked by another route than the one that made it.
+//! `kickdrift verify`: a document computed again, and held against another route than the one that made it.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -9,7 +9,7 @@ use super::args::Common;
 use super::progress::{announce, progress};
 use documents::format::Format;
 use documents::report::document::Document;
-use documents::verify::{Claim, Failure, Options, Outcome};
+use documents::verify::{CheckedDocument, Failure, Options, Outcome};
 use number::error::{Error, Kind, Result};
 use number::file;
 
@@ -38,18 +38,18 @@ impl Args {
         let text = file::text(&self.file, file::LONGEST).map_err(|cause| {
             Error::io(&file, format!("cannot read it ({cause}): name a JSON document that kickdrift wrote"))
         })?;
-        let claim = Claim::read(&text)?;
+        let checked = CheckedDocument::read(&text)?;
         let options = Options { budget: common.budget, all: self.all, folder: self.folder() };
-        let work = claim.work(&options).map_err(|error| self.elsewhere(error))?;
+        let work = checked.work(&options).map_err(|error| self.elsewhere(error))?;
         announce(common.quiet, &format!("{file}, about {work} kicks"), work as f64 / KICKS_A_SECOND);
         let bar = progress(common.quiet, 0, "rows");
-        let see = |done: u64, count: u64| {
+        let shown = |done: u64, count: u64| {
             bar.set_length(count);
             bar.set_position(done);
         };
-        let outcome = claim.recheck(&options, Some(&see)).map_err(|error| self.elsewhere(error))?;
+        let outcome = checked.verify(&options, Some(&shown)).map_err(|error| self.elsewhere(error))?;
         bar.finish_and_clear();
-        let name = claim.name();
+        let name = checked.name();
         if let Some(first) = outcome.failures.first() {
             return Err(failed(first, &outcome, name, &file.to_string()));
         }

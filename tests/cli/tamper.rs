@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use kickdrift::error::Error;
-use kickdrift::recheck::{Claim, Options};
+use kickdrift::recheck::{CheckedDocument, Options};
 use serde_json::{Value, json};
 
 use super::support::Desk;
@@ -283,17 +283,18 @@ fn is_below(path: &str, named: &str) -> bool {
 /// The number of changes made to a document, each of which is found; and what passes.
 fn passed(desk: &Desk, name: &str, whole: &Value) -> (usize, Vec<String>) {
     let options = Options { folder: desk.path().into(), ..Options::default() };
-    let claim = Claim::read(&whole.to_string()).unwrap();
-    let sound = claim.recheck(&options, None).unwrap_or_else(|error| panic!("{name}: {error}"));
+    let checked = CheckedDocument::read(&whole.to_string()).unwrap();
+    let sound = checked.verify(&options, None).unwrap_or_else(|error| panic!("{name}: {error}"));
     assert_eq!(sound.failures, [], "{name}");
-    let again = claim.again(&options).unwrap();
-    // A recheck begins with the document computed again from its input. It is the same for all changes beside
+    let again = checked.recompute(&options).unwrap();
+    // A check begins with the document computed again from its input. It is the same for all changes beside
     // the input: where it shows the change, there is no need to compute it once more; where it does not, the
-    // whole recheck follows.
+    // whole check follows.
     let passes = |tampered: &Value| {
-        let Ok(claim) = Claim::read(&tampered.to_string()) else { return false };
-        let apart = again.as_ref().and_then(|again| claim.apart(again)).unwrap_or_default();
-        apart.is_empty() && claim.recheck(&options, None).is_ok_and(|outcome| outcome.failures.is_empty())
+        let Ok(checked) = CheckedDocument::read(&tampered.to_string()) else { return false };
+        let differences = again.as_ref().and_then(|again| checked.differences(again)).unwrap_or_default();
+        differences.is_empty()
+            && checked.verify(&options, None).is_ok_and(|outcome| outcome.failures.is_empty())
     };
     let (mut count, mut passed) = (0, Vec::new());
     let mut see = |tampered: Value, path: &str, what: &str| {
@@ -450,7 +451,8 @@ fn no_change_to_a_product_of_a_scene_passes() {
     // The only part of a summary's input that the rest of it follows from.
     let mut other = summary;
     other["input"]["want"] = json!("map.json, curves.json");
-    let outcome = Claim::read(&other.to_string()).unwrap().recheck(&Options::default(), None).unwrap();
+    let checked = CheckedDocument::read(&other.to_string()).unwrap();
+    let outcome = checked.verify(&Options::default(), None).unwrap();
     assert!(!outcome.failures.is_empty());
     for product in ["map", "curves", "compare", "proposition", "polynomial", "tongues", "closings", "survey"]
     {

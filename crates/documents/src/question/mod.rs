@@ -52,7 +52,7 @@ pub use curves::Curves;
 pub use field::{Field, Notation, StepRange, flag, shown_range};
 pub use half::Half;
 pub use map::Map;
-pub use polynomial::Polynomial;
+pub use polynomial::{Polynomial, Polynomials};
 pub use proposition::Proposition;
 pub use ratios::{MOST_SUM, Ratios};
 pub use scene::{FAMILIES, LONGEST_SCENE, Scene};
@@ -64,6 +64,7 @@ pub use tongues::{Colour, Tongues};
 pub use verdict::{Decided, Verdict};
 pub use want::{Product, Want};
 pub use word::{Linted, Methods, Word};
+pub(crate) use word::{Listed, Span};
 
 use serde_json::{Map as Input, Value};
 

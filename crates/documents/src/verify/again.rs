@@ -1,63 +1,32 @@
 //! A document held, value by value, against the same document computed again from its input.
 //!
 //! One input gives one document, digit by digit, so whatever was changed afterwards differs. Values that the
-//! input does not determine are [`Left`] out, and only those: what a check names as not rechecked follows
-//! from this comparison.
+//! input does not determine are [`Excluded`], and only those: what a check names as not rechecked follows from
+//! this comparison.
 
 use serde_json::{Map, Value};
 
-use super::context::{Context, Failure, Outcome};
-use number::error::Result;
+pub use super::by_rows::Recheck;
+use super::context::Failure;
 
 /// A value that the input does not determine: its path (`*` stands for every row), and why.
-pub type Left = (&'static str, &'static str);
-
-/// A document of one kind, in typed rows.
-pub trait Recheck {
-    /// The key of the rows; empty where the document is one row itself.
-    const TABLE: &'static str;
-    /// Values that the input does not determine.
-    const LEFT: &'static [Left] = &[];
-    /// Whether `again` reads rows of the document beside its input.
-    const READS_ROWS: bool = false;
-    /// The answer, or the part of it that the other route needs.
-    type Found;
-
-    /// The document computed again from its input.
-    fn again(&self, context: &Context) -> Result<(Value, Self::Found)>;
-
-    /// The outcome of another route.
-    fn check(&self, found: Self::Found, context: &Context) -> Result<Outcome>;
-}
-
-/// The part of a [`Recheck`] by which a question is asked again; its answer is at hand for the other route.
-macro_rules! asked {
-    ($question:ty) => {
-        type Found = <$question as $crate::question::Question>::Answer;
-
-        fn again(&self, context: &Context) -> Result<(serde_json::Value, Self::Found)> {
-            let answer = $crate::question::Question::answer(&self.input, &context.work())?;
-            Ok(($crate::question::Question::document(&self.input, &answer).value(), answer))
-        }
-    };
-}
-pub(crate) use asked;
+pub type Excluded = (&'static str, &'static str);
 
 /// The result of a comparison.
 pub struct Compared {
     /// One for every row that differs, then one for each part of the rest that does.
     pub failures: Vec<Failure>,
-    /// The values left out that the document has.
-    pub left: Vec<String>,
+    /// The values excluded that the document has.
+    pub excluded: Vec<String>,
 }
 
-/// Compares a document with the one computed again; `table` is the key of its rows. Of its input only the
+/// Compares a document with the one computed again; `table` is the key of its rows. In its input only the
 /// fields that `again` echoes are compared.
-pub fn compare(written: &Map<String, Value>, again: Value, table: &str, left: &[Left]) -> Compared {
+pub fn compare(written: &Map<String, Value>, again: Value, table: &str, excluded: &[Excluded]) -> Compared {
     let (mut written, mut again) = (Value::Object(written.clone()), again);
     let version = ("kickdrift.version", "which version wrote it is no claim");
     let mut named = Vec::new();
-    for (path, why) in [version].iter().chain(left) {
+    for (path, why) in [version].iter().chain(excluded) {
         let steps: Vec<&str> = path.split('.').collect();
         let met = take(&mut written, &steps);
         take(&mut again, &steps);
@@ -79,7 +48,7 @@ pub fn compare(written: &Map<String, Value>, again: Value, table: &str, left: &[
     // A document without rows is one row itself.
     let row = u64::from(table.is_empty());
     failures.extend(parts_apart(&written, &again, row));
-    Compared { failures, left: named }
+    Compared { failures, excluded: named }
 }
 
 /// Takes out what lies at a path, and says whether something did.
@@ -98,7 +67,8 @@ fn take(value: &mut Value, path: &[&str]) -> bool {
 
 fn rows_apart(table: &str, written: &[Value], again: &[Value]) -> Vec<Failure> {
     let apart = (1..).zip(written.iter().zip(again)).filter_map(|(row, (written, again))| {
-        different(Some(written), Some(again)).map(|different| different.of(row, &place(written)))
+        different(Some(written), Some(again))
+            .map(|different| different.of(row, &written.as_object().map(place).unwrap_or_default()))
     });
     let count = (written.len() != again.len()).then(|| {
         let why = format!("{table} has {} rows, not {}", again.len(), written.len());
@@ -112,17 +82,17 @@ fn parts_apart(written: &Value, again: &Value, row: u64) -> Vec<Failure> {
     let (Value::Object(a), Value::Object(b)) = (written, again) else { return Vec::new() };
     let keys = b.keys().chain(a.keys().filter(|key| !b.contains_key(*key)));
     let apart = keys.filter_map(|key| {
-        let place = if row == 0 { key.clone() } else { place(written) };
+        let place = if row == 0 { key.clone() } else { place(a) };
         different(a.get(key), b.get(key)).map(|different| different.below(key).of(row, &place))
     });
     apart.collect()
 }
 
 /// The first plain values of a row, which name it: `p = 7, q = 3, m = 4`.
-fn place(row: &Value) -> String {
+pub fn place(row: &Map<String, Value>) -> String {
     const NAMES: usize = 3;
     let head = ["schema", "kickdrift", "input"];
-    let values = row.as_object().into_iter().flatten().filter(|(key, _)| !head.contains(&key.as_str()));
+    let values = row.iter().filter(|(key, _)| !head.contains(&key.as_str()));
     let plain = values.take_while(|(_, value)| value.is_string() || value.is_i64() || value.is_u64());
     let text = |value: &Value| value.as_str().map_or_else(|| value.to_string(), String::from);
     let named: Vec<String> =

@@ -2,17 +2,15 @@
 //! is rational, both entries vanish there. How many there are is counted for the mirror ratio q/p, whose
 //! tongues close at 1/ρ: by another resultant.
 
-use serde_json::Value;
+use std::cmp::Ordering;
 
-use super::again::Recheck;
-use super::context::{Checked, Context, Fault, Outcome, holds};
+use super::Verify;
+use super::context::{Checked, Context, Outcome, holds, located};
 use super::exact::{ZeroOf, check_ratio, fraction, part, signs};
-use super::written::{Decimal, Written, exact};
-use crate::question::{Closings, Question};
+use crate::question::Closings;
 use clocks::propagator::TwoClocks;
-use clocks::tongue::{COMPLETE_UP_TO, Entry, Search, Tongues, closings_of, count_closings};
+use clocks::tongue::{Closing, Enclosure, Entry, Found, Search, Tongues, closings_of, count_closings};
 use clocks::verdict::{Limits, decide, growth};
-use num_traits::Signed;
 use number::error::Result;
 use number::rational::simplest;
 use number::{Ratio, Rational, Sign};
@@ -20,52 +18,15 @@ use number::{Ratio, Rational, Sign};
 const ROUTE: &str = "exact signs at both ends of the range of rho: the edges exchange their order, the label between \
                      them is m; rational closings: both entries vanish; complete lists by the mirror ratio's resultant";
 
-rows! {
-    /// `kickdrift/closings/1`.
-    pub struct Claim {
-        input: Closings,
-        closings: Vec<Closing>,
-        ratios: Vec<Searched>,
-    }
-
-    struct Closing [p, q, m] {
-        p: u64,
-        q: u64,
-        m: u64,
-        s: Side,
-        rho: Side,
-        below_verlet: bool,
-    }
-
-    struct Side {
-        lo: f64,
-        hi: f64,
-        exact: Written<Rational> | null,
-        decimal: Decimal,
-    }
-
-    struct Searched {
-        complete: bool,
-    }
-}
-
-impl Recheck for Claim {
-    const TABLE: &'static str = "closings";
-    type Found = ();
-
-    fn again(&self, context: &Context) -> Result<(Value, ())> {
-        let list = self.input.ratios()?.list();
-        list.iter()
-            .try_for_each(|ratio| check_ratio(ratio.p(), ratio.q(), &context.limits()).map(drop))
-            .map_err(Fault::refused)?;
-        Ok((self.input.ask(&context.work())?.value(), ()))
-    }
-
-    fn check(&self, (): (), context: &Context) -> Result<Outcome> {
-        let whole = self.complete(&context.limits());
-        let holds = |row: &Closing| row.holds(&context.limits());
-        let mut outcome = context.outcome(ROUTE, ("the list", whole), &self.closings, holds)?;
-        if self.ratios.iter().any(|ratio| !ratio.complete) {
+impl Verify for Closings {
+    fn check(&self, found: &Vec<Found>, context: &Context) -> Result<Outcome> {
+        let limits = context.limits();
+        let counted = |found: &Found| located(found.ratio, self.counted(found, &limits));
+        let closings: Vec<&Closing> = found.iter().flat_map(|found| &found.closings).collect();
+        let mut outcome = context.each(ROUTE, found.iter().try_for_each(counted), &closings, |closing| {
+            self.is_in_range(closing).and_then(|()| closes(closing, &limits))
+        })?;
+        if found.iter().any(|found| !found.complete) {
             let remark = "ratios that are not complete: that a tongue closes there as often as it is listed, but for pairs";
             outcome.not_rechecked.push(remark.into());
         }
@@ -73,143 +34,93 @@ impl Recheck for Claim {
     }
 }
 
-impl Claim {
-    /// The closings lie in the range, and none of a ratio is missing.
-    fn complete(&self, limits: &Limits) -> Checked {
-        let (lo, hi) = &self.input.rho_range;
-        for row in &self.closings {
-            let (from, upto) = row.rho.both()?;
-            holds(from <= *hi && *lo <= upto, || "a closing lies outside the range of rho".into())?;
-        }
-        for (ratio, searched) in self.input.ratios()?.list().into_iter().zip(&self.ratios) {
-            let rows: Vec<&Closing> =
-                self.closings.iter().filter(|row| (row.p, row.q) == ratio.terms()).collect();
-            self.counted(ratio, searched.complete, &rows, (lo, hi), limits)?;
-        }
-        Ok(())
+impl Closings {
+    fn is_in_range(&self, closing: &Closing) -> Checked {
+        let (lo, hi) = &self.rho_range;
+        let is_inside = closing.rho.lo <= *hi && *lo <= closing.rho.hi;
+        holds(is_inside, || "it lies outside the range of rho".into())
     }
 
     /// As many closings as the resultants have zeros, where the ratio is complete; else as many, but for
     /// pairs, as the edges' orders at both ends of the range of ρ require.
-    fn counted(
-        &self,
-        ratio: Ratio,
-        complete: bool,
-        rows: &[&Closing],
-        (lo, hi): (&Rational, &Rational),
-        limits: &Limits,
-    ) -> Checked {
+    fn counted(&self, Found { ratio, closings, complete }: &Found, limits: &Limits) -> Checked {
         check_ratio(ratio.p(), ratio.q(), limits)?;
-        let finite = ratio.kicks() - 2;
-        let labels: Vec<u64> = (1..=finite)
-            .filter(|m| {
-                self.input.m.as_ref().is_none_or(|list| list.0.iter().any(|&(a, b)| (a..=b).contains(m)))
-            })
-            .collect();
+        let (lo, hi) = &self.rho_range;
         if !complete {
-            let orders = [lo, hi].map(|rho| Tongues::new(ratio, rho)?.gaps(1, finite.max(1)));
-            let [early, late] = orders;
-            for (early, late) in early?.iter().zip(&late?).filter(|(gap, _)| labels.contains(&gap.m)) {
-                let there = rows.iter().filter(|row| row.m == early.m).count() % 2 == 1;
-                let crossed = early.lower.entry != late.lower.entry;
-                let right = there == crossed || early.closed || late.closed;
-                holds(right, || format!("{ratio}, m = {}: its edges change their order {crossed}", early.m))?;
-            }
-            return Ok(());
+            return self.crossed(*ratio, closings);
         }
-        holds(ratio.kicks() <= COMPLETE_UP_TO, || {
-            format!("{ratio} is too long for elimination: it cannot be complete")
-        })?;
         // The clocks exchanged: s' = s ρ (p/q)², ρ' = 1/ρ, and the same half period, so the same labels.
         let mirrored = (hi.recip(), lo.recip());
-        if let Some(asked) = &self.input.m {
+        if let Some(asked) = &self.m {
             let search = Search { rho: mirrored, ..Search::default() };
             let truth = closings_of(ratio.inverse(), &asked.0, &search)?;
-            let all = truth.complete && truth.closings.len() == rows.len();
+            let all = truth.complete && truth.closings.len() == closings.len();
             return holds(all, || {
-                format!("{ratio} has {} closings of these labels, not {}", truth.closings.len(), rows.len())
+                format!("it has {} closings of these labels, not {}", truth.closings.len(), closings.len())
             });
         }
         for odd in [true, false] {
-            let said = rows.iter().filter(|row| (row.m % 2 == 1) == odd).count();
-            let truth =
-                count_closings(ratio.inverse(), Entry::of_tongue(odd), &mirrored.0, &mirrored.1).unwrap_or(0);
-            holds(said == truth, || format!("{ratio} has {truth} closings of this parity, not {said}"))?;
+            let count = closings.iter().filter(|closing| (closing.m % 2 == 1) == odd).count();
+            let truth = count_closings(ratio.inverse(), Entry::of_tongue(odd), &mirrored.0, &mirrored.1);
+            let truth = truth.unwrap_or(0);
+            holds(count == truth, || format!("it has {truth} closings of this parity, not {count}"))?;
+        }
+        Ok(())
+    }
+
+    /// Edges that change their order over the range of ρ do so at an odd number of closings.
+    fn crossed(&self, ratio: Ratio, closings: &[Closing]) -> Checked {
+        let (lo, hi) = &self.rho_range;
+        let gaps = |rho: &Rational| Tongues::new(ratio, rho)?.gaps(1, (ratio.kicks() - 2).max(1));
+        let (early, late) = (gaps(lo)?, gaps(hi)?);
+        let is_asked =
+            |m: u64| self.m.as_ref().is_none_or(|list| list.0.iter().any(|&(a, b)| (a..=b).contains(&m)));
+        for (early, late) in early.iter().zip(&late).filter(|(gap, _)| is_asked(gap.m)) {
+            let is_odd = closings.iter().filter(|closing| closing.m == early.m).count() % 2 == 1;
+            let crossed = early.lower.entry != late.lower.entry;
+            let right = is_odd == crossed || early.closed || late.closed;
+            holds(right, || format!("m = {}: its edges change their order {crossed}", early.m))?;
         }
         Ok(())
     }
 }
 
-impl Side {
-    /// The doubles and the decimals both hold the value: what they have in common.
-    fn both(&self) -> Checked<(Rational, Rational)> {
-        let ((a, b), (c, d)) = (exact(self.lo, self.hi)?, self.decimal.ends()?);
-        let (lo, hi) = (a.max(c), b.min(d));
-        holds(lo <= hi && lo.is_positive(), || {
-            "doubles and decimals have nothing positive in common".into()
-        })?;
-        Ok((lo, hi))
-    }
+/// The width of an enclosure, or a trillionth of a trillionth of its value where it is narrower.
+fn size(Enclosure { lo, hi }: &Enclosure) -> Rational {
+    (hi - lo).max(hi * fraction(1, 1 << 40) * fraction(1, 1 << 40))
 }
 
-/// One side of a closing's box.
-struct Interval {
-    lo: Rational,
-    hi: Rational,
-    exact: Option<Rational>,
-}
-
-impl Interval {
-    fn new(side: &Side, name: &str) -> Checked<Self> {
-        let (lo, hi) = side.both()?;
-        let exact = side.exact.as_ref().map(|x| x.0.clone());
-        let inside = exact.as_ref().is_none_or(|x| lo <= *x && *x <= hi);
-        holds(inside, || format!("{name} lies outside its own enclosure"))?;
-        Ok(Interval { lo, hi, exact })
-    }
-
-    /// Its width, or a trillionth of a trillionth of its value where it is narrower.
-    fn size(&self) -> Rational {
-        (&self.hi - &self.lo).max(&self.hi * fraction(1, 1 << 40) * fraction(1, 1 << 40))
-    }
-}
-
-impl Closing {
-    fn holds(&self, limits: &Limits) -> Checked {
-        let (p, q, m) = (self.p, self.q, self.m);
-        let ratio = check_ratio(p, q, limits)?;
-        holds((1..p + q - 1).contains(&m), || format!("{ratio} has the finite tongues 1 to {}", p + q - 2))?;
-        let pair = Entry::of_tongue(m % 2 == 1);
-        let (s, rho) = (Interval::new(&self.s, "s")?, Interval::new(&self.rho, "rho")?);
-        let four = fraction(4, 1);
-        let below = if self.below_verlet { s.lo < four } else { s.hi >= four };
-        holds(below, || "s* is on the other side of 4".into())?;
-        let vanish = |s: &Rational, rho: &Rational| {
-            let signs = signs(ratio, rho, s).all();
-            pair.iter().all(|&entry| signs[entry as usize] == Sign::Zero)
-        };
-        match (&s.exact, &rho.exact) {
-            (Some(s), Some(rho)) => {
-                holds(vanish(s, rho), || format!("its entries do not both vanish at s = {s}, rho = {rho}"))?;
-            }
-            (None, None) => {
-                // The simplest rationals of the box: no coincidence where they are short.
-                let [s, rho] = [&s, &rho].map(|side| simplest(&side.lo, &side.hi));
-                let short = s.denom().bits() + rho.denom().bits() <= 32;
-                holds(!(short && vanish(&s, &rho)), || format!("it is rational: s = {s}, rho = {rho}"))?;
-            }
-            _ => return Err(Fault::Wrong("s and rho are rational together".into())),
+fn closes(closing: &Closing, limits: &Limits) -> Checked {
+    let Closing { ratio, m, s, rho, exact, below_verlet } = closing;
+    check_ratio(ratio.p(), ratio.q(), limits)?;
+    let pair = Entry::of_tongue(m % 2 == 1);
+    let four = fraction(4, 1);
+    let below = if *below_verlet { s.lo < four } else { s.hi >= four };
+    holds(below, || "s* is on the other side of 4".into())?;
+    let vanish = |s: &Rational, rho: &Rational| {
+        let signs = signs(*ratio, rho, s).all();
+        pair.iter().all(|&entry| signs[entry as usize] == Sign::Zero)
+    };
+    match exact {
+        Some((s, rho)) => {
+            holds(vanish(s, rho), || format!("its entries do not both vanish at s = {s}, rho = {rho}"))?;
         }
-        // A hair to either side of the box, in units of its own size: there the edges have parted. Zeros move
-        // by no larger part of themselves than rho does (masses and eigenvalues), and rho by three of its
-        // sizes at most.
-        let margin = rho.size();
-        let reach = s.size() + &s.hi * fraction(4, 1) * &margin / &rho.lo;
-        let around = (&s.lo - &reach, &s.hi + &reach);
-        let [early, late] =
-            [&rho.lo - &margin, &rho.hi + &margin].map(|rho| order((ratio, m), pair, &rho, &around, limits));
-        holds(early? != late?, || "its edges do not exchange their order".into())
+        None => {
+            // The simplest rationals of the box: no coincidence where they are short.
+            let [s, rho] = [s, rho].map(|side| simplest(&side.lo, &side.hi));
+            let short = s.denom().bits() + rho.denom().bits() <= 32;
+            holds(!(short && vanish(&s, &rho)), || format!("it is rational: s = {s}, rho = {rho}"))?;
+        }
     }
+    // A hair to either side of the box, in units of its own size: there the edges have parted. Zeros move by
+    // no larger part of themselves than rho does (masses and eigenvalues), and rho by three of its sizes at
+    // most.
+    let margin = size(rho);
+    let reach = size(s) + &s.hi * fraction(4, 1) * &margin / &rho.lo;
+    let around = (&s.lo - &reach, &s.hi + &reach);
+    let [early, late] =
+        [&rho.lo - &margin, &rho.hi + &margin].map(|rho| order((*ratio, *m), pair, &rho, &around, limits));
+    holds(early? != late?, || "its edges do not exchange their order".into())
 }
 
 /// Whether the first entry's zero near s* lies below the second's, and that the label between them is m.
@@ -219,19 +130,16 @@ fn order(
     rho: &Rational,
     around: &(Rational, Rational),
     limits: &Limits,
-) -> Checked<std::cmp::Ordering> {
+) -> Checked<Ordering> {
     let mut first = ZeroOf::new((ratio, rho), pair[0], around.clone(), "s")?;
     let mut second = ZeroOf::new((ratio, rho), pair[1], around.clone(), "s")?;
     let order = part(&mut first, &mut second);
-    let (lower, upper) =
-        if order == Some(std::cmp::Ordering::Less) { (first, second) } else { (second, first) };
+    let (lower, upper) = if order == Some(Ordering::Less) { (first, second) } else { (second, first) };
     let middle = (&lower.hi + &upper.lo) / fraction(2, 1);
     let clocks = TwoClocks::with_rho(ratio, middle, rho.clone());
     let verdict = decide(&clocks, limits)?.verdict;
     let label = growth(&clocks, verdict, limits)?.label;
     holds(label == Some(m), || format!("the growing solution beside it turns {label:?} times"))?;
-    order.map_or_else(
-        || holds(false, || "its edges do not part beside it".into()).map(|()| std::cmp::Ordering::Equal),
-        Ok,
-    )
+    holds(order.is_some(), || "its edges do not part beside it".into())?;
+    Ok(order.unwrap_or(Ordering::Equal))
 }

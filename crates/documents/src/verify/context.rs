@@ -3,9 +3,10 @@
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
 
+pub use super::by_rows::Place;
 use crate::input::Arrays;
 use crate::question::{Watch, Work};
-use clocks::tongue::Progress;
+use clocks::tongue::Progress as Counter;
 use clocks::verdict::Limits;
 use number::error::{Error, Result};
 use number::parallel::try_map;
@@ -17,7 +18,7 @@ pub const REMEDY: &str = "whole documents, as kickdrift wrote them, can be reche
 /// of its largest.
 pub const ROOM: f64 = 1e-6;
 
-/// How much is rechecked, and what one row may cost.
+/// How much is checked, and what one row may cost.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
     /// The highest cost of an answer, as when it is asked for.
@@ -28,10 +29,10 @@ pub struct Options {
     pub folder: PathBuf,
 }
 
-/// Called with the progress: rows done, rows in all.
-pub type See<'a> = &'a (dyn Fn(u64, u64) + Sync);
+/// Hears how far a check is: rows done, rows in all.
+pub type Progress<'a> = &'a (dyn Fn(u64, u64) + Sync);
 
-/// The result of a recheck.
+/// The result of a check.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Outcome {
     /// The rows of the document; one where it has none.
@@ -46,12 +47,19 @@ pub struct Outcome {
     pub not_rechecked: Vec<String>,
 }
 
+impl Outcome {
+    /// So many rows hold by this route.
+    pub fn holding(route: &'static str, rows: u64) -> Outcome {
+        Outcome { rows, route, sample: None, failures: Vec::new(), not_rechecked: Vec::new() }
+    }
+}
+
 /// A row that does not hold.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Failure {
     /// Counted from 1; 0 for the document as a whole.
     pub row: u64,
-    /// The row's name, as `p = 7, q = 3, m = 4`.
+    /// The row's name, as `p = 7, q = 3, m = 4`; empty where the document has no such row.
     pub place: String,
     /// The reason.
     pub why: String,
@@ -92,49 +100,52 @@ pub fn holds(truth: bool, wrong: impl FnOnce() -> String) -> Checked {
     if truth { Ok(()) } else { Err(Fault::Wrong(wrong())) }
 }
 
-/// Holds a written value against the computed one.
-pub fn same<T: PartialEq + std::fmt::Display>(name: &str, written: T, truth: T) -> Checked {
-    holds(written == truth, || format!("{name} is {truth}, not {written}"))
+/// Says where something does not hold, in documents that have no row of it.
+pub fn located(place: impl std::fmt::Display, checked: Checked) -> Checked {
+    checked.map_err(|fault| match fault {
+        Fault::Wrong(why) => Fault::Wrong(format!("{place}: {why}")),
+        error => error,
+    })
 }
 
-/// A row that can be named.
-pub trait Place: Sync {
-    fn place(&self) -> String;
+/// Holds a value against the one found by another route.
+pub fn same<T: PartialEq + std::fmt::Display>(name: &str, found: T, truth: T) -> Checked {
+    holds(found == truth, || format!("{name} is {truth}, not {found}"))
 }
 
 /// Computing again shows progress as checking rows does.
 impl Watch for Context<'_> {
     fn announce(&self, _: &str, _: f64) {}
 
-    fn count(&self, length: u64, _: &str) -> Box<dyn Progress + '_> {
-        Box::new(Done { see: self.see, done: AtomicU64::new(0), count: length })
+    fn count(&self, length: u64, _: &str) -> Box<dyn Counter + '_> {
+        Box::new(Done { progress: self.progress, done: AtomicU64::new(0), count: length })
     }
 }
 
 struct Done<'a> {
-    see: Option<See<'a>>,
+    progress: Option<Progress<'a>>,
     done: AtomicU64,
     count: u64,
 }
 
-impl Progress for Done<'_> {
+impl Counter for Done<'_> {
     fn advance(&self, more: u64) {
         let done = self.done.fetch_add(more, Ordering::Relaxed) + more;
-        self.see.inspect(|see| see(done, self.count));
+        self.progress.inspect(|progress| progress(done, self.count));
     }
 }
 
 /// A check at work.
 pub struct Context<'a> {
     pub options: &'a Options,
-    pub see: Option<See<'a>>,
+    pub progress: Option<Progress<'a>>,
     /// The arrays that systems refer to.
     arrays: Arrays,
 }
 
 impl<'a> Context<'a> {
-    pub fn new(options: &'a Options, see: Option<See<'a>>) -> Self {
-        Context { options, see, arrays: Arrays::from(&options.folder) }
+    pub fn new(options: &'a Options, progress: Option<Progress<'a>>) -> Self {
+        Context { options, progress, arrays: Arrays::from(&options.folder) }
     }
 }
 
@@ -150,43 +161,38 @@ impl Context<'_> {
     }
 
     /// Checks all rows, side by side: what does not hold, in their order.
-    pub fn rows<T: Place>(&self, rows: &[T], check: impl Fn(&T) -> Checked + Sync) -> Result<Vec<Failure>> {
+    pub fn rows<T: Sync>(&self, rows: &[T], check: impl Fn(&T) -> Checked + Sync) -> Result<Vec<Failure>> {
         let (done, count) = (AtomicU64::new(0), rows.len() as u64);
-        let one = |&(i, row): &(usize, &T)| {
-            let failure = self.failure(i as u64 + 1, || row.place(), check(row));
+        let one = |(row, item): &(u64, &T)| {
+            let failure = failure(*row, check(item));
             let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-            self.see.inspect(|see| see(done, count));
+            self.progress.inspect(|progress| progress(done, count));
             failure
         };
-        let found: Vec<_> = try_map(&rows.iter().enumerate().collect::<Vec<_>>(), one)?;
+        let found: Vec<_> = try_map(&(1..).zip(rows).collect::<Vec<_>>(), one)?;
         Ok(found.into_iter().flatten().collect())
     }
 
-    pub fn failure(
-        &self,
-        row: u64,
-        place: impl FnOnce() -> String,
-        checked: Checked,
-    ) -> Result<Option<Failure>> {
-        match checked {
-            Ok(()) => Ok(None),
-            Err(Fault::Wrong(why)) => Ok(Some(Failure { row, place: place(), why })),
-            Err(Fault::Error(error)) => Err(error),
-        }
-    }
-
-    /// The outcome of a whole document (`whole`, named in words) and of its rows.
-    pub fn outcome<T: Place>(
+    /// The outcome of a whole document (`whole`) and of its rows.
+    pub fn each<T: Sync>(
         &self,
         route: &'static str,
-        (place, whole): (&str, Checked),
+        whole: Checked,
         rows: &[T],
         check: impl Fn(&T) -> Checked + Sync,
     ) -> Result<Outcome> {
-        let whole = self.failure(0, || place.into(), whole)?;
+        let whole = failure(0, whole)?;
         let mut failures = self.rows(rows, check)?;
         failures.extend(whole);
-        let rows = rows.len() as u64;
-        Ok(Outcome { rows, route, sample: None, failures, not_rechecked: Vec::new() })
+        Ok(Outcome { failures, ..Outcome::holding(route, rows.len() as u64) })
+    }
+}
+
+/// The failure of a row, 0 for the document as a whole, which whoever has the document names.
+pub fn failure(row: u64, checked: Checked) -> Result<Option<Failure>> {
+    match checked {
+        Ok(()) => Ok(None),
+        Err(Fault::Wrong(why)) => Ok(Some(Failure { row, place: String::new(), why })),
+        Err(Fault::Error(error)) => Err(error),
     }
 }

@@ -3,114 +3,72 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use super::again::{Left, Recheck, asked};
+use super::Verify;
+use super::again::Excluded;
 use super::context::{Checked, Context, Fault, Outcome, holds};
 use crate::question::Curves;
-use clocks::resonance::Angle;
+use clocks::resonance::{Angle, Curve, CurvePoint};
 use number::error::Result;
-use number::{Ball, ExactSign, Laurent, Rational, Sign, rational};
+use number::{Ball, Laurent, Rational, rational};
 
 const ROUTE: &str = "theta of every h1 by an arctangent, h2 from 1/T_half = a/h1 + b/h2, both enclosed; which pieces lie \
                      in the window, from the heights of the branches' ends, in doubles";
-
-rows! {
-    /// `kickdrift/curves/1`.
-    pub struct Claim {
-        input: Curves,
-        curves: Vec<Curve>,
-    }
-
-    struct Curve [a, b] {
-        a: i64,
-        b: i64,
-        points: Vec<Point>,
-    }
-
-    #[derive(Copy)]
-    struct Point {
-        h1: f64,
-        h2: f64,
-        theta_over_pi: f64,
-        piece: u64,
-    }
-}
-
-/// The most curves and points that a document can hold.
-const MOST: i128 = 20_000_000;
 
 /// Heights in doubles are right to some units in the last place; what is this near the border may lie on
 /// either side.
 const NEAR: f64 = 1e-9;
 
-/// Below such a spacing of θ/π points fall on the same doubles of h1.
-const FINEST: f64 = 1e-13;
-
 /// The fast clock's limit, θ = π: curves end before it.
 const LIMIT: f64 = 1.0 - 1e-7;
 
-impl Recheck for Claim {
-    const TABLE: &'static str = "curves";
-    const LEFT: &'static [Left] = &[
+impl Verify for Curves {
+    const EXCLUDED: &'static [Excluded] = &[
         ("input.step1", "curves do not depend on the spacing of a grid"),
         ("input.step2", "curves do not depend on the spacing of a grid"),
     ];
-    asked!(Curves);
 
-    fn check(&self, _: Self::Found, context: &Context) -> Result<Outcome> {
-        let window = Window::new(&self.input);
-        let whole = self.complete(&window);
-        context.outcome(ROUTE, ("the list", whole), &self.curves, |curve| {
+    fn check(&self, curves: &Vec<Curve>, context: &Context) -> Result<Outcome> {
+        let window = Window::new(self);
+        let shown: Vec<&Curve> = curves.iter().filter(|curve| !curve.pieces.is_empty()).collect();
+        context.each(ROUTE, complete(self, &window, &shown), &shown, |curve| {
             window.pieces(curve)?;
-            curve.points.iter().try_for_each(|point| point.holds(curve, &self.input.lambda1))
+            curve.pieces.iter().flatten().try_for_each(|point| is_on(point, curve, &self.lambda1))
         })
     }
 }
 
-impl Claim {
-    /// All curves through the window are there, by a, then b.
-    fn complete(&self, window: &Window) -> Checked {
-        let ((a0, a1), (b0, b1), samples) = (self.input.a, self.input.b, self.input.samples as u64);
-        let count = |lo: i64, hi: i64| i128::from(hi) - i128::from(lo) + 1;
-        let points = count(a0, a1).saturating_mul(count(b0, b1)).saturating_mul(samples.into());
-        holds(points <= MOST && samples >= 2, || "more points than a document holds, or none".into())?;
-        holds(self.input.lambda1.sign() == Sign::Positive, || "lambda1 is not positive".into())?;
-        let mut said = self.curves.iter().map(|curve| (curve.a, curve.b)).peekable();
-        for (a, b) in (a0..=a1).flat_map(|a| (b0..=b1).map(move |b| (a, b))) {
-            let there = said.next_if_eq(&(a, b)).is_some();
-            let passes = || window.expected(a, b).is_some_and(|pieces| pieces > 0);
-            holds(there || !passes(), || {
-                format!("the curve a = {a}, b = {b} passes through the window and is missing")
-            })?;
-        }
-        let next = said.next();
-        holds(next.is_none(), || format!("the curve {:?} does not belong here", next.unwrap_or_default()))
+/// All curves through the window are there, by a, then b.
+fn complete(question: &Curves, window: &Window, curves: &[&Curve]) -> Checked {
+    let ((a0, a1), (b0, b1)) = (question.a, question.b);
+    let mut found = curves.iter().map(|curve| (curve.a, curve.b)).peekable();
+    for (a, b) in (a0..=a1).flat_map(|a| (b0..=b1).map(move |b| (a, b))) {
+        let there = found.next_if_eq(&(a, b)).is_some();
+        let passes = || window.expected(a, b).is_some_and(|pieces| pieces > 0);
+        holds(there || !passes(), || {
+            format!("the curve a = {a}, b = {b} passes through the window and is missing")
+        })?;
     }
+    let next = found.next();
+    holds(next.is_none(), || format!("the curve {:?} does not belong here", next.unwrap_or_default()))
 }
 
-/// The window in doubles, and the number of samples.
+/// The window in doubles.
 struct Window {
     h1: (f64, f64),
     h2: (f64, f64),
     /// θ/π at the ends of h1, where the fast clock has one.
     share: (f64, f64),
     root: f64,
-    samples: u64,
 }
 
 impl Window {
-    fn new(input: &Curves) -> Window {
+    fn new(question: &Curves) -> Window {
         let ends = |(lo, hi): &(Laurent, Laurent)| (lo.to_f64(), hi.to_f64());
-        let (h1, root) = (ends(&input.h1_range), input.lambda1.to_f64().sqrt());
+        let (h1, root) = (ends(&question.h1_range), question.lambda1.to_f64().sqrt());
         let share = |h1: f64| (h1 * root / 2.0).clamp(0.0, 1.0).asin() / FRAC_PI_2;
         // Neither end itself: a = 0 has a limit there, and a = 1 none.
         let share = |h1: f64| share(h1).clamp(1e-300, 1.0 - 1e-15);
-        Window {
-            share: (share(h1.0), share(h1.1)),
-            h1,
-            h2: ends(&input.h2_range),
-            root,
-            samples: input.samples as u64,
-        }
+        Window { share: (share(h1.0), share(h1.1)), h1, h2: ends(&question.h2_range), root }
     }
 
     /// How many pieces of a curve lie in the window; `None` where doubles leave it open, a height being near
@@ -154,76 +112,56 @@ impl Window {
         }
     }
 
-    /// There are as many pieces as there should be, each from one border to the next, its points inside and
-    /// evenly spaced in θ.
+    /// There are as many pieces as there should be, each from one border to the next, its points inside.
     fn pieces(&self, curve: &Curve) -> Checked {
-        let pieces: Vec<&[Point]> = curve.points.chunk_by(|p, q| p.piece == q.piece).collect();
-        let expected = self.expected(curve.a, curve.b);
-        holds(!pieces.is_empty() && expected.is_none_or(|count| count == pieces.len()), || {
-            format!("it has {} pieces, not {}", pieces.len(), expected.unwrap_or(1))
+        let (expected, count) = (self.expected(curve.a, curve.b), curve.pieces.len());
+        holds(expected.is_none_or(|expected| expected == count), || {
+            format!("it has {count} pieces, not {}", expected.unwrap_or_default())
         })?;
-        let ordered = curve.points.windows(2).all(|pair| pair[0].h1 < pair[1].h1);
-        let numbered = (0..).zip(&pieces).all(|(n, piece)| piece[0].piece == n);
-        holds(ordered && numbered, || "its points or pieces are out of order".into())?;
-        let length = |piece: &[Point]| piece[piece.len() - 1].theta_over_pi - piece[0].theta_over_pi;
-        let whole: f64 = pieces.iter().map(|piece| length(piece)).sum();
-        pieces.iter().try_for_each(|piece| self.is_whole(piece, length(piece) / whole))
+        let points: Vec<&CurvePoint> = curve.pieces.iter().flatten().collect();
+        let is_ordered = points.windows(2).all(|pair| pair[0].h1 < pair[1].h1);
+        holds(is_ordered, || "its points or pieces are out of order".into())?;
+        curve.pieces.iter().try_for_each(|piece| self.is_whole(piece))
     }
 
-    /// A piece that has this share of its curve.
-    fn is_whole(&self, piece: &[Point], share: f64) -> Checked {
-        let [first, last] = [piece[0], piece[piece.len() - 1]];
+    fn is_whole(&self, piece: &[CurvePoint]) -> Checked {
+        let [Some(first), Some(last)] = [piece.first(), piece.last()] else {
+            return holds(false, || "a piece has no points".into());
+        };
         let on = |x: f64, end: f64| (x - end).abs() <= NEAR * end.abs();
-        let leaves = |x: &Point| on(x.h2, self.h2.0) || on(x.h2, self.h2.1);
+        let leaves = |x: &CurvePoint| on(x.h2, self.h2.0) || on(x.h2, self.h2.1);
+        let left =
+            |point: &CurvePoint| format!("beside h1 = {} the crossing of the border is missing", point.h1);
         // Where the window reaches h1 = 0 a curve begins at the least double.
         let begins = self.h1.0 <= 0.0 && first.h1 < f64::MIN_POSITIVE / NEAR.powi(4);
-        holds(begins || on(first.h1, self.h1.0) || leaves(&first), || left(&first))?;
-        holds(last.theta_over_pi >= LIMIT || on(last.h1, self.h1.1) || leaves(&last), || left(&last))?;
+        holds(begins || on(first.h1, self.h1.0) || leaves(first), || left(first))?;
+        holds(last.theta_over_pi >= LIMIT || on(last.h1, self.h1.1) || leaves(last), || left(last))?;
         let within = |x: f64, (lo, hi): (f64, f64)| x >= lo * (1.0 - NEAR) && x <= hi * (1.0 + NEAR);
         let outside = piece.iter().find(|point| !(within(point.h1, self.h1) && within(point.h2, self.h2)));
         holds(outside.is_none(), || {
-            format!("h1 = {} lies outside the window", outside.map_or(0.0, |p| p.h1))
-        })?;
-        let spacing = (last.theta_over_pi - first.theta_over_pi) / (piece.len() - 1).max(1) as f64;
-        if spacing < FINEST {
-            return Ok(());
-        }
-        let count = (share * self.samples as f64).round().max(2.0);
-        holds((piece.len() as f64 - count).abs() <= 1.0, || {
-            format!("{} of {count} samples are there", piece.len())
-        })?;
-        let places = (0..).zip(piece).map(|(k, point)| (point, first.theta_over_pi + f64::from(k) * spacing));
-        let uneven = places
-            .into_iter()
-            .find(|(point, at)| (point.theta_over_pi - at).abs() > NEAR * spacing + FINEST / (1.0 - at));
-        holds(uneven.is_none(), || format!("h1 = {} is no sample", uneven.map_or(0.0, |(point, _)| point.h1)))
+            format!("h1 = {} lies outside the window", outside.map_or(0.0, |point| point.h1))
+        })
     }
 }
 
-fn left(point: &Point) -> String {
-    format!("beside h1 = {} the crossing of the border is missing", point.h1)
-}
-
-impl Point {
-    fn holds(&self, curve: &Curve, lambda1: &Laurent) -> Checked {
-        const BITS: u32 = 128;
-        let Point { h1, h2, theta_over_pi: said, .. } = *self;
-        let exact = rational::from_f64_exact(h1).filter(|_| h1 > 0.0);
-        let exact = exact.ok_or_else(|| Fault::Wrong(format!("h1 = {h1} is no step")))?;
-        let s = &Laurent::from_rational(&exact * &exact) * lambda1;
-        let angle =
-            Angle::new(s).ok_or_else(|| Fault::Wrong(format!("h1 = {h1} lies beyond the Verlet limit")))?;
-        let share = angle.over_pi(BITS);
-        let integer = |n: i64| Ball::from_rational(&Rational::from_integer(n.into()), BITS);
-        let denominator = share.sub(&integer(curve.a), BITS);
-        let step = Ball::from_rational(&exact, BITS).mul(&integer(curve.b), BITS).div(&denominator, BITS);
-        let step = step.ok_or_else(|| Fault::Wrong(format!("h1 = {h1} is where the curve has no point")))?;
-        // Written as the nearest doubles, to within one unit in the last place.
-        let near = |said: f64, x: &Ball| {
-            let (lo, hi) = x.to_f64_enclosure();
-            lo.next_down() <= said && said <= hi.next_up()
-        };
-        holds(near(said, &share), || format!("theta/pi at h1 = {h1} is {}, not {said}", share.mid_f64()))?;
-        holds(near(h2, &step), || format!("h2 at h1 = {h1} is {}, not {h2}", step.mid_f64()))
-    }
+fn is_on(point: &CurvePoint, curve: &Curve, lambda1: &Laurent) -> Checked {
+    const BITS: u32 = 128;
+    let CurvePoint { h1, h2, theta_over_pi: said } = *point;
+    let exact = rational::from_f64_exact(h1).filter(|_| h1 > 0.0);
+    let exact = exact.ok_or_else(|| Fault::Wrong(format!("h1 = {h1} is no step")))?;
+    let s = &Laurent::from_rational(&exact * &exact) * lambda1;
+    let angle =
+        Angle::new(s).ok_or_else(|| Fault::Wrong(format!("h1 = {h1} lies beyond the Verlet limit")))?;
+    let share = angle.over_pi(BITS);
+    let integer = |n: i64| Ball::from_rational(&Rational::from_integer(n.into()), BITS);
+    let denominator = share.sub(&integer(curve.a), BITS);
+    let step = Ball::from_rational(&exact, BITS).mul(&integer(curve.b), BITS).div(&denominator, BITS);
+    let step = step.ok_or_else(|| Fault::Wrong(format!("h1 = {h1} is where the curve has no point")))?;
+    // Written as the nearest doubles, to within one unit in the last place.
+    let near = |said: f64, x: &Ball| {
+        let (lo, hi) = x.to_f64_enclosure();
+        lo.next_down() <= said && said <= hi.next_up()
+    };
+    holds(near(said, &share), || format!("theta/pi at h1 = {h1} is {}, not {said}", share.mid_f64()))?;
+    holds(near(h2, &step), || format!("h2 at h1 = {h1} is {}, not {h2}", step.mid_f64()))
 }

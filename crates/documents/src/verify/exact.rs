@@ -11,7 +11,7 @@ use clocks::verdict::{
     Decidable, Decision, HalfSigns, Kind, Limits, Tier, Verdict, decide_from, exact_trace,
 };
 use number::error::{Error, Result};
-use number::{Ball, ExactSign, Laurent, Ratio, Rational, Real, Sign};
+use number::{Ball, ExactSign, Laurent, Ratio, Rational, Real, Sign, rational};
 
 /// p/q, in lowest terms as it has to be written.
 pub fn lowest(p: u64, q: u64) -> Checked<Ratio> {
@@ -153,6 +153,17 @@ pub fn ln_multiplier<S: Real>(trace: &S, bits: u32) -> Option<Ball> {
     square -= S::from_rational(&Rational::from_integer(4.into()));
     let root = square.enclosure(bits).sqrt(bits)?;
     trace.enclosure(bits).abs().add(&root, bits).scale2(-1).ln(bits)
+}
+
+/// Whether two enclosures can be of one value.
+pub fn meets(a: &Ball, b: &Ball) -> bool {
+    a.compare(b).is_none_or(std::cmp::Ordering::is_eq)
+}
+
+/// Whether doubles can enclose the ball's value; an infinite end encloses all.
+pub fn encloses((lo, hi): (f64, f64), ball: &Ball) -> bool {
+    let (lo, hi) = (rational::from_f64_exact(lo), rational::from_f64_exact(hi));
+    lo.is_none_or(|lo| lo <= ball.upper()) && hi.is_none_or(|hi| ball.lower() <= hi)
 }
 
 /// The rational n/d.

@@ -1,4 +1,4 @@
-//! Documents rechecked: computed again from their inputs, then held against the mathematics by another route
+//! Documents verified: computed again from their inputs, then held against the mathematics by another route
 //! than the one that made them.
 //!
 //! One input gives one document, so whatever was changed afterwards differs from the document computed again:
@@ -28,47 +28,18 @@
 //! | advise | strings, orbits in balls | the full period in balls of 512 bits, pivots of the action |
 //!
 //! ```
-//! use kickdrift_documents::verify::{Claim, Options};
+//! use kickdrift_documents::verify::{CheckedDocument, Options};
 //! let text = r#"{"schema": "kickdrift/proposition/1", "kickdrift": {"version": "0.1.0", "command": "proposition"},
 //!     "input": {"max": "2"}, "holds": true, "resonant_points": 1, "curves": 5, "failures": [], "witnesses": [{"p": 2, "q": 1, "m": 1, "a": 0, "b": 1}]}"#;
-//! let outcome = Claim::read(text).unwrap().recheck(&Options::default(), None).unwrap();
+//! let outcome = CheckedDocument::read(text).unwrap().verify(&Options::default(), None).unwrap();
 //! assert!(outcome.failures.is_empty(), "{:?}", outcome.failures);
 //! // Another b, and the first row fails.
-//! let outcome = Claim::read(&text.replace("\"b\": 1", "\"b\": 0")).unwrap().recheck(&Options::default(), None).unwrap();
-//! assert_eq!(outcome.failures[0].row, 1);
+//! let forged = CheckedDocument::read(&text.replace("\"b\": 1", "\"b\": 0")).unwrap();
+//! assert_eq!(forged.verify(&Options::default(), None).unwrap().failures[0].row, 1);
 //! ```
 
-/// Rows of documents: what the other route needs of them. A field `T | null` must be there and may be null,
-/// one of type `Option` may be missing. An input knows all of its fields. A row is named by the fields in
-/// brackets.
-macro_rules! rows {
-    ($(
-        $(#[$row:meta])*
-        $visible:vis struct $name:ident $([$($by:ident),*])? {
-            $($(#[$attribute:meta])* $seen:vis $field:ident: $type:ty $(| $null:ident)?,)*
-        }
-    )*) => {
-        $(
-            #[derive(Clone, Debug, serde::Deserialize)]
-            $(#[$row])*
-            $visible struct $name {
-                $(
-                    $(#[$attribute])*
-                    $(#[doc = stringify!($null)] #[serde(deserialize_with = "crate::verify::written::nullable")])?
-                    $seen $field: rows!(@type $type $(, $null)?),
-                )*
-            }
-
-            $(impl $crate::verify::context::Place for $name {
-                fn place(&self) -> String {
-                    [$(format!(concat!(stringify!($by), " = {}"), self.$by)),*].join(", ")
-                }
-            })?
-        )*
-    };
-    (@type $type:ty) => { $type };
-    (@type $type:ty, $null:ident) => { Option<$type> };
-}
+#[macro_use]
+mod by_rows;
 
 mod advise;
 mod again;
@@ -92,167 +63,182 @@ mod verdict;
 mod word;
 mod written;
 
+use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
 use serde_path_to_error::{Path, Segment};
 
-use self::again::{Compared, Recheck, compare};
+use self::again::{Compared, Excluded, compare, place};
+use self::by_rows::ByRows;
 use self::context::{Context, REMEDY};
 use crate::input::json;
 use crate::input::kind::{is_asked, of_another_kind};
+use crate::question::{
+    Advised, Bands, Closings, Compare, CompareMethods, Curves, Half, Methods, Polynomial, Proposition,
+    Question, Simulate, Survey, System, Verdict, Word,
+};
 use number::error::{Error, Result};
 
-pub use context::{Failure, Options, Outcome, See};
+pub use context::{Failure, Options, Outcome, Progress};
 
-macro_rules! claims {
-    ($($(#[$condition:meta])? $name:literal $variant:ident $claim:path;)*) => {
-        #[derive(Clone, Debug)]
-        enum Rows {
-            $($(#[$condition])? $variant(Box<$claim>),)*
-        }
+/// A question whose answers are held against another route.
+trait Verify: Question + DeserializeOwned {
+    /// Values of its documents that the input does not determine.
+    const EXCLUDED: &'static [Excluded] = &[];
 
-        impl Rows {
-            fn read(name: &str, document: Map<String, Value>) -> Option<Result<Rows>> {
-                match name {
-                    $($(#[$condition])? $name => Some(typed(document).map(|own| Rows::$variant(Box::new(own)))),)*
-                    _ => None,
-                }
-            }
-
-            fn recheck(&self, document: &Map<String, Value>, how: How, context: &Context) -> Result<Outcome> {
-                match self {
-                    $($(#[$condition])? Rows::$variant(rows) => recheck(rows.as_ref(), document, how, context),)*
-                }
-            }
-
-            fn again(&self, document: &Map<String, Value>, context: &Context) -> Result<Option<Again>> {
-                match self {
-                    $($(#[$condition])? Rows::$variant(rows) => again(rows.as_ref(), document, context),)*
-                }
-            }
-        }
-
-        impl Claim {
-            /// NAME of all documents `kickdrift/NAME/1` that can be rechecked.
-            pub const NAMES: &'static [&'static str] = &[$($(#[$condition])? $name),*];
-
-            /// NAME in `kickdrift/NAME/1`.
-            pub fn name(&self) -> &'static str {
-                match self.rows {
-                    $($(#[$condition])? Rows::$variant(_) => $name,)*
-                }
-            }
-        }
-    };
+    /// The outcome of the other route. The answer is typed: its document is equal to the one that is checked.
+    fn check(&self, answer: &Self::Answer, context: &Context) -> Result<Outcome>;
 }
 
-claims! {
-    "tongues" Tongues tongues::Claim;
-    "closings" Closings closings::Claim;
-    "survey" Survey survey::Claim;
-    "verdict" Verdict verdict::Claim;
-    "map" Map map::Claim;
-    "compare" Compare compare::Claim;
-    "compare-methods" CompareMethods side::Claim;
-    "curves" Curves curves::Claim;
-    "polynomial" Polynomial polynomial::Claim;
-    "proposition" Proposition proposition::Claim;
-    "run" Run run::Claim;
-    "half" Half half::Claim;
-    "bands" Bands bands::Claim;
-    "word" Word word::Claim;
-    "methods" Methods word::Listed;
-    "advise" Advise advise::Claim;
-    "advise-system" AdviseSystem advise::Molecule;
-    "advise-direct" AdviseDirect advise::Direct;
-    "system-verdict" System system::Claim;
-    "system-map" SystemMap system::Claim;
-    "system-intervals" SystemIntervals system::intervals::Claim;
-    "simulate" Simulate system::Simulated;
+/// The other route, once nothing differs from the document computed again.
+type Check<'a> = Box<dyn FnOnce() -> Result<Outcome> + 'a>;
+
+/// The document computed again, and the other route.
+type Again<'a> = (Value, Check<'a>);
+
+/// Documents of one kind.
+#[derive(Debug)]
+struct Kind {
+    /// NAME in `kickdrift/NAME/1`.
+    name: &'static str,
+    /// The key of the rows; empty where the document is one row itself.
+    table: &'static str,
+    excluded: &'static [Excluded],
+    /// Whether the input alone says what was asked.
+    by_input: bool,
+    /// That the question can be read.
+    read: fn(&Map<String, Value>) -> Result<()>,
+    again: for<'a> fn(&Map<String, Value>, &'a Context<'a>) -> Result<Again<'a>>,
 }
 
-/// A document: as it stands, and in typed rows.
+impl Kind {
+    const fn of<Q: Verify + 'static>(name: &'static str, table: &'static str) -> Kind {
+        Kind {
+            name,
+            table,
+            excluded: Q::EXCLUDED,
+            by_input: true,
+            read: |document| asked::<Q>(document).map(drop),
+            again: |document, context| {
+                let question: Q = asked(document)?;
+                let answer = question.answer(&context.work())?;
+                let document = question.document(&answer).value();
+                Ok((document, Box::new(move || question.check(&answer, context))))
+            },
+        }
+    }
+}
+
+/// All documents that can be verified.
+const KINDS: &[Kind] = &[
+    ByRows::of::<tongues::Claim>("tongues"),
+    Kind::of::<Closings>("closings", "closings"),
+    Kind::of::<Survey>("survey", "thinnest"),
+    Kind::of::<Verdict>("verdict", ""),
+    map::KIND,
+    Kind::of::<Compare>("compare", "offenders"),
+    Kind::of::<CompareMethods>("compare-methods", "methods"),
+    Kind::of::<Curves>("curves", "curves"),
+    Kind::of::<Polynomial>("polynomial", "terms"),
+    Kind::of::<Proposition>("proposition", "witnesses"),
+    ByRows::of::<run::Claim>("run"),
+    Kind::of::<Half>("half", "entries"),
+    Kind::of::<Bands>("bands", "sectors"),
+    Kind::of::<Word>("word", "intervals"),
+    Kind::of::<Methods>("methods", "methods"),
+    Kind::of::<Advised>("advise", "rows"),
+    Kind::of::<Advised>("advise-system", "rows"),
+    Kind::of::<Advised>("advise-direct", "rows"),
+    Kind::of::<System>("system-verdict", "rows"),
+    Kind::of::<System>("system-map", "rows"),
+    Kind::of::<System>("system-intervals", "stretches"),
+    Kind::of::<Simulate>("simulate", "series"),
+];
+
+/// A document that is to be verified.
 #[derive(Clone, Debug)]
-pub struct Claim {
+pub struct CheckedDocument {
     document: Map<String, Value>,
-    rows: Rows,
+    kind: &'static Kind,
 }
 
 /// A document computed again from its input, against which others of the same input can be held.
 #[derive(Clone, Debug)]
-pub struct Again {
+pub struct Recomputed {
     document: Value,
     /// The schema and the input of the document that it was computed from.
     head: [Option<Value>; 2],
-    compare: fn(&Map<String, Value>, Value) -> Compared,
 }
 
-/// Whether the document is computed again and compared, before another route is taken.
-#[derive(Clone, Copy, PartialEq)]
-enum How {
-    Both,
-    OtherRouteAlone,
-}
-
-impl Claim {
-    /// Reads a document: JSON into rows.
+impl CheckedDocument {
+    /// Reads a document and its question.
     ///
     /// # Errors
-    /// A text that is no JSON, a schema that cannot be rechecked, a head that kickdrift does not write, a
-    /// field that is missing or not what the schema says; named by its path.
-    pub fn read(text: &str) -> Result<Claim> {
+    /// A text that is no JSON, a schema that cannot be verified, a head that kickdrift does not write, a
+    /// field of the input that is missing or wrong; named by its path.
+    pub fn read(text: &str) -> Result<CheckedDocument> {
         let document: Map<String, Value> =
             json::from_str(text).map_err(|cause| Error::input("document", "no JSON", not_json(&cause)))?;
         let schema = document.get("schema").cloned().unwrap_or_default();
         let name = schema.as_str().and_then(|name| name.strip_prefix("kickdrift/")?.strip_suffix("/1"));
-        let mut rows = document.clone();
-        rows.retain(|key, _| !["schema", "kickdrift"].contains(&key.as_str()));
-        let Some(rows) = name.and_then(|name| Rows::read(name, rows)) else {
+        let Some(kind) = name.and_then(|name| KINDS.iter().find(|kind| kind.name == name)) else {
             if let Some(schema) = schema.as_str().filter(|schema| is_asked(schema)) {
                 return Err(of_another_kind(schema, "answers"));
             }
-            let known = Claim::NAMES.join(", ");
+            let known = KINDS.iter().map(|kind| kind.name).collect::<Vec<_>>().join(", ");
             let remedy = format!("can be rechecked: kickdrift/NAME/1, NAME one of {known}");
             return Err(Error::input("schema", schema, remedy));
         };
-        let rows = rows?;
+        (kind.read)(&document)?;
         head(&document)?;
-        Ok(Claim { document, rows })
+        Ok(CheckedDocument { document, kind })
     }
 
-    /// Rechecks every claim: the document is computed again and compared value by value; where nothing
-    /// differs, another route is taken. Progress is shown to `see`.
+    /// NAME in `kickdrift/NAME/1`.
+    pub fn name(&self) -> &'static str {
+        self.kind.name
+    }
+
+    /// Computes the document again and compares it value by value; where nothing differs, another route is
+    /// taken to the answer. Progress is shown to `progress`.
     ///
     /// # Errors
-    /// An input that makes no sense, and a recheck that costs more than the options allow; what does not hold
+    /// An input that makes no sense, and a check that costs more than the options allow; what does not hold
     /// is no error but a [`Failure`].
-    pub fn recheck(&self, options: &Options, see: Option<See>) -> Result<Outcome> {
-        self.rows.recheck(&self.document, How::Both, &Context::new(options, see))
+    pub fn verify(&self, options: &Options, progress: Option<Progress>) -> Result<Outcome> {
+        let context = Context::new(options, progress);
+        let (again, check) = (self.kind.again)(&self.document, &context)?;
+        let Compared { failures, excluded } = self.compare(again);
+        if !failures.is_empty() {
+            let (rows, route) = (self.rows().map_or(1, |rows| rows.len() as u64), "computed again");
+            return Ok(Outcome { failures, not_rechecked: excluded, ..Outcome::holding(route, rows) });
+        }
+        let mut outcome = check()?;
+        for failure in outcome.failures.iter_mut().filter(|failure| failure.place.is_empty()) {
+            failure.place = self.row(failure.row).map(place).unwrap_or_default();
+        }
+        outcome.not_rechecked.splice(0..0, excluded);
+        outcome.not_rechecked.push(QUESTION.into());
+        Ok(outcome)
     }
 
-    /// Takes the other route alone: it holds what is written against the mathematics, whichever version wrote
-    /// it.
+    /// The document computed again from its input, for [`CheckedDocument::differences`]; `None` of a kind
+    /// whose rows say what was asked, too.
     ///
     /// # Errors
-    /// As [`Claim::recheck`].
-    pub fn recheck_apart(&self, options: &Options, see: Option<See>) -> Result<Outcome> {
-        self.rows.recheck(&self.document, How::OtherRouteAlone, &Context::new(options, see))
+    /// As [`CheckedDocument::verify`].
+    pub fn recompute(&self, options: &Options) -> Result<Option<Recomputed>> {
+        let context = Context::new(options, None);
+        let again = || (self.kind.again)(&self.document, &context);
+        let by_input = self.kind.by_input.then(again).transpose()?;
+        Ok(by_input.map(|(document, _)| Recomputed { document, head: asked_in(&self.document) }))
     }
 
-    /// The document computed again from its input, for [`Claim::apart`]; `None` of a kind whose rows say what
-    /// was asked, too.
-    ///
-    /// # Errors
-    /// As [`Claim::recheck`].
-    pub fn again(&self, options: &Options) -> Result<Option<Again>> {
-        self.rows.again(&self.document, &Context::new(options, None))
-    }
-
-    /// The first part of [`Claim::recheck`] against a document that was computed again before: the values
-    /// that differ. `None` where that one has another schema or another input.
-    pub fn apart(&self, again: &Again) -> Option<Vec<Failure>> {
+    /// The first part of [`CheckedDocument::verify`] against a document that was computed again before: the
+    /// values that differ. `None` where that one has another schema or another input.
+    pub fn differences(&self, again: &Recomputed) -> Option<Vec<Failure>> {
         let alike = again.head == asked_in(&self.document);
-        alike.then(|| (again.compare)(&self.document, again.document.clone()).failures)
+        alike.then(|| self.compare(again.document.clone()).failures)
     }
 
     /// About how many kicks the slower route composes; 0 where these are few.
@@ -260,48 +246,39 @@ impl Claim {
     /// # Errors
     /// An input of the document that makes no sense.
     pub fn work(&self, options: &Options) -> Result<u64> {
-        match &self.rows {
-            Rows::Map(claim) => claim.work(options),
-            _ => Ok(0),
-        }
+        if self.kind.name == map::KIND.name { map::work(&asked(&self.document)?, options) } else { Ok(0) }
     }
-}
 
-fn recheck<R: Recheck>(
-    rows: &R,
-    document: &Map<String, Value>,
-    how: How,
-    context: &Context,
-) -> Result<Outcome> {
-    let (again, found) = rows.again(context)?;
-    if how == How::OtherRouteAlone {
-        return rows.check(found, context);
+    fn compare(&self, again: Value) -> Compared {
+        compare(&self.document, again, self.kind.table, self.kind.excluded)
     }
-    let Compared { failures, left } = compared::<R>(document, again);
-    if failures.is_empty() {
-        let mut outcome = rows.check(found, context)?;
-        outcome.not_rechecked.splice(0..0, left);
-        outcome.not_rechecked.push(QUESTION.into());
-        return Ok(outcome);
-    }
-    let rows = document.get(R::TABLE).and_then(Value::as_array).map_or(1, |rows| rows.len() as u64);
-    Ok(Outcome { rows, route: "computed again", sample: None, failures, not_rechecked: left })
-}
 
-fn again<R: Recheck>(rows: &R, object: &Map<String, Value>, context: &Context) -> Result<Option<Again>> {
-    let by_input = (!R::READS_ROWS).then(|| rows.again(context)).transpose()?;
-    Ok(by_input.map(|(document, _)| Again { document, head: asked_in(object), compare: compared::<R> }))
+    fn rows(&self) -> Option<&Vec<Value>> {
+        self.document.get(self.kind.table)?.as_array()
+    }
+
+    /// A row by its number from 1; of a document without rows that is the document itself.
+    fn row(&self, number: u64) -> Option<&Map<String, Value>> {
+        let place = usize::try_from(number).ok()?.checked_sub(1)?;
+        if self.kind.table.is_empty() { Some(&self.document) } else { self.rows()?.get(place)?.as_object() }
+    }
 }
 
 fn asked_in(document: &Map<String, Value>) -> [Option<Value>; 2] {
     ["schema", "input"].map(|key| document.get(key).cloned())
 }
 
-fn compared<R: Recheck>(document: &Map<String, Value>, again: Value) -> Compared {
-    compare(document, again, R::TABLE, R::LEFT)
+/// The question in a document.
+fn asked<Q: DeserializeOwned>(document: &Map<String, Value>) -> Result<Q> {
+    #[derive(Deserialize)]
+    struct Input<Q> {
+        input: Q,
+    }
+    let input = document.iter().filter(|(key, _)| *key == "input");
+    typed(input.map(|(key, value)| (key.clone(), value.clone())).collect()).map(|Input { input }| input)
 }
 
-/// The limit of every recheck.
+/// The limit of every check.
 const QUESTION: &str = "that this was the question, where another one has the same answer";
 
 /// That the head is one that kickdrift writes: which version and which command, and an input without nulls.

@@ -1,6 +1,6 @@
 //! Integrators side by side: counted again by traces in doubles.
 
-use super::again::{Recheck, asked};
+use super::Verify;
 use super::context::{Checked, Context, Outcome, holds};
 use crate::question::{CompareMethods, Side};
 use number::error::Result;
@@ -13,61 +13,31 @@ const ROUTE: &str = "the trace at every point in doubles, letter by letter; poin
 /// A trace this near to ±2 decides nothing in doubles.
 const NEAR: f64 = 1e-7;
 
-rows! {
-    /// `kickdrift/compare-methods/1`.
-    pub struct Claim {
-        input: CompareMethods,
-        methods: Vec<Row>,
-    }
-
-    struct Row [method] {
-        method: String,
-        stable: u64,
-        unstable: u64,
-        edge: u64,
+impl Verify for CompareMethods {
+    fn check(&self, sides: &Vec<Side>, context: &Context) -> Result<Outcome> {
+        let ([steps, ups], ratio) = (self.grid()?, self.ratio()?);
+        let squares = self.squares(&steps);
+        // (h² Λ1, Λ2/Λ1), row by row.
+        let row = |up| steps.iter().zip(&squares).map(|(h, s)| (s.to_f64(), to_f64(&ratio(h, up)))).collect();
+        let rows: Vec<Vec<(f64, f64)>> = ups.iter().map(row).collect();
+        context.each(ROUTE, Ok(()), sides, |side| is_so_at(side, &rows))
     }
 }
 
-impl Recheck for Claim {
-    const TABLE: &'static str = "methods";
-    asked!(CompareMethods);
-
-    fn check(&self, sides: Vec<Side>, context: &Context) -> Result<Outcome> {
-        let ([steps, ups], ratio) = (self.input.grid()?, self.input.ratio()?);
-        let squares = self.input.squares(&steps);
-        // (h² Λ1, Λ2/Λ1)
-        let points: Vec<(f64, f64)> = ups
-            .iter()
-            .flat_map(|up| {
-                steps
-                    .iter()
-                    .zip(&squares)
-                    .map(|(h, s)| (s.to_f64(), to_f64(&ratio(h, up))))
-                    .collect::<Vec<_>>()
-            })
-            .collect();
-        context.outcome(ROUTE, ("the grid", Ok(())), &self.methods, |row| {
-            let side = sides.iter().find(|side| side.name == row.method);
-            holds(side.is_some(), || format!("{} is not among the methods", row.method))?;
-            side.map_or(Ok(()), |side| row.holds(side, &points))
-        })
+/// Each point, unless it is near to an edge.
+fn is_so_at(side: &Side, rows: &[Vec<(f64, f64)>]) -> Checked {
+    let are_all_there = rows.iter().map(Vec::len).eq(side.rows.iter().map(Vec::len));
+    holds(are_all_there, || format!("there are {} points", rows.iter().map(Vec::len).sum::<usize>()))?;
+    for (&(s, rho), bounded) in rows.iter().flatten().zip(side.rows.iter().flatten()) {
+        let excess = trace(&side.integrator, s, rho).abs() - 2.0;
+        let is_so = match bounded {
+            Bounded::Stable => excess < NEAR,
+            Bounded::Unstable => excess > -NEAR,
+            Bounded::Edge => excess.abs() < NEAR,
+        };
+        holds(is_so, || format!("at h^2 lambda1 = {s}, lambda2/lambda1 = {rho} |trace| - 2 is {excess}"))?;
     }
-}
-
-impl Row {
-    fn holds(&self, side: &Side, points: &[(f64, f64)]) -> Checked {
-        let (mut stable, mut unstable) = (0u64, 0u64);
-        for (s, rho) in points {
-            let excess = trace(&side.integrator, *s, *rho).abs() - 2.0;
-            stable += u64::from(excess < -NEAR);
-            unstable += u64::from(excess > NEAR);
-        }
-        let points = points.len() as u64;
-        holds(self.stable + self.unstable + self.edge == points, || format!("there are {points} points"))?;
-        let right =
-            self.stable >= stable && self.unstable >= unstable && side.count(Bounded::Stable) == self.stable;
-        holds(right, || format!("{stable} points are stable and {unstable} are not, away from edges"))
-    }
+    Ok(())
 }
 
 fn trace(integrator: &Integrator, s: f64, rho: f64) -> f64 {

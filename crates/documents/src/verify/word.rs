@@ -3,11 +3,10 @@
 use nalgebra::Matrix2;
 use num_traits::{One, Zero};
 
-use super::again::{Recheck, asked};
+use super::Verify;
 use super::context::{Checked, Context, Outcome, holds, same};
 use super::side::step;
-use super::written::{Ends, Written};
-use crate::question::{Methods, Word};
+use crate::question::{Linted, Listed, Methods, Span, Word};
 use number::error::Result;
 use number::{ExactSign, Radical, Rational, Real, Ring, Sign, rational};
 use words::{Force, Letter, method};
@@ -16,36 +15,6 @@ const ROUTE: &str = "letter by letter in exact numbers: a step of each interval,
 
 /// Traces this near to an edge decide nothing in doubles.
 const NEAR: f64 = 1e-7;
-
-rows! {
-    /// `kickdrift/word/1`.
-    pub struct Claim {
-        input: Word,
-        word: Written<words::Word>,
-        consistent: bool,
-        order: u64,
-        intervals: Vec<Row>,
-    }
-
-    struct Row [stable] {
-        stable: bool,
-        lower: Ends | null,
-        upper: Ends | null,
-    }
-
-    /// `kickdrift/methods/1`.
-    pub struct Listed {
-        input: Methods,
-        methods: Vec<Entry>,
-    }
-
-    struct Entry [name] {
-        name: String,
-        nominal_edge: Ends | null,
-        coupled_edge: Ends | null,
-        word: Written<words::Word>,
-    }
-}
 
 /// The product of the letters at h² Λ1 = s, Λ2 = ρ Λ1, in the coordinates (x, h v).
 fn product(word: &words::Word, s: &Rational, rho: &Rational) -> Matrix2<Radical> {
@@ -98,38 +67,27 @@ fn inside(word: &words::Word, s: &Rational, rho: &Rational) -> Sign {
     (&Radical::from_rational(&Rational::from_integer(4.into())) - &(&trace * &trace)).sign()
 }
 
-impl Recheck for Claim {
-    const TABLE: &'static str = "intervals";
-    asked!(Word);
-
-    fn check(&self, found: Self::Found, context: &Context) -> Result<Outcome> {
+impl Verify for Word {
+    fn check(&self, linted: &Linted, context: &Context) -> Result<Outcome> {
         // Whose length is within the budget.
-        let (word, rho) = (&found.word, found.rho.unwrap_or_default());
-        let Some(pieces) = &found.pieces else {
-            let whole = self.whole(word);
-            return context.outcome(ROUTE, ("the word", whole), &self.intervals, |row| row.holds(word, &rho));
+        let (word, rho) = (&linted.word, linted.rho.clone().unwrap_or_default());
+        let spans = linted.spans(self.lambda1.as_ref());
+        let Some(pieces) = &linted.pieces else {
+            return context.each(ROUTE, has_order(linted), &spans, |span| is_so(span, word, &rho));
         };
-        let whole = holds(self.word.0 == *word, || format!("the word is {word}"));
-        let friction =
-            self.input.friction.as_ref().map_or(0.0, |value| value.to_f64()) / pieces.root.mid_f64();
-        context.outcome(ROUTE, ("the word", whole), &self.intervals, |row| {
-            row.holds_in_doubles(word, rational::to_f64(&rho), friction)
-        })
+        let friction = self.friction.as_ref().map_or(0.0, |rate| rate.to_f64()) / pieces.root.mid_f64();
+        let rho = rational::to_f64(&rho);
+        context.each(ROUTE, Ok(()), &spans, |span| is_so_in_doubles(span, word, rho, friction))
     }
 }
 
-impl Claim {
-    fn whole(&self, word: &words::Word) -> Checked {
-        holds(self.word.0 == *word, || format!("the word is {word}"))?;
-        // The order is the least one over all ρ.
-        let names = word.names_forces();
-        let rhos = [rational::ratio(0, 1), rational::ratio(1, 1), rational::ratio(-1, 2)];
-        let rhos = if names { &rhos[..] } else { &rhos[..1] };
-        let orders = rhos.iter().map(|rho| order(word, rho));
-        let order = orders.min().unwrap_or_default();
-        same("order", self.order, order)?;
-        holds(self.consistent || order == 0, || "it has an order, so it is consistent".into())
-    }
+fn has_order(linted: &Linted) -> Checked {
+    // The order is the least one over all ρ.
+    let rhos = [rational::ratio(0, 1), rational::ratio(1, 1), rational::ratio(-1, 2)];
+    let rhos = if linted.word.names_forces() { &rhos[..] } else { &rhos[..1] };
+    let order = rhos.iter().map(|rho| order(&linted.word, rho)).min().unwrap_or_default();
+    same("order", linted.order.order, order)?;
+    holds(linted.word.is_consistent() || order == 0, || "it has an order, so it is consistent".into())
 }
 
 /// The order at one ρ: the error of a step of 2^-80, and of half of it, against the series of the flow.
@@ -168,60 +126,55 @@ fn order(word: &words::Word, rho: &Rational) -> u64 {
     (log2 / 2).saturating_sub(1)
 }
 
-impl Row {
-    fn holds(&self, word: &words::Word, rho: &Rational) -> Checked {
-        let lower = self.lower.map_or(0.0, |ends| ends.hi);
-        let upper = self.upper.map_or(2.0 * lower + 1.0, |ends| ends.lo);
-        let ends = rational::from_f64_exact(lower).zip(rational::from_f64_exact(upper));
-        // Ends that are one double leave no step between them to try.
-        let Some((lo, hi)) = ends.filter(|(lo, hi)| lo < hi) else { return Ok(()) };
-        let omega_h = (lo + hi) / Rational::from_integer(2.into());
-        let sign = inside(word, &(&omega_h * &omega_h), rho);
-        let stable = sign == Sign::Positive;
-        holds(sign == Sign::Zero || stable == self.stable, || verdict_at(rational::to_f64(&omega_h), stable))
-    }
+/// The verdict in the middle of an interval.
+fn is_so(span: &Span, word: &words::Word, rho: &Rational) -> Checked {
+    let [lower, upper] = span.enclosed();
+    let lower = lower.map_or(0.0, |ends| ends.1);
+    let upper = upper.map_or(2.0 * lower + 1.0, |ends| ends.0);
+    let ends = rational::from_f64_exact(lower).zip(rational::from_f64_exact(upper));
+    // Ends that are one double leave no step between them to try.
+    let Some((lo, hi)) = ends.filter(|(lo, hi)| lo < hi) else { return Ok(()) };
+    let omega_h = (lo + hi) / Rational::from_integer(2.into());
+    let sign = inside(word, &(&omega_h * &omega_h), rho);
+    let stable = sign == Sign::Positive;
+    holds(sign == Sign::Zero || stable == span.stable, || verdict_at(rational::to_f64(&omega_h), stable))
+}
 
-    /// The trace in the middle against 1 + the determinant; γ in units of √Λ1.
-    fn holds_in_doubles(&self, word: &words::Word, rho: f64, friction: f64) -> Checked {
-        let lower = self.lower.map_or(0.0, |ends| ends.hi);
-        let omega_h = self.upper.map_or(lower + 0.01, |ends| (lower + ends.lo) / 2.0);
-        let (trace, determinant) = step(word, omega_h * omega_h, rho, friction * omega_h);
-        let margin = 1.0 + determinant - trace.abs();
-        holds(margin.abs() < NEAR || (margin > 0.0) == self.stable, || verdict_at(omega_h, margin > 0.0))
-    }
+/// The trace in the middle against 1 + the determinant; γ in units of √Λ1.
+fn is_so_in_doubles(span: &Span, word: &words::Word, rho: f64, friction: f64) -> Checked {
+    let [lower, upper] = span.enclosed();
+    let lower = lower.map_or(0.0, |ends| ends.1);
+    let omega_h = upper.map_or(lower + 0.01, |ends| (lower + ends.0) / 2.0);
+    let (trace, determinant) = step(word, omega_h * omega_h, rho, friction * omega_h);
+    let margin = 1.0 + determinant - trace.abs();
+    holds(margin.abs() < NEAR || (margin > 0.0) == span.stable, || verdict_at(omega_h, margin > 0.0))
 }
 
 fn verdict_at(omega_h: f64, stable: bool) -> String {
     format!("at omega h = {omega_h} it is {}", if stable { "stable" } else { "unstable" })
 }
 
-impl Recheck for Listed {
-    const TABLE: &'static str = "methods";
-    asked!(Methods);
-
-    fn check(&self, _: Self::Found, context: &Context) -> Result<Outcome> {
-        context.outcome(ROUTE, ("the catalogue", Ok(())), &self.methods, Entry::holds)
+impl Verify for Methods {
+    fn check(&self, methods: &&'static [Listed], context: &Context) -> Result<Outcome> {
+        context.each(ROUTE, Ok(()), methods, has_edges)
     }
 }
 
-impl Entry {
-    /// Just below the edge it is stable, just above it is not: the interval there is no narrower than 2^-30
-    /// of its size.
-    fn holds(&self) -> Checked {
-        holds(method(&self.name)?.word() == self.word.0, || "its word is another one".into())?;
-        if let Some(Ends { lo, hi }) = self.coupled_edge {
-            for (x, stable) in [(lo * (1.0 - 1e-4), true), (hi * (1.0 + 1e-4), false)] {
-                let margin = 2.0 - step(&self.word.0, x * x, 1.0 / 16.0, 0.0).0.abs();
-                holds((margin > 0.0) == stable, || "its edge beside a slow force is another one".into())?;
-            }
+/// Just below an edge it is stable, just above it is not: the interval there is no narrower than 2^-30 of its
+/// size.
+fn has_edges(Listed { method: listed, linted, two }: &Listed) -> Checked {
+    let word = &linted.word;
+    holds(method(listed.name)?.word() == *word, || "its word is another one".into())?;
+    if let Some((lo, hi)) = two.as_ref().and_then(Linted::edge_omega_h).map(|edge| edge.to_f64_enclosure()) {
+        for (x, stable) in [(lo * (1.0 - 1e-4), true), (hi * (1.0 + 1e-4), false)] {
+            let margin = 2.0 - step(word, x * x, 1.0 / 16.0, 0.0).0.abs();
+            holds((margin > 0.0) == stable, || "its edge beside a slow force is another one".into())?;
         }
-        let Some(Ends { lo, hi }) = self.nominal_edge else { return Ok(()) };
-        for (factor, stable) in [(1.0 - 1e-10, Sign::Positive), (1.0 + 1e-10, Sign::Negative)] {
-            let x = if stable == Sign::Positive { lo * factor } else { hi * factor };
-            let Some(x) = rational::from_f64_exact(x) else { return Ok(()) };
-            let sign = inside(&self.word, &(&x * &x), &Rational::zero());
-            holds(sign == stable, || "its edge is another one".into())?;
-        }
-        Ok(())
     }
+    let Some((lo, hi)) = linted.nominal_edge().map(|edge| edge.to_f64_enclosure()) else { return Ok(()) };
+    for (x, sign) in [(lo * (1.0 - 1e-10), Sign::Positive), (hi * (1.0 + 1e-10), Sign::Negative)] {
+        let Some(x) = rational::from_f64_exact(x) else { return Ok(()) };
+        holds(inside(word, &(&x * &x), &Rational::zero()) == sign, || "its edge is another one".into())?;
+    }
+    Ok(())
 }

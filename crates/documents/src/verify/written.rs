@@ -1,17 +1,14 @@
 //! The values of documents, read once into types that cannot be wrong.
 
-use std::fmt;
 use std::ops::Deref;
 
-use num_bigint::BigInt;
 use serde::de::{Deserialize, Deserializer, Error as _};
 
 use super::context::{Checked, Fault, holds};
 use crate::question::Notation;
 use clocks::tongue;
-use clocks::verdict::{Kind, Tier};
 use number::error::{Error, Result};
-use number::{Ball, Rational, rational};
+use number::{Rational, rational};
 
 /// A value that stands in a document as a text.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -34,35 +31,6 @@ impl<'de, T: Notation> Deserialize<'de> for Written<T> {
     }
 }
 
-/// A whole number, beyond doubles' reach as a text.
-#[derive(Clone, Debug, PartialEq, Eq, serde::Deserialize)]
-#[serde(try_from = "RawWhole")]
-pub struct Whole(pub BigInt);
-
-impl fmt::Display for Whole {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.0.fmt(f)
-    }
-}
-
-#[derive(serde::Deserialize)]
-#[serde(untagged)]
-enum RawWhole {
-    Short(u64),
-    Long(String),
-}
-
-impl TryFrom<RawWhole> for Whole {
-    type Error = String;
-
-    fn try_from(raw: RawWhole) -> std::result::Result<Self, String> {
-        match raw {
-            RawWhole::Short(n) => Ok(Whole(n.into())),
-            RawWhole::Long(text) => text.parse().map(Whole).map_err(|_| format!("{text} is no whole number")),
-        }
-    }
-}
-
 macro_rules! by_name {
     ($($type:ty: $field:literal;)*) => {
         $(impl Notation for $type {
@@ -74,18 +42,9 @@ macro_rules! by_name {
 }
 
 by_name! {
-    Kind: "kind";
-    Tier: "tier";
     tongue::Entry: "entry";
     tongue::Resonance: "resonance";
     tongue::Side: "position";
-}
-
-/// A flag, which stands in a document only where it is set.
-impl Notation for bool {
-    fn parsed(_: &str, text: &str) -> Result<Self> {
-        one_of("flag", text, [true], |_| "true")
-    }
 }
 
 /// One of some values, by its name.
@@ -157,27 +116,12 @@ impl TryFrom<RawEnds> for Ends {
     }
 }
 
-/// The logarithm of what lies beyond every double, where an outward rounding to doubles loses nothing that is
-/// written.
-const BEYOND_DOUBLES: i64 = 2000;
-
 impl Ends {
     /// `None` where the ends are those of no enclosure.
     pub fn new(lo: Option<f64>, hi: Option<f64>) -> Option<Ends> {
         let beyond = (lo.is_some() || hi == Some(f64::MIN)) && (hi.is_some() || lo == Some(f64::MAX));
         let ends = Ends { lo: lo.unwrap_or(f64::NEG_INFINITY), hi: hi.unwrap_or(f64::INFINITY) };
         (beyond && ends.lo <= ends.hi).then_some(ends)
-    }
-
-    /// Whether the ball's value can lie inside.
-    pub fn holds(&self, ball: &Ball) -> bool {
-        // Far beyond doubles a ball is not worth its digits.
-        if ball.top().is_some_and(|log2| log2 > BEYOND_DOUBLES) {
-            let (lower, upper) = ball.to_f64_enclosure();
-            return self.lo <= upper && lower <= self.hi;
-        }
-        let below = rational::from_f64_exact(self.lo).is_none_or(|lo| lo <= ball.upper());
-        below && rational::from_f64_exact(self.hi).is_none_or(|hi| ball.lower() <= hi)
     }
 
     /// Both ends exactly.

@@ -98,13 +98,13 @@ pub(super) fn omega_h(edge: &Edge) -> Ball {
 }
 
 /// An enclosure, in doubles, of a number that is at least 0.
-pub(super) fn positive(x: &Ball) -> (f64, f64) {
+fn positive(x: &Ball) -> (f64, f64) {
     let (lo, hi) = x.to_f64_enclosure();
     (lo.max(0.0), hi)
 }
 
 /// An interval as it is shown.
-pub(super) struct Span {
+pub struct Span {
     pub stable: bool,
     /// √Λ1 h at both ends.
     pub ends: [Option<Ball>; 2],
@@ -115,6 +115,13 @@ pub(super) struct Span {
     pub includes: [Option<bool>; 2],
 }
 
+impl Span {
+    /// √Λ1 h at both ends, in doubles.
+    pub fn enclosed(&self) -> [Option<(f64, f64)>; 2] {
+        [self.ends[0].as_ref().map(positive), self.ends[1].as_ref().map(Ball::to_f64_enclosure)]
+    }
+}
+
 impl Linted {
     /// The end of the stable interval that begins at 0.
     pub fn edge(&self) -> Option<&Edge> {
@@ -122,13 +129,13 @@ impl Linted {
     }
 
     /// √Λ1 h there.
-    pub(super) fn edge_omega_h(&self) -> Option<Ball> {
+    pub(crate) fn edge_omega_h(&self) -> Option<Ball> {
         let enclosed = || self.pieces.as_ref().and_then(|pieces| Some(pieces.omega_h(pieces.edge()?)));
         self.edge().map(omega_h).or_else(enclosed)
     }
 
     /// The edge when unstable intervals that are next to nothing do not count.
-    pub(super) fn nominal_edge(&self) -> Option<Ball> {
+    pub(crate) fn nominal_edge(&self) -> Option<Ball> {
         match &self.stability {
             Some(stability) => stability.nominal_edge().map(omega_h),
             None => self.edge_omega_h(),
@@ -136,7 +143,7 @@ impl Linted {
     }
 
     /// Every interval that is shown.
-    pub(super) fn spans(&self, lambda1: Option<&Laurent>) -> Vec<Span> {
+    pub(crate) fn spans(&self, lambda1: Option<&Laurent>) -> Vec<Span> {
         let root = lambda1.map(|lambda1| lambda1.enclosure(BITS).sqrt(BITS).expect("positive"));
         let over = |x: &Option<Ball>| Some(x.as_ref()?.div(root.as_ref()?, BITS)?.to_f64_enclosure());
         let shown = |interval: &&Interval| self.range.as_ref().is_none_or(|(lo, hi)| meets(interval, lo, hi));

@@ -6,8 +6,8 @@ mod linted;
 mod shown;
 
 pub use asked::Word;
-pub use catalogue::Methods;
-pub use linted::Linted;
+pub use catalogue::{Listed, Methods};
+pub use linted::{Linted, Span};
 
 use super::asking::{Question, Work};
 use crate::report::document::Document;

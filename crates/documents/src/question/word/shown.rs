@@ -1,7 +1,7 @@
 //! A word's answer as entries, rows and lines.
 
 use super::asked::Word;
-use super::linted::{BITS, Linted, Span, omega_h, positive};
+use super::linted::{BITS, Linted, Span, omega_h};
 use crate::report::decimal;
 use crate::report::record::Record;
 use crate::report::table::{Cell, Column, Table};
@@ -30,11 +30,9 @@ impl Linted {
                         },
                     )
                     .enclosure(),
-                |span| span.ends[0].as_ref().map(positive).into(),
+                |span| span.enclosed()[0].into(),
             )
-            .field(Column::new("upper").titled("to", "to").enclosure(), |span| {
-                span.ends[1].as_ref().map(Ball::to_f64_enclosure).into()
-            })
+            .field(Column::new("upper").titled("to", "to").enclosure(), |span| span.enclosed()[1].into())
             .field(Column::new("lower_s").in_words("lower (omega h)^2 exactly").aside(), move |span| {
                 exact(&span.squares[0])
             })

@@ -9,6 +9,7 @@ use serde_json::json;
 
 pub use arrays::MapArrays;
 pub use rows::{Found, Marked, Rows, marked, needed};
+pub(crate) use tally::Fastest;
 pub use tally::{Counts, MapTally};
 
 use super::document::Document;

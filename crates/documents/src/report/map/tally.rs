@@ -54,14 +54,17 @@ pub struct MapTally {
     /// Pairs by the a of their dominant family, where labels were asked for.
     families: BTreeMap<i64, u64>,
     /// The pair that grows fastest where growth was asked for: no other one is proven to grow faster.
-    fastest: Option<Fastest>,
+    pub(crate) fastest: Option<Fastest>,
 }
 
 #[derive(Clone, Debug)]
-struct Fastest {
+pub struct Fastest {
+    /// The multiples of both spacings.
+    pub at: [u64; 2],
     steps: [String; 2],
-    rate: Enclosure,
-    tenfold: Enclosure,
+    pub rate: Enclosure,
+    /// Slow steps until an amplitude is tenfold.
+    pub tenfold: Enclosure,
 }
 
 impl MapTally {
@@ -81,7 +84,7 @@ impl MapTally {
                 && self.fastest.as_ref().is_none_or(|fastest| rate.middle() > fastest.rate.middle())
             {
                 let steps = [grid.h1(pair.i).to_string(), grid.h2(pair.j).to_string()];
-                self.fastest = Some(Fastest { steps, rate, tenfold });
+                self.fastest = Some(Fastest { at: [pair.i, pair.j], steps, rate, tenfold });
             }
         }
     }
@@ -93,7 +96,7 @@ impl MapTally {
             let count = |(a, pairs): (&i64, &u64)| json!({"a": a, "pairs": pairs});
             entries.push(("families", self.families.iter().map(count).collect()));
         }
-        if let Some(Fastest { steps: [h1, h2], rate, tenfold }) = &self.fastest {
+        if let Some(Fastest { steps: [h1, h2], rate, tenfold, .. }) = &self.fastest {
             let enclosure = |x: &Enclosure| json!({"lo": x.lo, "hi": x.hi});
             let (rate, tenfold) = (enclosure(rate), enclosure(tenfold));
             let value = json!({"h1": h1, "h2": h2, "growth_rate": rate, "steps_until_tenfold": tenfold});
@@ -113,7 +116,7 @@ impl MapTally {
             let others = if others > 0 { format!(", {others} others") } else { String::new() };
             lines.push(format!("  dominant families {}{others}", listed.join(", ")));
         }
-        if let Some(Fastest { steps: [h1, h2], rate, tenfold }) = &self.fastest {
+        if let Some(Fastest { steps: [h1, h2], rate, tenfold, .. }) = &self.fastest {
             let [rate, tenfold] = [rate, tenfold].map(|x| enclosure(x.lo, x.hi));
             lines.push(format!(
                 "  fastest growth {rate} per unit time at h1 = {h1}, h2 = {h2}: tenfold in {tenfold} slow steps"

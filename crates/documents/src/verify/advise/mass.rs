@@ -3,7 +3,6 @@
 use num_traits::Zero;
 
 use crate::verify::context::{Checked, holds};
-use crate::verify::written::Ends;
 use clocks::schedule::{KickDrift, Kicks, Schedule, Weight};
 use number::rational::{from_f64_exact, to_f64};
 use number::{Ball, Rational, Sign};
@@ -59,6 +58,27 @@ impl Mass {
         let strength =
             |(step, stiffness): (&Rational, &Ball)| Ball::from_rational(step, BITS).mul(stiffness, BITS);
         self.steps.iter().zip(&self.stiffness).map(strength).collect()
+    }
+
+    /// Whether a clock has no stiffness.
+    pub fn is_silent(&self, clock: usize) -> bool {
+        self.stiffness[clock].sign() == Some(Sign::Zero)
+    }
+
+    /// This mass on the clocks that are not silent.
+    pub fn heard(&self) -> Mass {
+        let heard = || (0..self.steps.len()).filter(|&clock| !self.is_silent(clock));
+        Mass {
+            steps: heard().map(|clock| self.steps[clock].clone()).collect(),
+            stiffness: heard().map(|clock| self.stiffness[clock].clone()).collect(),
+        }
+    }
+
+    /// That the first region ends within an enclosure of outer steps at this ratio of steps.
+    pub fn ends_within(&self, outer: &Rational, (lo, hi): (f64, f64), name: &str) -> Checked {
+        let is_inside = |step: f64| self.scaled(&(exact(step) / outer)).in_first_region();
+        holds(is_inside(lo)? != Some(false), || format!("{name} ends before {lo}"))?;
+        holds(is_inside(hi)? != Some(true), || format!("{name} reaches beyond {hi}"))
     }
 
     /// This mass with another outermost step, which may be that of the clock before it: then both are one.
@@ -165,13 +185,13 @@ pub fn exact(x: f64) -> Rational {
 }
 
 /// That stable and unstable meet within the ends.
-pub fn crosses(at: &impl Fn(f64) -> Mass, ends: Ends, name: &str) -> Checked {
-    let (a, b) = (at(ends.lo).excess()?, at(ends.hi).excess()?);
+pub fn crosses(at: &impl Fn(f64) -> Mass, (lo, hi): (f64, f64), name: &str) -> Checked {
+    let (a, b) = (at(lo).excess()?, at(hi).excess()?);
     let apart = a.zip(b).is_none_or(|(a, b)| a * b != Sign::Positive);
-    holds(apart, || format!("no {name} end of an unstable interval lies in {}..{}", ends.lo, ends.hi))
+    holds(apart, || format!("no {name} end of an unstable interval lies in {lo}..{hi}"))
 }
 
-/// The growth that is written is the fastest inside the interval. It is compared at 16 places, then nearer
+/// The growth that is told is the fastest inside the interval. It is compared at 16 places, then nearer
 /// and nearer to the best of them: growth has one maximum there.
 pub fn fastest_growth(at: &impl Fn(f64) -> Mass, (lo, hi): (f64, f64), steps: Option<f64>) -> Checked {
     let growth = |outer: f64| -> Checked<(f64, f64)> {
@@ -195,7 +215,7 @@ pub fn fastest_growth(at: &impl Fn(f64) -> Mass, (lo, hi): (f64, f64), steps: Op
         }
         width /= 2.0;
     }
-    // The steps written are those where the rate is largest; near its maximum an error of the place of 1e-5
+    // The steps told are those where the rate is largest; near its maximum an error of the place of 1e-5
     // of the width changes little.
     let truth = std::f64::consts::LN_10 / (best.0 * best.1);
     // Where hardly anything grows the steps may be left out.

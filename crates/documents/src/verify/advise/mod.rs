@@ -7,27 +7,38 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `claim` | the rows of the document, and what concerns it as a whole |
 //! | `mass` | one mass on its clocks: trace, friction, first region |
-//! | `scheme`, `row` | the row of a scheme, of a mode at a scheme |
+//! | `periods` | advice on periods: modes, schemes, pairs |
+//! | `row` | a mode at a scheme |
 //! | `lever` | levers that would let the step grow |
-//! | `direct` | advice on forces that are no gradient: computed again, its growth by the dense full period |
-//! | `molecule` | advice on Hessians: computed again, its proofs and growth by another route |
+//! | `direct` | advice on forces that are no gradient: growth by the dense full period |
+//! | `molecule` | advice on Hessians: proofs and growth by another route |
 
-mod claim;
 mod direct;
 mod lever;
 mod mass;
 mod molecule;
+mod periods;
 mod row;
-mod scheme;
 
-pub use claim::Claim;
-pub use direct::Claim as Direct;
-pub use molecule::Claim as Molecule;
+use super::Verify;
+use super::again::Excluded;
+use super::context::{Context, Outcome};
+use crate::question::{Advised, Safe};
+use number::error::Result;
 
-use super::again::Left;
+impl Verify for Advised {
+    const EXCLUDED: &'static [Excluded] = &[
+        ("input.file", "a name"),
+        ("engine", "the text that it was read from is not part of the document"),
+        ("input.constrained", "bonds that are held take no part in the answer"),
+    ];
 
-/// The leaves of advice on a system's file that nothing follows from.
-const LEFT: &[Left] =
-    &[("input.file", "a name"), ("engine", "the text that it was read from is not part of the document")];
+    fn check(&self, safe: &Safe, context: &Context) -> Result<Outcome> {
+        match safe {
+            Safe::Periods(advice) => periods::check(advice, context),
+            Safe::Hessians(pair) => molecule::check(self, &pair.0, &pair.1, context),
+            Safe::Direct(pair) => direct::check(&pair.0, &pair.1),
+        }
+    }
+}

@@ -1,16 +1,14 @@
-//! Advice on Hessians: computed again, whole; what it proves, and growth, by another route.
+//! Advice on Hessians: what it proves, and growth, by another route.
 
 use std::borrow::Cow;
 
-use super::LEFT;
 use crate::input::SystemScene;
-use crate::question::{Advised, Safe};
-use crate::verify::again::{Left, Recheck, asked};
-use crate::verify::context::{Checked, Context, Outcome, REMEDY, ROOM, holds, too_costly};
-use molecules::{Finding, MOST_PRODUCTS, Scheme};
+use crate::question::Advised;
+use crate::verify::context::{self, Checked, Context, Outcome, ROOM, failure, holds, too_costly};
+use molecules::{Finding, Findings, MOST_PRODUCTS, Scheme};
 use num_traits::Zero;
 use number::Rational;
-use number::error::{Error, Result};
+use number::error::Result;
 use number::rational::{from_f64_exact, to_f64};
 use systems::levels::{Hessians, Near};
 use systems::{Holds, Limits, Potential, System, decide_system};
@@ -60,7 +58,7 @@ impl Many<'_> {
 
     fn is(&self, holds: Holds, at: (&Scheme, f64, &[f64]), what: &str) -> Checked {
         let found = self.at(at.0, at.1 / to_f64(at.0.outer()), at.2)?;
-        crate::verify::context::holds(found == holds, || {
+        context::holds(found == holds, || {
             format!("at {} fs {what} is {} by half periods", at.1, found.name())
         })
     }
@@ -192,51 +190,34 @@ impl Route for Other {
     }
 }
 
-/// `kickdrift/advise-system/1`.
-#[derive(Clone, Debug, serde::Deserialize)]
-pub struct Claim {
-    input: Advised,
-}
-
 const ROUTE: &str = "the ends of the first region and of the band by the action as one matrix over the paths, growth by the full \
                      period kick by kick";
 
-impl Recheck for Claim {
-    const TABLE: &'static str = "rows";
-    const LEFT: &'static [Left] = LEFT;
-    asked!(Advised);
-
-    fn check(&self, safe: Safe, context: &Context) -> Result<Outcome> {
-        let Safe::Hessians(pair) = safe else { return Err(Error::missing("input.system", REMEDY)) };
-        let (scene, findings) = *pair;
-        let (mut failures, mut not_rechecked) = (Vec::new(), Vec::new());
-        let limits =
-            Limits { products: context.options.budget.unwrap_or(MOST_PRODUCTS), ..Limits::default() };
-        let other = route(&scene, to_f64(&self.input.band), &limits)?;
-        let mut spent: u64 = 0;
-        for (row, finding) in (1..).zip(&findings.schemes) {
-            let cost = spent.saturating_add(other.cost(finding));
-            if let Err(error) = limits.allow(cost, || format!("schemes 1 to {row}")) {
-                not_rechecked.push(too_costly(&format!("row {row}"), &error));
-                continue;
-            }
-            spent = cost;
-            let place = || format!("outer step {} fs", finding.scheme.outer());
-            failures.extend(context.failure(row, place, other.row(finding))?);
+pub fn check(
+    question: &Advised,
+    scene: &SystemScene,
+    findings: &Findings,
+    context: &Context,
+) -> Result<Outcome> {
+    let limits = Limits { products: context.options.budget.unwrap_or(MOST_PRODUCTS), ..Limits::default() };
+    let other = route(scene, to_f64(&question.band), &limits)?;
+    let mut outcome = Outcome::holding(other.route(), findings.schemes.len() as u64);
+    let mut spent: u64 = 0;
+    for (row, finding) in (1..).zip(&findings.schemes) {
+        let cost = spent.saturating_add(other.cost(finding));
+        if let Err(error) = limits.allow(cost, || format!("schemes 1 to {row}")) {
+            outcome.not_rechecked.push(too_costly(&format!("row {row}"), &error));
+            continue;
         }
-        if !findings.schemes.iter().all(|scheme| other.has_ends(scheme)) {
-            let why = "first, band_edge by the other route: too many steps for the action's matrix, computed again only";
-            not_rechecked.push(why.into());
-        }
-        if findings.levers.is_some() {
-            not_rechecked.push("levers: computed again only".into());
-        }
-        Ok(Outcome {
-            rows: findings.schemes.len() as u64,
-            route: other.route(),
-            sample: None,
-            failures,
-            not_rechecked,
-        })
+        spent = cost;
+        outcome.failures.extend(failure(row, other.row(finding))?);
     }
+    if !findings.schemes.iter().all(|scheme| other.has_ends(scheme)) {
+        let why = "first, band_edge by the other route: too many steps for the action's matrix, computed again only";
+        outcome.not_rechecked.push(why.into());
+    }
+    if findings.levers.is_some() {
+        outcome.not_rechecked.push("levers: computed again only".into());
+    }
+    Ok(outcome)
 }

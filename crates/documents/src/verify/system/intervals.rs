@@ -1,4 +1,4 @@
-//! Documents of intervals: the stretches as they are written, held against systems at numbers inside them.
+//! Intervals: the stretches, held against systems at numbers inside them.
 //!
 //! Kicks and drifts of measured levels are followed over half a period in doubles, kick by kick, without the
 //! cells that made the document, at an outer step or at another value of what is varied. The eigenvalues of
@@ -12,14 +12,13 @@ use std::borrow::Cow;
 use faer::Mat;
 use num_traits::One;
 
-use super::{ALONE, LEFT, outcome};
+use super::{ALONE, outcome};
 use crate::input::{OUTER, SystemScene};
-use crate::question::{Found, System, SystemAnswer};
-use crate::verify::again::{Left, Recheck, asked};
-use crate::verify::context::{Checked, Context, Fault, Outcome, holds, same, too_costly};
+use crate::question::System;
+use crate::verify::context::{Checked, Context, Fault, Outcome, failure, holds, too_costly};
 use crate::verify::sample::sample;
 use number::Rational;
-use number::error::{Error, Result};
+use number::error::Result;
 use number::parallel::try_map;
 use number::rational::{from_f64_exact, to_f64};
 use systems::levels::Method;
@@ -38,97 +37,40 @@ const INSIDE: [f64; 5] = [1.0 / 64.0, 0.25, 0.5, 0.75, 63.0 / 64.0];
 /// 10^-16 times their condition.
 const STILL: f64 = 1e-5;
 
-/// `kickdrift/system-intervals/1`.
-#[derive(Clone, Debug, serde::Deserialize)]
-pub struct Claim {
-    input: System,
-    stretches: Vec<Row>,
+/// Each stretch begins where the one before it ends; a sample of them by the route that the model has.
+pub fn check(
+    question: &System,
+    scene: &SystemScene,
+    found: &Intervals,
+    context: &Context,
+) -> Result<Outcome> {
+    let (count, route) = (found.stretches.len() as u64, "each stretch begins where the one before it ends");
+    let mut failures = Vec::new();
+    for row in 1..=count {
+        failures.extend(failure(row, joined(row as usize, found))?);
+    }
+    if !failures.is_empty() {
+        return Ok(Outcome { failures, ..Outcome::holding(route, count) });
+    }
+    // Other systems are looked at by their steps alone.
+    if !matches!(scene.model(), Model::Measured(_)) || found.is_discrete {
+        return Ok(Outcome::holding(ALONE, count));
+    }
+    let all = (1..).zip(&found.stretches).filter(|(_, stretch)| stretch.verdict != Holds::Undecided);
+    let decided = Decided { count, drawn: all.collect(), context };
+    let places = Places::of(scene, &found.number, question.width().unwrap_or_default())?;
+    Ok(Outcome { rows: count, ..decided.by_half_periods(&places, &scene.source().to_string())? })
 }
 
-rows! {
-    struct Row {
-        lo: f64,
-        hi: f64,
-        verdict: String,
-    }
-}
-
-impl Row {
-    fn stretch(&self) -> Checked<Stretch> {
-        let verdict = Holds::ALL.into_iter().find(|holds| holds.name() == self.verdict);
-        let verdict = verdict.ok_or_else(|| Fault::Wrong(format!("{} is no verdict", self.verdict)))?;
-        Ok(Stretch { lo: self.lo, hi: self.hi, verdict })
-    }
-}
-
-impl Recheck for Claim {
-    const TABLE: &'static str = "stretches";
-    const LEFT: &'static [Left] = LEFT;
-    asked!(System);
-
-    fn check(&self, SystemAnswer { scene, found }: SystemAnswer, context: &Context) -> Result<Outcome> {
-        let Found::Intervals(found) = found else {
-            return Err(Error::input(
-                "input.intervals",
-                "missing",
-                "a document of intervals says of what: whole documents, as kickdrift wrote them, can be rechecked",
-            ));
-        };
-        let count = self.stretches.len() as u64;
-        let (mut failures, mut stretches) = (Vec::new(), Vec::new());
-        for (n, row) in (1..).zip(&self.stretches) {
-            let place = || format!("{} to {}", row.lo, row.hi);
-            let checked = self.joined(n, &found).and_then(|()| row.stretch());
-            failures.extend(context.failure(
-                n as u64,
-                place,
-                checked.map(|checked| stretches.push(checked)),
-            )?);
-        }
-        let covered = self.stretches.last().map(|stretches| stretches.hi)
-            == found.stretches.last().map(|stretches| stretches.hi);
-        let checked = holds(covered, || "the stretches end before the range does".into());
-        failures.extend(context.failure(0, || "the document".into(), checked)?);
-        if failures.is_empty() {
-            return Ok(Outcome { rows: count, ..self.stretches(&stretches, &scene, &found, context)? });
-        }
-        let route = "each stretch begins where the one before it ends";
-        Ok(Outcome { rows: count, route, sample: None, failures, not_rechecked: Vec::new() })
-    }
-}
-
-impl Claim {
-    /// That the n-th row, counted from 1, begins where the one before it ends, the first one with the range.
-    /// Of isolated edges the next double begins a stretch.
-    fn joined(&self, n: usize, found: &Intervals) -> Checked {
-        let row = &self.stretches[n - 1];
-        holds(row.lo <= row.hi, || "it ends before it begins".into())?;
-        let Some(before) = n.checked_sub(2).map(|before| self.stretches[before].hi) else {
-            let first = found.stretches.first().map_or(row.lo, |stretch| stretch.lo);
-            return same("lo", row.lo, first);
-        };
-        let is_joined = [before, before.next_up()].contains(&row.lo) || found.is_discrete && row.lo > before;
-        holds(is_joined, || format!("it begins at {}, the one before it ends at {before}", row.lo))
-    }
-
-    /// Looks at a sample of the stretches by the route that the model has.
-    fn stretches(
-        &self,
-        stretches: &[Stretch],
-        scene: &SystemScene,
-        found: &Intervals,
-        context: &Context,
-    ) -> Result<Outcome> {
-        // Other systems are looked at by their steps alone.
-        if !matches!(scene.model(), Model::Measured(_)) || found.is_discrete {
-            return outcome(context, ALONE, Ok(()));
-        }
-        let all = (1..).zip(stretches).filter(|(_, stretch)| stretch.verdict != Holds::Undecided);
-        let decided = Decided { count: stretches.len() as u64, drawn: all.collect(), context };
-        let seed = scene.source().to_string();
-        let width = self.input.width().unwrap_or_default();
-        decided.by_half_periods(&Places::of(scene, &found.number, width)?, &seed)
-    }
+/// That the n-th stretch, counted from 1, begins where the one before it ends. Of isolated edges the next
+/// double begins a stretch.
+fn joined(n: usize, found: &Intervals) -> Checked {
+    let stretch = &found.stretches[n - 1];
+    holds(stretch.lo <= stretch.hi, || "it ends before it begins".into())?;
+    let Some(before) = n.checked_sub(2).map(|before| found.stretches[before].hi) else { return Ok(()) };
+    let is_joined =
+        [before, before.next_up()].contains(&stretch.lo) || found.is_discrete && stretch.lo > before;
+    holds(is_joined, || format!("it begins at {}, the one before it ends at {before}", stretch.lo))
 }
 
 /// The stretches with a verdict that are looked at, each with its row.
@@ -151,9 +93,7 @@ impl Decided<'_> {
 
     /// `outcome` with what `check` finds of each.
     fn look(&self, outcome: Outcome, check: impl Fn(&Stretch) -> Checked + Sync) -> Result<Outcome> {
-        let place = |stretch: &Stretch| format!("{} to {}", stretch.lo, stretch.hi);
-        let look =
-            |(row, stretch): &(u64, &Stretch)| self.context.failure(*row, || place(stretch), check(stretch));
+        let look = |(row, stretch): &(u64, &Stretch)| failure(*row, check(stretch));
         let failures = try_map(&self.drawn, look)?;
         let sample = Some((failures.len() as u64, self.count));
         Ok(Outcome { sample, failures: failures.into_iter().flatten().collect(), ..outcome })
@@ -161,7 +101,7 @@ impl Decided<'_> {
 
     /// All, or a sample where that costs too much.
     fn by_half_periods(self, places: &Places, seed: &str) -> Result<Outcome> {
-        let (context, limits) = (self.context, self.context.work().products());
+        let limits = self.context.work().products();
         let allow = |decided: &Self| places.allow(decided.drawn.len(), &limits);
         let decided = if allow(&self).is_ok() { self } else { self.sampled(seed) };
         let (route, between) = if places.has_signs() {
@@ -169,7 +109,7 @@ impl Decided<'_> {
         } else {
             (STEP, "that nothing grows between these places")
         };
-        let mut found = outcome(context, route, Ok(()))?;
+        let mut found = outcome(route, Ok(()))?;
         if let Err(error) = allow(&decided) {
             found.not_rechecked.push(too_costly("the stretches", &error));
             return Ok(Outcome { route: ALONE, sample: Some((0, decided.count)), ..found });
