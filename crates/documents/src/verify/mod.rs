@@ -23,6 +23,7 @@
 //! | half | the half period, kick by kick | its determinant; the trace of the full period |
 //! | run | the names of the products | none |
 //! | proposition | Bézout's identity | eqs. (9) and (10) in integers |
+//! | aperture | lanes of phases, a series for the exponential | letter by letter, phase by phase, with the platform's exponential |
 //! | advise-direct | half periods in doubles, discs of eigenvalues | the dense full period in doubles |
 //! | advise-system | definite forms, counts | the action over its paths; the full period kick by kick |
 //! | advise | strings, orbits in balls | the full period in balls of 512 bits, pivots of the action |
@@ -72,6 +73,7 @@ macro_rules! rows {
 
 mod advise;
 mod again;
+mod aperture;
 mod bands;
 mod closings;
 mod compare;
@@ -169,6 +171,7 @@ claims! {
     "system-map" SystemMap system::Claim;
     "system-intervals" SystemIntervals system::intervals::Claim;
     "simulate" Simulate system::Simulated;
+    "aperture" Aperture aperture::Claim;
 }
 
 /// A document: as it stands, and in typed rows.
