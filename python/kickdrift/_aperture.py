@@ -131,7 +131,7 @@ def _with_unit(field: str, value: Exact | None, unit: str) -> str | None:
 def _listed(steps: str | Exact | Sequence[Exact] | None) -> str | None:
     if isinstance(steps, list | tuple):
         return ",".join(str(_with_unit("steps", step, "fs")) for step in items("steps", steps, _STEPS))
-    return _with_unit("steps", steps, "fs")  # type: ignore[arg-type]
+    return _with_unit("steps", steps, "fs")
 
 
 def _ends(h_range: str | Sequence[Exact] | None) -> str | None:

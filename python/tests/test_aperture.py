@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import json
 
-import kickdrift as kd
 import numpy as np
 import pytest
+
+import kickdrift as kd
 
 MORSE = "OH:morse:D=485.72kJ/mol,a=22.87/nm,15.999,1.008"
 #: kJ/mol, 1/nm, amu; kT at 350 K in kJ/mol.

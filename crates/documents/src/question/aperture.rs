@@ -78,8 +78,11 @@ notation! {
 question! {
     /// The least energy, in kT, at which a bond is lost: a measurement in doubles, no proof.
     args struct Aperture {
-        /// The bond: k of E = k x^2/2, K of E = K x^2, morse:D=X,a=Y or poly:k2=X,k3=Y,k4=Z, two masses in
-        /// amu; as OH:morse:D=485.72kJ/mol,a=22.87/nm,15.999,1.008
+        /// The bond, as OH:K=553kcal/mol/A^2,15.999,1.008; in place of K=X also k=X, morse:D=X,a=Y, or
+        /// poly:k2=X,k3=Y,k4=Z
+        ///
+        /// K of E = K x^2, k of E = k x^2/2, D and a of E = D (1 - exp(-a x))^2, k2, k3 and k4 of E = k2 x^2 +
+        /// k3 x^3 + k4 x^4; masses in amu.
         #[arg(long, value_name = "NAME:SHAPE,M1,M2", allow_hyphen_values = true, value_parser = flag::<Bond>)]
         bond: Bond,
         /// The temperature.
