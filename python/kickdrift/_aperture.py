@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from kickdrift import _plot
 from kickdrift._document import Table, answered
-from kickdrift._numbers import Exact, items, optional_text, text, written
+from kickdrift._numbers import Exact, items, text, written
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -112,8 +112,8 @@ def aperture(
         steps=_listed(steps),
         h_range=_ends(h_range),
         step=_with_unit("step", step, "fs"),
-        method=optional_text("method", method),
-        word=optional_text("word", word),
+        method=method,
+        word=word,
         substeps=substeps,
         slow=_with_unit("slow", slow, "fs"),
         bonds=bonds,

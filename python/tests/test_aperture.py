@@ -53,7 +53,7 @@ def test_steps_ranges_and_units_mean_the_same() -> None:
 def test_the_program_writes_the_same_document() -> None:
     from kickdrift import _native
 
-    arguments = ["aperture", "--bond", MORSE, "--steps=1.95fs,2.2fs", "--threads=1", "--format", "json", "--quiet"]
+    arguments = ["aperture", "--bond", MORSE, "--steps=1.95fs,2.2fs", "--format", "json", "--quiet"]
     document = _native.answer(arguments).decode()
     assert document == kd.aperture(MORSE, steps="1.95fs,2.2fs").to_json()
     assert json.loads(document)["steps"][0]["k"] == 4
