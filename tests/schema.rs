@@ -115,6 +115,8 @@ const LINES: &[&str] = &[
     "word --method forest-ruth",
     "word --method respa-4",
     "word --method respa-4 --lambda1 pi^2 --lambda2 pi^2/25 --h 1 --h-range 0..3",
+    "aperture --bond OH:morse:D=485.72kJ/mol,a=22.87/nm,15.999,1.008 --steps 1.95fs,2.8fs --h-range 2.3fs..2.31fs",
+    "aperture --bond CH:k=340kcal/mol/A^2,12.011,1.008 --substeps 2 --slow 40fs --steps 1fs",
     "word --list",
     "word --method symplectic-euler --lambda1 1 --h 3",
     "word --method impulse --lambda1 pi^2/25 --lambda2 pi^2/400 --h 4 --h-range 0..16",

@@ -14,6 +14,7 @@ from importlib.metadata import version as _version
 
 from kickdrift._advice import Advice, SystemAdvice
 from kickdrift._advise import advise
+from kickdrift._aperture import Aperture, aperture
 from kickdrift._bands import Bands, bands
 from kickdrift._compare import Comparison, compare
 from kickdrift._document import Document, Row, Table
@@ -38,6 +39,7 @@ __version__ = _version("kickdrift")
 
 __all__ = [
     "Advice",
+    "Aperture",
     "Bands",
     "BudgetError",
     "Closings",
@@ -67,6 +69,7 @@ __all__ = [
     "Word",
     "__version__",
     "advise",
+    "aperture",
     "bands",
     "closings",
     "compare",

@@ -274,6 +274,37 @@ def ladder(document: Mapping[str, Any], ax: Axes | None) -> Axes:
     return canvas
 
 
+def aperture(document: Mapping[str, Any], ax: Axes | None) -> Axes:
+    """The aperture over the step; a step at which no start is lost stands at 40 kT."""
+    canvas, rows, most = axes(ax), document["steps"], 40.0
+    steps = np.array([row["h"] for row in rows])
+    energy = {
+        name: np.array([most if row[name] is None else row[name] for row in rows])
+        for name in ("aperture", "half_aperture")
+    }
+    canvas.plot(steps, energy["half_aperture"], color=FAMILIES[0], linewidth=0.8, label="half of all phases are lost")
+    canvas.plot(steps, energy["aperture"], ".-", color=COLOURS["ink"], markersize=3, label="some phase is lost")
+    canvas.axhline(document["level"], color=COLOURS["parabolic"], linestyle="--", linewidth=1, label="ln N")
+    for place in document["resonances"]:
+        if place["h"] is not None and steps.min() <= place["h"] <= steps.max():
+            canvas.axvline(place["h"], color=COLOURS["grey"], linestyle=":", linewidth=0.8)
+            canvas.annotate(f"k = {place['k']}", (place["h"], most + 1), ha="center", fontsize=7)
+    if "steps" in document["input"] and "h_range" in document["input"]:
+        chosen = _chosen(document["input"]["steps"], steps)
+        canvas.plot(steps[chosen], energy["aperture"][chosen], "o", color=COLOURS["ink"], label="the steps asked for")
+    canvas.set_ylim(0, most + 4)
+    canvas.set_xlabel("step (fs)")
+    canvas.set_ylabel("energy (kT)")
+    canvas.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, frameon=False)
+    return canvas
+
+
+def _chosen(texts: str, steps: npt.NDArray[np.float64]) -> list[int]:
+    """The rows of the steps that were asked for one by one, in fs."""
+    places = (float(Fraction(step.removesuffix("fs").strip())) for step in texts.split(",") if step.endswith("fs"))
+    return [int(np.abs(steps - place).argmin()) for place in places]
+
+
 _INTERVALS = ("first", "inside", "below", "above")
 
 

@@ -146,6 +146,7 @@ CHAIN = kd.System({"build": {"kind": "chain", "masses": 3, "stiffness": [1], "st
 #: What each function is asked in earnest.
 ASKED: dict[str, dict[str, Any]] = {
     "advise": {"periods": ["10fs", "40fs"], "steps": ["0.5fs", "4fs"], "levers": False},
+    "aperture": {"bond": "OH:K=553kcal/mol/A^2,15.999,1.008", "steps": 4},
     "closings": {"max_sum": 3},
     "compare": {"max_sum": 3, "rho": "1/25", "samples": 3},
     "curves": {"samples": 3},

@@ -41,6 +41,7 @@ def orbit() -> Monodromy:
 
 RESULTS: dict[str, Callable[[], Any]] = {
     "Advice": lambda: kd.advise({"OH": "10fs", "slow": "40fs"}, steps=["0.5fs", "4fs"]),
+    "Aperture": lambda: kd.aperture("OH:K=553kcal/mol/A^2,15.999,1.008", steps=4),
     "Closings": lambda: kd.closings(max_sum=5),
     "Comparison": lambda: kd.compare(max_sum=5, rho="1/25", samples=3),
     "Curves": lambda: kd.curves(a="0..1", b="0..1"),

@@ -2,14 +2,14 @@
 
 use clap::Command;
 
-use documents::question::{Bands, Question, Word};
+use documents::question::{Aperture, Bands, Question, Word};
 
 const EXIT_CODES: &str = "Exit codes:
   0  done
   2  error: one line on standard error names the field, its value and a remedy; nothing is half-written";
 
 /// The usage of commands whose required flags depend on each other.
-const USAGES: [(&str, &str); 7] = [
+const USAGES: [(&str, &str); 8] = [
     ("map", "--lambda1 <X> --lambda2 <Y> --step <D> --h1-range <LO..HI> --h2-range <LO..HI>"),
     (
         "compare",
@@ -18,12 +18,13 @@ const USAGES: [(&str, &str); 7] = [
     ("tongues", "(--ratio <P/Q> | --max-sum <N>) (--rho <R> | --lambda1 <X> --lambda2 <Y>)"),
     ("closings", "(--ratio <P/Q> | --max-sum <N>)"),
     ("advise", "(FILE | --period <NAME=T>... | --bond <NAME:K=..>... | --engine <FILE>) [--steps <A,B>]..."),
+    ("aperture", "--bond <NAME:SHAPE,M1,M2> [--temperature <T>] (--steps <TIME,...> | --h-range <LO..HI>)"),
     ("proposition", "[--max <N>]"),
     ("word", "(WORD | --method <NAME> | --list) [--lambda1 <X>] [--lambda2 <Y>] [--h <H>]"),
 ];
 
 /// Examples of commands that are no question of their own.
-const EXAMPLES: [(&str, &[&str]); 16] = [
+const EXAMPLES: [(&str, &[&str]); 17] = [
     (
         "verdict",
         &[
@@ -58,6 +59,7 @@ const EXAMPLES: [(&str, &[&str]); 16] = [
         ],
     ),
     ("bands", Bands::EXAMPLES),
+    ("aperture", Aperture::EXAMPLES),
     ("word", Word::EXAMPLES),
     ("closings", &["closings --max-sum 8", "closings --ratio 5/3 --format latex --digits 8"]),
     (

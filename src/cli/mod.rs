@@ -3,6 +3,7 @@
 //! Exit codes: 0 done, 1 unstable (only with `--exit-code`), 2 error, with one line on standard error.
 
 mod advise;
+mod aperture;
 mod args;
 mod asked;
 mod bands;
@@ -87,6 +88,8 @@ enum Command {
     System(system::Args),
     /// Which steps are safe for these periods or bonds, for how long, and why.
     Advise(advise::Args),
+    /// How hot may a bond be before the method throws it out? Measured over steps, no proof.
+    Aperture(aperture::Args),
     /// Runs a system as Algorithm 1 of Fong, Darve and Lew does: its energy and growth beside the prediction.
     Simulate(simulate::Args),
     /// A page on this machine to move in the plane of steps: maps, tongues and verdicts, at any depth.
@@ -104,10 +107,11 @@ enum Command {
 impl Command {
     /// Whether its output may be more than a document: a figure, arrays, files of its own.
     fn draws(&self) -> bool {
-        use Command::{Advise, Bands, Cite, Compare, Generate, Map, Merge, Run, System, Tongues};
+        use Command::{Advise, Aperture, Bands, Cite, Compare, Generate, Map, Merge, Run, System, Tongues};
         matches!(
             self,
             Advise(_)
+                | Aperture(_)
                 | Bands(_)
                 | Compare(_)
                 | Cite(_)
@@ -250,6 +254,7 @@ fn run(cli: &Cli) -> Result<u8> {
         Command::Verify(args) => args.run(common)?,
         Command::System(args) => return args.run(common),
         Command::Advise(args) => args.run(common)?,
+        Command::Aperture(args) => args.run(common)?,
         Command::Simulate(args) => args.run(common)?,
         Command::Explore(args) => args.run(common)?,
         Command::Cite(args) => args.run(common)?,

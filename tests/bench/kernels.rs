@@ -5,6 +5,7 @@
 //! `cargo bench --bench kernels` lists the names; a second argument (`portable`, `avx2`, `avx512`) forces
 //! that form.
 
+use kickdrift::advise::aperture::{Bond, Measurement};
 use kickdrift::map::{Map, Pairs, Products, Resources};
 use kickdrift::number::rational::ratio;
 use kickdrift::number::{Laurent, Ratio};
@@ -17,7 +18,7 @@ mod common;
 use common::figure_1;
 
 /// A name, and the work.
-const KERNELS: [(&str, fn()); 10] = [
+const KERNELS: [(&str, fn()); 12] = [
     ("start", || ()),
     ("short", || tier(Tier::Filter, 21, 19, 1000)),
     ("filter", || tier(Tier::Filter, 17_711, 10_946, 1)),
@@ -33,7 +34,19 @@ const KERNELS: [(&str, fn()); 10] = [
             .and_then(|tongues| tongues.all())
             .expect("a ratio");
     }),
+    ("aperture", || {
+        aperture("OH:poly:k2=254049kJ/mol/nm^2,k3=-5810111kJ/mol/nm^3,k4=77511731kJ/mol/nm^4,15.999,1.008");
+    }),
+    ("aperture-morse", || aperture("OH:morse:D=485.72kJ/mol,a=22.87/nm,15.999,1.008")),
 ];
+
+/// One step of 1.8 fs, at which most phases stay: some 10^8 steps of a bond.
+fn aperture(bond: &str) {
+    let verlet = "K(1/2) D(1) K(1/2)".parse().expect("a word");
+    let bond = Bond::read(bond).expect("a bond");
+    let measurement = Measurement::new(&bond, &ratio(298, 1), &verlet, None).expect("a bond and a word");
+    std::hint::black_box(measurement.at(&ratio(9, 5)).expect("nobody stops it"));
+}
 
 fn tier(first: Tier, p: u64, q: u64, times: usize) {
     let clocks = TwoClocks::with_rho(Ratio::new(p, q).unwrap(), ratio(1, 3), ratio(1, 25));

@@ -316,6 +316,7 @@ fn every_command_explains_itself() {
         "run",
         "tongues",
         "closings",
+        "aperture",
         "bands",
         "word",
         "verify",
@@ -332,6 +333,18 @@ fn every_command_explains_itself() {
     let all = stdout(&["--help"]);
     assert!(all.contains("verdict") && all.contains("--budget"));
     assert!(stdout(&["--version"]).starts_with("kickdrift "));
+}
+
+#[test]
+fn an_aperture_has_the_same_bytes_on_any_number_of_threads() {
+    let bond = "OH:morse:D=485.72kJ/mol,a=22.87/nm,15.999,1.008";
+    let asked = |threads| {
+        let line =
+            ["aperture", "--bond", bond, "--h-range", "1.9fs..2.3fs", "--step", "0.1fs", "--format", "json"];
+        stdout(&[&line[..], &["--threads", threads]].concat())
+    };
+    let alone = asked("1");
+    assert!(alone.contains("no proof") && asked("2") == alone && asked("5") == alone);
 }
 
 /// Every answer in the README is the program's own; "..." stands for the rest.

@@ -40,6 +40,7 @@ fn the_budget_that_a_message_names_is_enough() {
         ("20", "tongues --ratio 31/29 --rho 1 --m 3 --certificate tongue.v"),
         ("0", "map --lambda1 10 --lambda2 1 --step 1/20 --h1-range 1/10..1 --h2-range 1/10..1"),
         ("10", "bands --lambda1 pi^2 --lambda2 pi^2/25 --h1-range 1/5..1/4 --h2-range 9/10..1 --sectors 100"),
+        ("10", "aperture --bond OH:K=553kcal/mol/A^2,15.999,1.008 --steps 4fs"),
         ("10", "compare --max-sum 5 --rho 1 --samples 3"),
         ("10", "advise --period 10fs --period 40fs --steps 1fs,4fs"),
         ("10", "system data/three-clocks.json"),

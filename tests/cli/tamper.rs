@@ -343,6 +343,7 @@ fn no_change_to_a_verdict_a_map_or_a_curve_passes() {
         "polynomial --ratio 5/4",
         "half --ratio 5/4 --s 3/2 --rho 1/7",
         "bands --lambda1 pi^2 --lambda2 pi^2/25 --h1-range 1/5..1/4 --h2-range 9/10..1 --sectors 60",
+        "aperture --bond OH:morse:D=485.72kJ/mol,a=22.87/nm,15.999,1.008 --steps 1.95fs",
         "proposition --max 5",
         "word --method 2mn-velocity --lambda1 1 --h 2",
         "word --list",

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use super::support::{Desk, words};
 
 /// One document of every kind that can be rechecked, with all columns.
-const DOCUMENTS: [&str; 31] = [
+const DOCUMENTS: [&str; 32] = [
     "tongues --ratio 7/3 --rho 1/25",
     "tongues --max-sum 12 --lambda1 pi^2 --lambda2 pi^2/25",
     "tongues --ratio 5/3 --rho 114/55 --digits 40",
@@ -36,6 +36,7 @@ const DOCUMENTS: [&str; 31] = [
     "advise --period OH=14.1fs --period 34.1fs --steps 0.5fs,1fs --band 0.2",
     "advise --period 10fs --period 40fs --period 100fs --steps 0.7fs,1fs,3fs",
     "bands --lambda1 pi^2 --lambda2 pi^2/25 --h1-range 1/5..1/4 --h2-range 9/10..1 --sectors 200",
+    "aperture --bond OH:poly:k2=254049.483068kJ/mol/nm^2,k3=-5810111.67776516kJ/mol/nm^3,k4=77511731.54111870kJ/mol/nm^4,15.999,1.008 --steps 1.5fs,1.95fs --method baoab",
     "word --method avi-3-2 --lambda1 pi^2 --lambda2 pi^2/25 --h 1 --h-range 0..3",
     "word --method forest-ruth",
     "word --list",

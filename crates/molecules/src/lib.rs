@@ -30,6 +30,7 @@
 //! | `caution`, `caps` | what is published, and the steps below it |
 //! | `typical` | periods that are known by name |
 //! | `beads` | ring polymers |
+//! | [`mod@aperture`] | how hot a bond may be before the method throws it out, measured |
 //! | [`engine`] | the input of simulation engines |
 //!
 //! ```
@@ -48,6 +49,7 @@
 //! ```
 
 mod answer;
+pub mod aperture;
 mod beads;
 mod caps;
 mod caution;

@@ -264,7 +264,7 @@ impl Mode {
     }
 }
 
-fn mass(bond: &str, text: &str) -> Result<Rational> {
+pub(super) fn mass(bond: &str, text: &str) -> Result<Rational> {
     let field = format!("bond {bond}: mass");
     let with_unit = unit::dimension(text).map_or_else(|| format!("{}amu", text.trim()), |_| text.into());
     unit::rational(&field, &with_unit, Dimension::Mass)

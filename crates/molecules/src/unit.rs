@@ -84,6 +84,16 @@ pub enum Dimension {
     Stiffness,
     /// One over time, in 1/fs.
     Rate,
+    /// In amu nm²/fs².
+    Energy,
+    /// One over length, in 1/nm.
+    Narrowness,
+    /// Energy over the third power of a length, in amu/(fs² nm).
+    Cubic,
+    /// Energy over the fourth power of a length, in amu/(fs² nm²).
+    Quartic,
+    /// In kelvin.
+    Temperature,
 }
 
 /// A unit: its names, the first one the usual, and its size in the unit of its dimension.
@@ -97,10 +107,10 @@ const fn unit(dimension: Dimension, names: &'static [&'static str], size: &'stat
     Unit { dimension, names, size }
 }
 
-use Dimension::{Mass, Rate, Stiffness, Time, Wavenumber};
+use Dimension::{Cubic, Energy, Mass, Narrowness, Quartic, Rate, Stiffness, Temperature, Time, Wavenumber};
 
 /// Longer names stand before the shorter ones that they end in.
-const UNITS: [Unit; 15] = [
+const UNITS: [Unit; 29] = [
     // ħ/E_h, measured (CODATA 2022); before the mass that its name ends in.
     unit(Time, &["atomic_unit", "a.u.", "au"], "2.4188843265864e-2"),
     unit(Time, &["fs"], "1"),
@@ -120,6 +130,21 @@ const UNITS: [Unit; 15] = [
     unit(Stiffness, &["eV/A^2"], "1.602176634e-19*6.02214076e23*1e-7"),
     // N_A over 1e-3 kg/mol, in 1/s².
     unit(Stiffness, &["N/m"], "6.02214076e23*1e3*1e-30"),
+    // 1 kJ/mol is 1e6 m²/s² times 1 g/mol, and 1 m²/s² is 1e-12 nm²/fs².
+    unit(Energy, &["kcal/mol"], "4.184e-6"),
+    unit(Energy, &["kJ/mol"], "1e-6"),
+    unit(Energy, &["eV"], "1.602176634e-19*6.02214076e23*1e-9"),
+    unit(Narrowness, &["1/nm", "/nm", "nm^-1"], "1"),
+    unit(Narrowness, &["1/A", "/A", "A^-1"], "10"),
+    unit(Cubic, &["kcal/mol/A^3"], "4.184e-3"),
+    unit(Cubic, &["kJ/mol/nm^3"], "1e-6"),
+    unit(Cubic, &["kJ/mol/A^3"], "1e-3"),
+    unit(Cubic, &["eV/A^3"], "1.602176634e-19*6.02214076e23*1e-6"),
+    unit(Quartic, &["kcal/mol/A^4"], "4.184e-2"),
+    unit(Quartic, &["kJ/mol/nm^4"], "1e-6"),
+    unit(Quartic, &["kJ/mol/A^4"], "1e-2"),
+    unit(Quartic, &["eV/A^4"], "1.602176634e-19*6.02214076e23*1e-5"),
+    unit(Temperature, &["K"], "1"),
 ];
 
 impl Dimension {
@@ -130,6 +155,11 @@ impl Dimension {
             Mass => "of mass there is amu",
             Stiffness => "of force constants there are kcal/mol/A^2, kJ/mol/nm^2, eV/A^2, N/m",
             Rate => "of rates there are 1/ps, 1/fs",
+            Energy => "of energies there are kcal/mol, kJ/mol, eV",
+            Narrowness => "of inverse lengths there are 1/nm, 1/A",
+            Cubic => "of cubic constants there are kcal/mol/A^3, kJ/mol/nm^3, kJ/mol/A^3, eV/A^3",
+            Quartic => "of quartic constants there are kcal/mol/A^4, kJ/mol/nm^4, kJ/mol/A^4, eV/A^4",
+            Temperature => "of temperatures there is K",
         }
     }
 
@@ -140,6 +170,11 @@ impl Dimension {
             Mass => "amu",
             Stiffness => "kcal/mol/A^2",
             Rate => "/ps",
+            Energy => "kcal/mol",
+            Narrowness => "/nm",
+            Cubic => "kcal/mol/A^3",
+            Quartic => "kcal/mol/A^4",
+            Temperature => "K",
         }
     }
 }
@@ -168,6 +203,19 @@ pub fn dimension(text: &str) -> Option<Dimension> {
 /// A unit that is missing, unknown or of another dimension, and a number that is not positive, named by
 /// `field`.
 pub fn measured(field: &str, text: &str, dimension: Dimension) -> Result<Laurent> {
+    let number = signed(field, text, dimension)?;
+    if number.sign() == Sign::Positive {
+        Ok(number)
+    } else {
+        Err(Error::input(field, text.trim(), "must be positive"))
+    }
+}
+
+/// As [`measured`], for numbers of any sign.
+///
+/// # Errors
+/// As [`measured`], but for the sign.
+pub fn signed(field: &str, text: &str, dimension: Dimension) -> Result<Laurent> {
     let Some((number, unit)) = split(text) else {
         let remedy = match parse(field, text) {
             Ok(_) => {
@@ -184,9 +232,6 @@ pub fn measured(field: &str, text: &str, dimension: Dimension) -> Result<Laurent
         return Err(Error::input(field, text.trim(), remedy));
     }
     let number = parse(field, &number).map_err(|error| Error::input(field, text.trim(), error.remedy()))?;
-    if number.sign() != Sign::Positive {
-        return Err(Error::input(field, text.trim(), "must be positive"));
-    }
     let size = parse_rational("unit", unit.size).expect("the table of units is sound");
     Ok(&number * &Laurent::from_rational(size))
 }
@@ -213,7 +258,18 @@ pub fn plain(field: &str, text: &str) -> Result<Laurent> {
 /// # Errors
 /// As [`measured`]; a number that is not rational.
 pub fn rational(field: &str, text: &str, dimension: Dimension) -> Result<Rational> {
-    let number = measured(field, text, dimension)?;
+    without_pi(field, text, &measured(field, text, dimension)?)
+}
+
+/// As [`rational`], for numbers of any sign.
+///
+/// # Errors
+/// As [`rational`], but for the sign.
+pub fn signed_rational(field: &str, text: &str, dimension: Dimension) -> Result<Rational> {
+    without_pi(field, text, &signed(field, text, dimension)?)
+}
+
+fn without_pi(field: &str, text: &str, number: &Laurent) -> Result<Rational> {
     number
         .as_rational()
         .ok_or_else(|| Error::input(field, text.trim(), "must be rational; write it without pi"))

@@ -23,6 +23,7 @@ mod advised;
 mod asking;
 mod field;
 
+mod aperture;
 mod bands;
 mod closings;
 mod compare;
@@ -43,6 +44,7 @@ mod want;
 mod word;
 
 pub use advise::{Advise, Advised, Safe};
+pub use aperture::Aperture;
 pub(crate) use asking::question;
 pub use asking::{Fields, Question, Watch, Work};
 pub use bands::Bands;
@@ -133,6 +135,7 @@ fn named(name: &str) -> Result<&'static Named> {
         Named::of::<System>(),
         Named::of::<Simulate>(),
         Named::of::<Advise>(),
+        Named::of::<Aperture>(),
     ];
     ALL.iter().find(|known| known.name == name).ok_or_else(|| {
         let names: Vec<&str> = ALL.iter().map(|known| known.name).collect();

@@ -5,6 +5,7 @@
 //! appear whole or not at all, and the charts, which the crate `plot` draws.
 
 pub mod advise;
+pub mod aperture;
 pub mod bands;
 #[doc(hidden)]
 pub mod certificate;

@@ -23,6 +23,7 @@
 //! | half | the half period, kick by kick | its determinant; the trace of the full period |
 //! | run | the names of the products | none |
 //! | proposition | Bézout's identity | eqs. (9) and (10) in integers |
+//! | aperture | lanes of phases, a series for the exponential | letter by letter, phase by phase, with the platform's exponential |
 //! | advise-direct | half periods in doubles, discs of eigenvalues | the dense full period in doubles |
 //! | advise-system | definite forms, counts | the action over its paths; the full period kick by kick |
 //! | advise | strings, orbits in balls | the full period in balls of 512 bits, pivots of the action |
@@ -43,6 +44,7 @@ mod by_rows;
 
 mod advise;
 mod again;
+mod aperture;
 mod bands;
 mod closings;
 mod compare;
@@ -74,7 +76,7 @@ use self::context::{Context, REMEDY};
 use crate::input::json;
 use crate::input::kind::{is_asked, of_another_kind};
 use crate::question::{
-    Advised, Bands, Closings, Compare, CompareMethods, Curves, Half, Methods, Polynomial, Proposition,
+    Advised, Aperture, Bands, Closings, Compare, CompareMethods, Curves, Half, Methods, Polynomial, Proposition,
     Question, Simulate, Survey, System, Verdict, Word,
 };
 use number::error::{Error, Result};
@@ -153,6 +155,7 @@ const KINDS: &[Kind] = &[
     Kind::of::<System>("system-map", "rows"),
     Kind::of::<System>("system-intervals", "stretches"),
     Kind::of::<Simulate>("simulate", "series"),
+    Kind::of::<Aperture>("aperture", "steps"),
 ];
 
 /// A document that is to be verified.
