@@ -52,6 +52,7 @@
 //! | `damped` | friction: the spectral radius of the period, proven |
 //! | `paths` | the action itself and the full period: another route, for rechecks |
 //! | `step` | one step of other methods, the same way |
+//! | `source` | both kinds of levels behind one face |
 //! | `answer` | the verdict at one outer step |
 //! | `intervals` | the verdicts on a range of outer steps |
 
@@ -74,6 +75,7 @@ mod nested;
 mod paths;
 mod region;
 mod rigid;
+mod source;
 pub mod sparse;
 mod step;
 
@@ -85,3 +87,4 @@ pub use nested::{AtStep, Nested, Steps};
 pub use paths::Near;
 pub use rigid::{Hessians, rigid_motions, translations};
 pub(crate) use rigid::{Motions, Shares, projected};
+pub use source::{Decided, Source};

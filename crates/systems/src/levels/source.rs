@@ -1,14 +1,17 @@
-//! The sources of decisions about Hessians: two levels by their eigenbasis, any other number of them by the
-//! action. Advice uses both alike.
+//! The one face of dense levels: two of an integer ratio by their eigenbasis, any others by the action.
+//! Verdicts, ranges and advice ask both alike.
 
 use std::fmt::Debug;
 
+use super::growth::Growing;
+use super::kernel::{Kernel, Outer};
+use super::nested::Nested;
+use crate::friction::Damping;
+use crate::verdict::analysis::{Analysis, Instability};
+use crate::verdict::measured::{Holds, Removed};
 use number::Rational;
 use number::error::{Error, Result};
 use number::rational::to_f64;
-use systems::friction::Damping;
-use systems::levels::{Growing, Kernel, Nested, Outer};
-use systems::{Analysis, Holds, Instability, Removed};
 
 /// Stiffnesses of levels, steps and rates in their unit of time; `steps` are those of all levels, innermost
 /// first. What is proven of an outer step is so with all others in their ratios to it.
