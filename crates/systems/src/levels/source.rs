@@ -3,8 +3,10 @@
 
 use std::fmt::Debug;
 
-use super::growth::Growing;
-use super::kernel::{Kernel, Outer};
+use faer::Mat;
+
+use super::growth::{Growing, Grows};
+use super::kernel::{Kernel, Outer, highest_frequency};
 use super::nested::Nested;
 use crate::friction::Damping;
 use crate::verdict::analysis::{Analysis, Instability};
@@ -28,8 +30,13 @@ pub trait Source: Debug + Send + Sync {
     /// λ of the innermost stiffness alone, increasing, rounded.
     fn fast_squares(&self) -> &[f64];
 
-    /// The mode of the k-th of these, mass-weighted: of length 1, rounded.
-    fn fast_mode(&self, k: usize) -> Vec<f64>;
+    /// Their modes as columns in the mass-weighted coordinates given: of length 1, rounded.
+    fn fast_modes(&self) -> &Mat<f64>;
+
+    /// The k-th of these.
+    fn fast_mode(&self, k: usize) -> Vec<f64> {
+        self.fast_modes().col(k).iter().copied().collect()
+    }
 
     /// The highest frequency of each slower stiffness alone, rounded; 0 where it has none.
     fn slower_frequencies(&self) -> Vec<f64>;
@@ -106,11 +113,11 @@ impl Source for Kernel {
     }
 
     fn fast_squares(&self) -> &[f64] {
-        self.fast_squares()
+        &self.values
     }
 
-    fn fast_mode(&self, k: usize) -> Vec<f64> {
-        self.fast_mode(k)
+    fn fast_modes(&self) -> &Mat<f64> {
+        &self.modes
     }
 
     fn slower_frequencies(&self) -> Vec<f64> {
@@ -175,15 +182,15 @@ impl Source for Nested {
     }
 
     fn fast_squares(&self) -> &[f64] {
-        self.fast_squares()
+        &self.squares
     }
 
-    fn fast_mode(&self, k: usize) -> Vec<f64> {
-        self.fast_mode(k)
+    fn fast_modes(&self) -> &Mat<f64> {
+        &self.modes
     }
 
     fn slower_frequencies(&self) -> Vec<f64> {
-        self.slower_frequencies()
+        self.levels[1..].iter().map(|level| highest_frequency(&level.stiffness)).collect()
     }
 
     fn decide(&self, steps: &[Rational], accuracy: f64) -> Result<Decided> {
@@ -204,7 +211,7 @@ impl Source for Nested {
     }
 
     fn unstable_up_to(&self, steps: &[Rational], from: f64, least: f64) -> Result<f64> {
-        Ok(self.at(steps)?.unstable_up_to(from, least))
+        self.at(steps)?.unstable_up_to(from, least)
     }
 
     fn growing(&self, steps: &[Rational], from: f64, width: f64) -> Result<Vec<Growing>> {
