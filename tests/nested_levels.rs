@@ -4,7 +4,7 @@
 use kickdrift::number::Rational;
 use kickdrift::number::rational::{from_f64_exact, ratio};
 use kickdrift::system::friction::Damping;
-use kickdrift::system::levels::{Hessians, Kernel, Nested, Outer};
+use kickdrift::system::levels::{Hessians, Kernel, Nested, Outer, Source};
 use kickdrift::system::{Holds, Limits, Potential, Symmetric, System, decide_system};
 use nalgebra::DMatrix;
 
@@ -109,7 +109,7 @@ fn three_levels_have_the_verdicts_of_the_rational_system() {
             // A little beside the edge, where multipliers are double.
             assert_eq!(decided(&levels, &steps, lo * (1.0 - 1e-7)), Holds::Stable);
             assert_eq!(decided(&levels, &steps, hi * (1.0 + 1e-7)), Holds::Unstable);
-            let upper = at.unstable_up_to(hi, 1e-9);
+            let upper = at.unstable_up_to(hi, 1e-9).unwrap();
             for k in 1..40 {
                 let step = 0.05 * f64::from(k) * lo;
                 let (told, true_one) = (at.verdict_within(step, 0.0), decided(&levels, &steps, step));
@@ -165,7 +165,7 @@ fn growth_and_friction_are_those_of_the_rational_system() {
     let (levels, steps) = (numbers.levels(4), [ratio(1, 4), ratio(1, 2), ratio(1, 1)]);
     let own = nested(&levels);
     let at = own.at(&steps).unwrap();
-    let growing = &at.growing(at.first_unstable().unwrap().1, 1e-4).unwrap()[0];
+    let growing = &own.growing(&steps, at.first_unstable().unwrap().1, 1e-4).unwrap()[0];
     let (step, rate) = growing.worst;
     let found = at.decide(step, 1e-9);
     assert!(found.holds == Holds::Unstable && !found.is_in_first_region && found.growing.is_some());

@@ -214,7 +214,7 @@ fn atoms_that_something_holds_have_no_rigid_motions() {
         let own = of_molecule(molecule(100.0, 0.0, 0.0), molecule(5.0, 0.0, tether));
         let error = Model::Measured(own.clone()).decide(Route::Cheapest, &Limits::default()).unwrap_err();
         assert!(error.to_string().contains(expected), "{error}");
-        let error = Model::Measured(own.clone()).two_levels().err().map(|own| own.to_string());
+        let error = Model::Measured(own.clone()).measured_levels().err().map(|own| own.to_string());
         assert!(error.is_some_and(|own| own.contains(expected)));
         assert!(decide(own.keeping_rigid()).is_proof());
     }

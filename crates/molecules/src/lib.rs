@@ -24,7 +24,6 @@
 //! | `direct` | forces that are no gradient: what the steps add to their own growth |
 //! | `constraint` | bonds that do not vibrate |
 //! | `molecule` | Hessians in place of periods |
-//! | `source` | what decides about them: two levels, or any number |
 //! | `names` | what the motions of molecules are called |
 //! | `question`, `answer` | what is asked, what is answered |
 //! | `caution`, `caps` | what is published, and the steps below it |
@@ -64,7 +63,6 @@ mod mode;
 mod molecule;
 mod names;
 mod question;
-mod source;
 mod typical;
 pub mod unit;
 
@@ -86,5 +84,4 @@ pub use mode::{Bond, Mode, Origin};
 pub use molecule::{Finding, Findings, Group, MOST_PRODUCTS, Molecule};
 pub use names::{Names, Told};
 pub use question::{Question, place};
-pub use source::{Decided, Source};
 pub use typical::{FAST, SLOW, Typical};

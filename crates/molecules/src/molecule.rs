@@ -14,13 +14,12 @@ use super::levels::Scheme;
 use super::levers::{Lever, Levers, MOST_MASKED, RATIOS, Way, bounded, least, of_units};
 use super::names::Names;
 use super::question::{check_band, check_friction, check_length};
-use super::source::Source;
 use super::unit::TimeUnit;
 use number::Rational;
 use number::error::{Error, Result};
 use number::rational::to_f64;
 use systems::friction::Damping;
-use systems::levels::{Growing, Method};
+use systems::levels::{Growing, Method, Source};
 use systems::{Holds, Removed};
 
 /// Measured stiffnesses on their clocks, and what their coordinates are called.

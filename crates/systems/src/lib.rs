@@ -79,7 +79,7 @@ pub use linear::sparse::Symmetric;
 pub use linear::system::{Potential, System};
 pub use linear::{builders, mesh};
 pub use lts::{ElementSteps, Growth, Level, LocalSteps, Scheme, SchemeSummary, SparseSteps};
-pub use model::{Body, ManyLevels, MeasuredSystem, Model, Number, Oscillator, SparseSystem, TwoLevels};
+pub use model::{Body, MeasuredLevels, MeasuredSystem, Model, Number, Oscillator, SparseSystem};
 pub use pi::{PiPotential, beside_pi};
 pub use single::clocks::{ManyClocks, families, shortest_families, shortest_family};
 pub use single::decide::decide_oscillator;

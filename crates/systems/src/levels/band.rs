@@ -12,8 +12,8 @@ use super::half::Half;
 use super::interval::Interval;
 use super::kernel::{Kernel, Outer};
 use super::method::Method;
+use super::search::edge_below;
 use crate::signs::inertia::is_definite;
-use number::bisected;
 
 /// Room for the roundings of a factor.
 const ROOM: f64 = 1e-12;
@@ -122,8 +122,6 @@ impl Kernel {
             Method::ImplicitExplicit => 4.0 / self.highest_slow_frequency(),
             Method::Trigonometric(_) => 4.0 / self.highest_frequency(),
         };
-        let lo = (1..=40).map(|k| hi * 0.5f64.powi(k)).find(|&step| hi.is_finite() && holds(step))?;
-        let hi = hi.min(2.0 * lo);
-        Some(bisected((lo, hi), 1e-6, |step| Some(holds(step))).0)
+        edge_below(hi, 1e-6, |step| hi.is_finite() && holds(step)).map(|(edge, _)| edge)
     }
 }

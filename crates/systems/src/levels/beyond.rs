@@ -13,7 +13,7 @@ use faer::{Mat, Side, c64};
 use super::half::Half;
 use super::interval::Interval;
 use super::kernel::{Kernel, Outer};
-use super::region::largest;
+use super::search::largest;
 use crate::half::norm;
 use crate::spectrum::discs::Spectrum;
 use clocks::verdict::Kind;

@@ -2,13 +2,11 @@
 
 use super::cell::Cells;
 use super::kernel::{Kernel, Outer};
+use super::search::{carried_on, with_first};
 use crate::spectrum::rate::exponent;
-use crate::vary::stretches::{Stretch, cover, merged};
+use crate::vary::stretches::Stretch;
 use crate::verdict::measured::Holds;
 use number::error::{Error, Result};
-
-/// The largest relative change of the stiffnesses by which one verdict is carried on.
-const WIDEST: f64 = 0.05;
 
 impl Kernel {
     /// The largest growth rate ln |λ|/H at an outer step H, per unit time, rounded; `None` where the period
@@ -39,14 +37,8 @@ impl Kernel {
             return Err(Error::input("range", format!("{lo}..{hi}"), remedy));
         }
         let first = self.first_region_end(inner_steps, accuracy).map_or(lo, |(end, _)| end.clamp(lo, hi));
-        let known = (first > lo).then_some(Stretch { lo, hi: first, verdict: Holds::Stable });
         let cells = Cells::new(self, accuracy)?;
-        let rest = if first < hi {
-            cover((first, hi), width, |lo, hi| cells.verdict(inner_steps, (lo, hi)))?
-        } else {
-            Vec::new()
-        };
-        Ok(merged(known.into_iter().chain(rest)))
+        with_first((lo, hi), first, width, |lo, hi| cells.verdict(inner_steps, (lo, hi)))
     }
 
     /// The step up to which every outer one from `at` on, as many inner ones in it, is proven by counts to
@@ -56,21 +48,13 @@ impl Kernel {
     /// # Errors
     /// As [`Outer::new`].
     pub fn unstable_up_to(&self, inner_steps: u64, at: f64, least: f64) -> Result<f64> {
-        let (mut at, last, mut epsilon) = (at, 1.5 * at, least);
-        while at < last {
+        carried_on(at, least, |at, epsilon| {
             // A little inwards, for the roundings of the roots.
             let inner = 0.999_999 * epsilon;
             let middle = at / (1.0 - inner).sqrt();
-            if self.has_real_unstable_mode(&Outer::new(middle, inner_steps)?, epsilon) {
-                at = middle * (1.0 + inner).sqrt();
-                epsilon = (4.0 * epsilon).min(WIDEST);
-            } else if epsilon <= least {
-                break;
-            } else {
-                epsilon = (epsilon / 4.0).max(least);
-            }
-        }
-        Ok(at.min(last))
+            let grows = self.has_real_unstable_mode(&Outer::new(middle, inner_steps)?, epsilon);
+            Ok(grows.then(|| middle * (1.0 + inner).sqrt()))
+        })
     }
 
     /// The verdict that is proven for all stiffnesses within `epsilon` of their norms.

@@ -238,24 +238,19 @@ impl Kernel {
         self.values.len()
     }
 
-    /// The squares of the frequencies of the fast stiffness, increasing, rounded.
-    pub fn fast_squares(&self) -> &[f64] {
-        &self.values
-    }
-
-    /// The mode of the k-th of these, in the mass-weighted coordinates given: of length 1, rounded.
-    pub fn fast_mode(&self, k: usize) -> Vec<f64> {
-        (0..self.modes.nrows()).map(|i| self.modes[(i, k)]).collect()
-    }
-
     /// The highest frequency of the slow stiffness, rounded; 0 where nothing is slow.
     pub fn highest_slow_frequency(&self) -> f64 {
-        let values = self.slow.self_adjoint_eigenvalues(Side::Lower);
-        values.map_or(0.0, |values| values.last().copied().unwrap_or(0.0).max(0.0).sqrt())
+        highest_frequency(&self.slow)
     }
 
     /// The highest frequency of the fast stiffness, rounded.
     pub fn highest_frequency(&self) -> f64 {
         self.values.last().copied().unwrap_or(0.0).max(0.0).sqrt()
     }
+}
+
+/// The highest frequency of a stiffness alone, rounded; 0 where it has none.
+pub(super) fn highest_frequency(stiffness: &Mat<f64>) -> f64 {
+    let values = stiffness.self_adjoint_eigenvalues(Side::Lower);
+    values.map_or(0.0, |values| values.last().copied().unwrap_or(0.0).max(0.0).sqrt())
 }

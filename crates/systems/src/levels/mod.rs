@@ -52,6 +52,8 @@
 //! | `damped` | friction: the spectral radius of the period, proven |
 //! | `paths` | the action itself and the full period: another route, for rechecks |
 //! | `step` | one step of other methods, the same way |
+//! | `search` | edges of what is proven, for both kinds of levels |
+//! | `source` | both kinds of levels behind one face |
 //! | `answer` | the verdict at one outer step |
 //! | `intervals` | the verdicts on a range of outer steps |
 
@@ -74,6 +76,8 @@ mod nested;
 mod paths;
 mod region;
 mod rigid;
+mod search;
+mod source;
 pub mod sparse;
 mod step;
 
@@ -85,3 +89,4 @@ pub use nested::{AtStep, Nested, Steps};
 pub use paths::Near;
 pub use rigid::{Hessians, rigid_motions, translations};
 pub(crate) use rigid::{Motions, Shares, projected};
+pub use source::{Decided, Source};

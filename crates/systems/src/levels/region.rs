@@ -6,9 +6,9 @@ use faer::Mat;
 
 use super::half::Half;
 use super::kernel::{Kernel, Outer, STEP_ERROR};
+use super::search::{EDGE, edge_below, largest, unstable_past};
 use crate::half::norm;
 use crate::signs::inertia::is_definite;
-use number::bisected;
 
 /// The halves of all modes with every stiffness shifted by as much as errors and `epsilon` allow.
 pub(super) struct Shifted<'a> {
@@ -19,23 +19,6 @@ pub(super) struct Shifted<'a> {
     pub slow: Cow<'a, Mat<f64>>,
     /// ‖E₂‖ times half an outer kick, and the rounding of that product's entries.
     pub slow_slack: f64,
-}
-
-/// The largest ε in \[0, 1\] with `holds(ε)`, rounded down within a factor; `None` where not even `holds(0)`.
-pub(super) fn largest(width: f64, holds: impl Fn(f64) -> bool) -> Option<f64> {
-    // By halves of the exponent: below 10^-15 the errors of the eigenbasis are larger than the margin.
-    let (mut lo, mut hi) = (1e-15_f64, 1.0_f64);
-    if !holds(0.0) {
-        return None;
-    }
-    if !holds(lo) {
-        return Some(0.0);
-    }
-    while hi > width * lo {
-        let middle = (lo * hi).sqrt();
-        *(if holds(middle) { &mut lo } else { &mut hi }) = middle;
-    }
-    Some(lo)
 }
 
 impl Kernel {
@@ -90,11 +73,9 @@ impl Kernel {
     /// ([`Method::first_region_ends`](super::method::Method)).
     pub fn first_unstable(&self, inner_steps: u64) -> Option<(f64, f64)> {
         let (lo, hi) = self.first_region_end(inner_steps, 0.0)?;
-        // Where the forms are near 0 doubles cannot decide; a little farther they can.
-        let unstable =
-            |step: f64| Outer::new(step, inner_steps).is_ok_and(|outer| self.is_unstable(&outer, 0.0));
-        let mut steps = (0..16).map(|k| hi + lo * 1e-8 * f64::from(1 << k));
-        steps.find(|&step| unstable(step)).map(|step| (lo, step))
+        unstable_past((lo, hi), |step| {
+            Outer::new(step, inner_steps).is_ok_and(|outer| self.is_unstable(&outer, 0.0))
+        })
     }
 
     /// Two outer steps, 1e-8 apart, relative: all stiffnesses within `epsilon` of their norms are proven
@@ -115,12 +96,10 @@ impl Kernel {
         let stable = |step: f64| {
             outer(step).is_some_and(|outer| is_below(&outer) && self.is_in_first_region(&outer, epsilon))
         };
-        let mut hi = match self.method.highest_angle(inner_steps) {
+        let hi = match self.method.highest_angle(inner_steps) {
             Some(angle) => angle / self.highest_frequency(),
             None => 2.000_002 / self.highest_slow_frequency(),
         };
-        let lo = (1..=40).map(|k| hi * 0.5f64.powi(k)).find(|&step| stable(step))?;
-        hi = hi.min(2.0 * lo);
-        Some(bisected((lo, hi), 1e-8, |step| Some(stable(step))))
+        edge_below(hi, EDGE, stable)
     }
 }

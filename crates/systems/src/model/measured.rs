@@ -7,7 +7,7 @@ use nalgebra::DMatrix;
 use num_traits::{One, Zero};
 
 use crate::friction::Friction;
-use crate::levels::{Cells, Hessians, Kernel, Method, Nested, Outer};
+use crate::levels::{Cells, Hessians, Kernel, Method, Nested, Outer, Source};
 use crate::linear::sparse::Symmetric;
 use crate::linear::system::{Potential, System};
 use crate::vary::stretches::{Stretch, cover};
@@ -52,20 +52,10 @@ pub struct MeasuredSystem {
     kernel: Arc<OnceLock<Kernel>>,
 }
 
-/// Two levels of measured stiffnesses.
+/// Levels of measured stiffnesses, to be asked at any steps.
 #[derive(Clone, Debug)]
-pub struct TwoLevels<'a> {
-    pub kernel: &'a Kernel,
-    pub body: &'a Body,
-    pub outer: Rational,
-    /// Every stiffness is known to this times its norm.
-    pub accuracy: f64,
-}
-
-/// Any number of levels of measured stiffnesses.
-#[derive(Clone, Debug)]
-pub struct ManyLevels<'a> {
-    pub levels: Nested,
+pub struct MeasuredLevels<'a> {
+    pub source: Arc<dyn Source>,
     pub body: &'a Body,
     /// Every stiffness is known to this times its norm.
     pub accuracy: f64,
@@ -333,8 +323,8 @@ impl MeasuredSystem {
 
     /// What `ask` finds of levels that are not two of an inner and an outer step, and of their steps.
     pub(super) fn over_steps<T>(&self, ask: impl FnOnce(&Nested, &[Rational]) -> Result<T>) -> Result<T> {
-        let many = self.nested()?.expect("not of two levels");
-        ask(&many.levels, &self.steps())
+        self.refuse_method("advice")?;
+        ask(&self.nested()?, &self.steps())
     }
 
     /// The verdicts on a range of factors of one level, 0 the fast one, of the present value `factor`, all
@@ -372,33 +362,30 @@ impl MeasuredSystem {
         Ok(Some(hessians.growth_of_step(self.method, outer.step(), inner_steps)))
     }
 
-    /// The eigenbasis with the outer step, and how well the stiffnesses are known.
-    pub(super) fn two_levels(&self) -> Result<TwoLevels<'_>> {
-        let [_, outer] = self.two_steps()?;
-        Ok(TwoLevels { kernel: self.kernel()?, body: &self.body, outer, accuracy: self.accuracy })
-    }
-
-    /// The inner and the outer step.
-    pub(super) fn two_steps(&self) -> Result<[Rational; 2]> {
+    /// That the steps are an inner and an outer one.
+    pub(super) fn check_two_steps(&self) -> Result<()> {
         self.refuse_method("advice")?;
-        let [(inner, _), (outer, _)] = self.potentials.as_slice() else { return Err(self.not_two()) };
-        self.outer().ok_or_else(|| self.not_two())?;
-        Ok([inner.clone(), outer.clone()])
+        let is_two = self.potentials.len() == 2 && self.is_of_two_levels();
+        if is_two { Ok(()) } else { Err(self.not_two()) }
     }
 
-    /// Levels of any number, by the action; `None` where they are two, which have a kernel.
+    /// The levels, behind the face that both kinds have.
     ///
     /// # Errors
     /// As [`MeasuredSystem::kernel`]; another integrator.
-    pub(super) fn nested(&self) -> Result<Option<ManyLevels<'_>>> {
+    pub(super) fn levels(&self) -> Result<MeasuredLevels<'_>> {
         self.refuse_method("advice")?;
-        if self.potentials.len() == 2 && self.is_of_two_levels() {
-            return Ok(None);
-        }
+        let is_two = self.potentials.len() == 2 && self.is_of_two_levels();
+        let source: Arc<dyn Source> =
+            if is_two { Arc::new(self.kernel()?.clone()) } else { Arc::new(self.nested()?) };
+        Ok(MeasuredLevels { source, body: &self.body, accuracy: self.accuracy })
+    }
+
+    /// Levels of any number, by the action.
+    fn nested(&self) -> Result<Nested> {
         let weighted = |matrixes: &[DMatrix<f64>]| matrixes.iter().map(|k| self.weighted(k)).collect();
         let clocks: Vec<Vec<DMatrix<f64>>> = self.clocks().map(|(_, matrixes)| weighted(matrixes)).collect();
-        let levels = Nested::new(&self.hessians()?, &clocks)?;
-        Ok(Some(ManyLevels { levels, body: &self.body, accuracy: self.accuracy }))
+        Nested::new(&self.hessians()?, &clocks)
     }
 
     /// The stiffnesses as they were given, those of each step together, by increasing step.

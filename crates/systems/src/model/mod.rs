@@ -28,7 +28,7 @@ use crate::verdict::measured::Holds;
 use clocks::propagator;
 use clocks::verdict::Kind;
 pub use intervals::Number;
-pub use measured::{Body, ManyLevels, MeasuredSystem, TwoLevels};
+pub use measured::{Body, MeasuredLevels, MeasuredSystem};
 use number::error::{Error, Result};
 use number::{Laurent, Rational};
 pub use oscillator::Oscillator;
@@ -348,20 +348,12 @@ impl Model {
         self.measured().filter(|measured_system| measured_system.is_of_two_levels())
     }
 
-    /// Both levels of a system of two measured ones.
-    ///
-    /// # Errors
-    /// Where the stiffnesses are not measured, and where the steps are others than an inner and an outer one.
-    pub fn two_levels(&self) -> Result<TwoLevels<'_>> {
-        self.of_two()?.two_levels()
-    }
-
-    /// The levels of measured stiffnesses that are not two of an inner and an outer step; `None` of two such.
+    /// The levels of measured stiffnesses, whichever kind they are.
     ///
     /// # Errors
     /// Where the stiffnesses are not measured, and where another integrator than kicks and drifts has them.
-    pub fn many_levels(&self) -> Result<Option<ManyLevels<'_>>> {
-        self.of_two()?.nested()
+    pub fn measured_levels(&self) -> Result<MeasuredLevels<'_>> {
+        self.of_two()?.levels()
     }
 
     /// The steps of measured stiffnesses, innermost first.
@@ -371,14 +363,6 @@ impl Model {
     pub fn measured_steps(&self) -> Result<Vec<Rational>> {
         self.of_two()?.refuse_method("advice")?;
         Ok(self.steps())
-    }
-
-    /// Their steps alone, the inner one first.
-    ///
-    /// # Errors
-    /// As [`Model::two_levels`].
-    pub fn two_steps(&self) -> Result<[Rational; 2]> {
-        self.of_two()?.two_steps()
     }
 
     fn of_two(&self) -> Result<&MeasuredSystem> {
@@ -401,13 +385,14 @@ impl Model {
         self.measured().ok_or_else(|| Error::input("stiffness", "given in place", remedy))
     }
 
-    /// The matrices of [`Model::two_levels`], rigid motions projected out.
+    /// The matrices of two measured levels, rigid motions projected out.
     ///
     /// # Errors
-    /// As [`Model::two_levels`].
+    /// As [`Model::measured_levels`]; steps other than an inner and an outer one.
     pub fn hessians(&self) -> Result<Hessians> {
-        self.two_steps()?;
-        self.of_two()?.hessians()
+        let measured_system = self.of_two()?;
+        measured_system.check_two_steps()?;
+        measured_system.hessians()
     }
 
     /// The largest ln |λ|/T of two levels of measured stiffnesses, or of Hessians along an orbit, by the

@@ -1,14 +1,12 @@
 //! Measured levels as a molecule to be advised on.
 
-use std::sync::Arc;
-
 use serde::Deserialize;
 use serde_json::{Value, json};
 
 use super::SystemScene;
 use super::measured::MassesDocument;
 use molecules::unit::{self, Dimension};
-use molecules::{Direct, Molecule, Names, Scheme, Source, Told};
+use molecules::{Direct, Molecule, Names, Scheme, Told};
 use number::Rational;
 use number::error::{Error, Result};
 use systems::Body;
@@ -31,14 +29,8 @@ impl SystemScene {
     /// As [`SystemScene::scheme`].
     pub fn molecule(&self) -> Result<(Molecule, Scheme)> {
         let (scheme, unit) = (self.scheme()?, self.femtoseconds()?);
-        let (source, body, accuracy): (Arc<dyn Source>, _, _) = match self.model.many_levels()? {
-            Some(many_levels) => (Arc::new(many_levels.levels), many_levels.body, many_levels.accuracy),
-            None => {
-                let two_levels = self.model.two_levels()?;
-                (Arc::new(two_levels.kernel.clone()), two_levels.body, two_levels.accuracy)
-            }
-        };
-        Ok((Molecule::new(source, unit, self.names(body)?, accuracy), scheme))
+        let levels = self.model.measured_levels()?;
+        Ok((Molecule::new(levels.source, unit, self.names(levels.body)?, levels.accuracy), scheme))
     }
 
     /// Forces that are no gradient, to be advised on; `None` where they are gradients.

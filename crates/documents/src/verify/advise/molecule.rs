@@ -25,9 +25,10 @@ trait Route {
 
 /// The route that does not share a step with how this system is advised on.
 fn route<'a>(scene: &'a SystemScene, band: f64, limits: &'a Limits) -> Result<Box<dyn Route + 'a>> {
-    Ok(match scene.model().many_levels()? {
-        None => Box::new(Other::new(scene, band)?),
-        Some(_) => Box::new(Many { system: scene.model().moving()?, scene, band, limits }),
+    let levels = scene.model().measured_levels()?;
+    Ok(match levels.source.kernel() {
+        Some(kernel) => Box::new(Other::new(scene, kernel.norms().map(|norm| levels.accuracy * norm), band)?),
+        None => Box::new(Many { system: scene.model().moving()?, scene, band, limits }),
     })
 }
 
@@ -128,9 +129,7 @@ struct Other {
 const GROWTH: f64 = 1e-5;
 
 impl Other {
-    fn new(scene: &SystemScene, band: f64) -> Result<Other> {
-        let levels = scene.model().two_levels()?;
-        let off = levels.kernel.norms().map(|norm| levels.accuracy * norm);
+    fn new(scene: &SystemScene, off: [f64; 2], band: f64) -> Result<Other> {
         let unit = to_f64(&scene.femtoseconds()?);
         Ok(Other { hessians: scene.model().hessians()?, off, band, unit })
     }

@@ -83,9 +83,10 @@ pub struct Stands<'a> {
 impl<'a> Stands<'a> {
     pub fn of(scene: &SystemScene, measured: &'a Measured) -> Result<Stands<'a>> {
         let model = scene.model();
-        let levels = model.two_levels().ok().map(|two| -> Result<_> {
+        let source = model.measured_levels().ok().map(|levels| levels.source);
+        let levels = source.as_ref().and_then(|source| source.kernel()).map(|kernel| -> Result<_> {
             let (hessians, p) = (model.hessians()?, model.inner_steps().unwrap_or(1));
-            Ok((hessians, two.kernel.norms(), to_f64(&two.outer), p))
+            Ok((hessians, kernel.norms(), to_f64(&model.outer_step()), p))
         });
         let levels = levels.transpose()?.filter(|(hessians, _, _, p)| hessians.has_paths(*p));
         Ok(Stands { measured, levels })

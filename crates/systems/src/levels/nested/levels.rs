@@ -16,8 +16,8 @@ use number::{Rational, U};
 
 /// The stiffness of one clock, in coordinates without the rigid motions.
 #[derive(Clone, Debug)]
-pub(super) struct Level {
-    pub(super) stiffness: Mat<f64>,
+pub(in crate::levels) struct Level {
+    pub(in crate::levels) stiffness: Mat<f64>,
     /// How far (2-norm) it is from the exact restriction of what was given.
     pub(super) error: f64,
     /// No less than what it is known relative to: its norm, or the sum of those of the potentials on its
@@ -29,10 +29,10 @@ pub(super) struct Level {
 /// Stiffnesses of any number of levels, innermost first.
 #[derive(Clone, Debug)]
 pub struct Nested {
-    pub(super) levels: Vec<Level>,
+    pub(in crate::levels) levels: Vec<Level>,
     /// λ of the innermost one, increasing, and its modes as columns in the coordinates given, rounded.
-    pub(super) squares: Vec<f64>,
-    pub(super) modes: Mat<f64>,
+    pub(in crate::levels) squares: Vec<f64>,
+    pub(in crate::levels) modes: Mat<f64>,
     /// No less than how far the innermost one reaches below 0.
     pub(super) lack: f64,
     pub(super) basis: Option<Mat<f64>>,
@@ -92,25 +92,6 @@ impl Nested {
     /// The number of degrees of freedom that move.
     pub fn size(&self) -> usize {
         self.squares.len()
-    }
-
-    /// λ of the innermost stiffness, increasing.
-    pub fn fast_squares(&self) -> &[f64] {
-        &self.squares
-    }
-
-    /// The mode of the k-th of these, in the mass-weighted coordinates given: of length 1, rounded.
-    pub fn fast_mode(&self, k: usize) -> Vec<f64> {
-        (0..self.modes.nrows()).map(|i| self.modes[(i, k)]).collect()
-    }
-
-    /// The highest frequency of each slower stiffness alone, rounded; 0 where it has no positive eigenvalue.
-    pub fn slower_frequencies(&self) -> Vec<f64> {
-        let highest = |level: &Level| {
-            let values = level.stiffness.self_adjoint_eigenvalues(faer::Side::Lower);
-            values.map_or(0.0, |values| values.last().copied().unwrap_or(0.0).max(0.0).sqrt())
-        };
-        self.levels[1..].iter().map(highest).collect()
     }
 
     /// These levels with their steps, innermost first, in the stiffnesses' unit of time. The steps are scaled

@@ -31,11 +31,11 @@ mod levels;
 use action::Bounds;
 pub use levels::{Nested, Steps};
 
-use super::growth::{Growing, Grows};
-use super::region::largest;
+use super::growth::Grows;
+use super::search::{EDGE, carried_on, largest, unstable_past, with_first};
 use crate::signs;
 use crate::spectrum::discs::Spectrum;
-use crate::vary::stretches::{Stretch, cover, merged};
+use crate::vary::stretches::Stretch;
 use crate::verdict::measured::Holds;
 use number::bisected;
 use number::error::Result;
@@ -56,9 +56,6 @@ pub struct AtStep {
 
 /// Room for the roundings of a factor.
 const ROOM: f64 = 1e-12;
-
-/// The largest relative change of the stiffnesses by which one verdict is carried on.
-const WIDEST: f64 = 0.05;
 
 impl Steps<'_> {
     /// Whether all stiffnesses within ε of their sizes are proven stable at this outer step, and at every
@@ -105,13 +102,7 @@ impl Steps<'_> {
             true if holds(hi) => hi,
             true => bisected((lo, hi), 1e-9, |step| Some(holds(step))).0,
         };
-        let known = (end > lo).then_some(Stretch { lo, hi: end, verdict: Holds::Stable });
-        let rest = if end < hi {
-            cover((end, hi), width, |lo, hi| Ok(self.verdict_between([lo, hi], epsilon)))?
-        } else {
-            Vec::new()
-        };
-        Ok(merged(known.into_iter().chain(rest)))
+        with_first((lo, hi), end, width, |lo, hi| Ok(self.verdict_between([lo, hi], epsilon)))
     }
 
     /// The products of doubles that so many cells of a range cost, roughly: of each six counts of chains of
@@ -154,10 +145,8 @@ impl Steps<'_> {
     pub fn first_unstable(&self) -> Option<(f64, f64)> {
         let stable = |step: f64| self.is_in_first_region(step, 0.0);
         let (lo, hi) = self.bracket(stable)?;
-        let (lo, hi) = bisected((lo, hi), 1e-8, |step| Some(stable(step)));
-        // Where the forms are near 0 doubles tell nothing: a little farther they do.
-        let mut steps = (0..16).map(|k| hi + lo * 1e-8 * f64::from(1 << k));
-        steps.find(|&step| self.is_unstable_between([step; 2], 0.0)).map(|step| (lo, step))
+        let end = bisected((lo, hi), EDGE, |step| Some(stable(step)));
+        unstable_past(end, |step| self.is_unstable_between([step; 2], 0.0))
     }
 
     /// Two outer steps, one half the other, at the smaller of which `holds`.
@@ -171,20 +160,14 @@ impl Steps<'_> {
 
     /// The step up to which every outer one from `at` on is proven unstable by the signs: up to where the
     /// step by which a verdict is carried on falls to `least`, relative, or 1.5 `at`.
-    pub fn unstable_up_to(&self, at: f64, least: f64) -> f64 {
-        let (mut at, last, mut width) = (at, 1.5 * at, least);
-        while at < last {
+    ///
+    /// # Errors
+    /// None: the signature is that of two levels.
+    pub fn unstable_up_to(&self, at: f64, least: f64) -> Result<f64> {
+        carried_on(at, least, |at, width| {
             let end = at * (1.0 + width);
-            if self.is_unstable_between([at, end], 0.0) {
-                at = end;
-                width = (4.0 * width).min(WIDEST);
-            } else if width <= least {
-                break;
-            } else {
-                width = (width / 4.0).max(least);
-            }
-        }
-        at.min(last)
+            Ok(self.is_unstable_between([at, end], 0.0).then_some(end))
+        })
     }
 
     /// Whether it is proven stable at this outer step, and at every smaller one, with every K_1' and s_k K_k
@@ -210,14 +193,6 @@ impl Steps<'_> {
     pub fn band_edge(&self, band: f64, epsilon: f64) -> Option<f64> {
         let holds = |step: f64| self.covers_band(step, band, epsilon);
         Some(bisected(self.bracket(holds)?, 1e-6, |step| Some(holds(step))).0)
-    }
-
-    /// Growth from an unstable outer step on, as of two levels.
-    ///
-    /// # Errors
-    /// None: the signature is that of two levels.
-    pub fn growing(&self, from: f64, width: f64) -> Result<Vec<Growing>> {
-        Grows::growing(self, from, width)
     }
 }
 

@@ -1,14 +1,19 @@
-//! The sources of decisions about Hessians: two levels by their eigenbasis, any other number of them by the
-//! action. Advice uses both alike.
+//! The one face of dense levels: two of an integer ratio by their eigenbasis, any others by the action.
+//! Verdicts, ranges and advice ask both alike.
 
 use std::fmt::Debug;
 
+use faer::Mat;
+
+use super::growth::{Growing, Grows};
+use super::kernel::{Kernel, Outer, highest_frequency};
+use super::nested::Nested;
+use crate::friction::Damping;
+use crate::verdict::analysis::{Analysis, Instability};
+use crate::verdict::measured::{Holds, Removed};
 use number::Rational;
 use number::error::{Error, Result};
 use number::rational::to_f64;
-use systems::friction::Damping;
-use systems::levels::{Growing, Kernel, Nested, Outer};
-use systems::{Analysis, Holds, Instability, Removed};
 
 /// Stiffnesses of levels, steps and rates in their unit of time; `steps` are those of all levels, innermost
 /// first. What is proven of an outer step is so with all others in their ratios to it.
@@ -25,8 +30,13 @@ pub trait Source: Debug + Send + Sync {
     /// λ of the innermost stiffness alone, increasing, rounded.
     fn fast_squares(&self) -> &[f64];
 
-    /// The mode of the k-th of these, mass-weighted: of length 1, rounded.
-    fn fast_mode(&self, k: usize) -> Vec<f64>;
+    /// Their modes as columns in the mass-weighted coordinates given: of length 1, rounded.
+    fn fast_modes(&self) -> &Mat<f64>;
+
+    /// The k-th of these.
+    fn fast_mode(&self, k: usize) -> Vec<f64> {
+        self.fast_modes().col(k).iter().copied().collect()
+    }
 
     /// The highest frequency of each slower stiffness alone, rounded; 0 where it has none.
     fn slower_frequencies(&self) -> Vec<f64>;
@@ -103,11 +113,11 @@ impl Source for Kernel {
     }
 
     fn fast_squares(&self) -> &[f64] {
-        self.fast_squares()
+        &self.values
     }
 
-    fn fast_mode(&self, k: usize) -> Vec<f64> {
-        self.fast_mode(k)
+    fn fast_modes(&self) -> &Mat<f64> {
+        &self.modes
     }
 
     fn slower_frequencies(&self) -> Vec<f64> {
@@ -172,15 +182,15 @@ impl Source for Nested {
     }
 
     fn fast_squares(&self) -> &[f64] {
-        self.fast_squares()
+        &self.squares
     }
 
-    fn fast_mode(&self, k: usize) -> Vec<f64> {
-        self.fast_mode(k)
+    fn fast_modes(&self) -> &Mat<f64> {
+        &self.modes
     }
 
     fn slower_frequencies(&self) -> Vec<f64> {
-        self.slower_frequencies()
+        self.levels[1..].iter().map(|level| highest_frequency(&level.stiffness)).collect()
     }
 
     fn decide(&self, steps: &[Rational], accuracy: f64) -> Result<Decided> {
@@ -201,7 +211,7 @@ impl Source for Nested {
     }
 
     fn unstable_up_to(&self, steps: &[Rational], from: f64, least: f64) -> Result<f64> {
-        Ok(self.at(steps)?.unstable_up_to(from, least))
+        self.at(steps)?.unstable_up_to(from, least)
     }
 
     fn growing(&self, steps: &[Rational], from: f64, width: f64) -> Result<Vec<Growing>> {
