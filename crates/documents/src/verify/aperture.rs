@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::Verify;
+use super::kind::Verify;
 use super::context::{Checked, Context, Outcome, holds};
 use crate::question::Aperture;
 use molecules::aperture::{Bond, FAR, LATE, Measured, Shape, Step, rungs, squared_frequency, thermal};

@@ -1,8 +1,8 @@
 //! Sectors in which every ratio is unstable: pairs of steps in them, each decided by the ladder.
 
-use super::Verify;
 use super::context::{Checked, Context, Failure, Outcome, holds};
 use super::exact::encloses;
+use super::kind::Verify;
 use super::sample::sample;
 use crate::question::{Bands, Fields};
 use clocks::band::{self, Sector, Window};

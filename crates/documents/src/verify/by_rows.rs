@@ -5,7 +5,7 @@ use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
 
 use super::context::{Checked, Context, Outcome};
-use super::{Kind, typed};
+use super::kind::{Kind, typed};
 use number::error::Result;
 
 /// Rows of documents: what the other route needs of them. A field `T | null` must be there and may be null,

@@ -4,9 +4,9 @@
 
 use std::cmp::Ordering;
 
-use super::Verify;
 use super::context::{Checked, Context, Outcome, holds, located};
 use super::exact::{ZeroOf, check_ratio, fraction, part, signs};
+use super::kind::Verify;
 use crate::question::Closings;
 use clocks::propagator::TwoClocks;
 use clocks::tongue::{Closing, Enclosure, Entry, Found, Search, Tongues, closings_of, count_closings};

@@ -1,9 +1,9 @@
 //! A comparison: every pair by the filter, every offender by the full period in exact arithmetic, and θ
 //! enclosed.
 
-use super::Verify;
 use super::context::{Checked, Context, Outcome, holds, same};
 use super::exact::{affordable, again, full_period, meets};
+use super::kind::Verify;
 use crate::question::{Compare, Over};
 use clocks::map::Grid;
 use clocks::propagator::{Oscillator, TwoClocks};

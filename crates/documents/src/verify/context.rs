@@ -14,6 +14,9 @@ use number::parallel::try_map;
 /// The remedy for a document that cannot be read.
 pub const REMEDY: &str = "whole documents, as kickdrift wrote them, can be rechecked";
 
+/// Where there is no other route.
+pub const ALONE: &str = "none: every value is computed again, by the same route";
+
 /// A route's room at the end of a region, relative: the smallest eigenvalue of the action there is some 10^-6
 /// of its largest.
 pub const ROOM: f64 = 1e-6;
@@ -51,6 +54,12 @@ impl Outcome {
     /// So many rows hold by this route.
     pub fn holding(route: &'static str, rows: u64) -> Outcome {
         Outcome { rows, route, sample: None, failures: Vec::new(), not_rechecked: Vec::new() }
+    }
+
+    /// A document that is checked as a whole.
+    pub fn whole(route: &'static str, checked: Checked) -> Result<Outcome> {
+        let failures = failure(0, checked)?.into_iter().collect();
+        Ok(Outcome { failures, ..Outcome::holding(route, 1) })
     }
 }
 

@@ -3,9 +3,9 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use super::Verify;
 use super::again::Excluded;
 use super::context::{Checked, Context, Fault, Outcome, holds};
+use super::kind::Verify;
 use crate::question::Curves;
 use clocks::resonance::{Angle, Curve, CurvePoint};
 use number::error::Result;

@@ -2,8 +2,8 @@
 
 use num_traits::One;
 
-use super::Verify;
-use super::context::{Context, Outcome, failure, holds};
+use super::context::{Context, Outcome, holds};
+use super::kind::Verify;
 use crate::question::Half;
 use clocks::propagator::methods::avi;
 use clocks::propagator::{HalfPeriod, TwoClocks};
@@ -22,7 +22,6 @@ impl Verify for Half {
         let is_trace = trace == two * (diagonal + rest);
         let whole =
             det_is_one.and_then(|()| holds(is_trace, || format!("the trace of the full period is {trace}")));
-        let failures = failure(0, whole)?.into_iter().collect();
-        Ok(Outcome { failures, ..Outcome::holding(ROUTE, 4) })
+        Ok(Outcome { rows: 4, ..Outcome::whole(ROUTE, whole)? })
     }
 }

@@ -4,8 +4,8 @@ use serde_json::{Map as Object, Value};
 
 use super::context::{Checked, Context, Failure, Fault, Options, Outcome, failure, holds};
 use super::exact::{again, encloses};
+use super::kind::{Again, Kind, asked};
 use super::sample::sample;
-use super::{Again, Kind, asked};
 use crate::question::{Map, Question};
 use crate::report::map::{Fastest, MapTally};
 use clocks::map::{Band, Grid};
@@ -135,4 +135,40 @@ fn kick_by_kick(grid: &Grid, band: &Band, row: usize, context: &Context) -> Chec
     let truth = again(Tier::Refine, &grid.clocks(i, j)?, &context.limits())?.verdict;
     let is_so = band.decision(row).verdict == truth;
     holds(is_so, || format!("h1 = {}, h2 = {} is {truth}, kick by kick", grid.h1(i), grid.h2(j)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clocks::verdict::Verdict;
+    use serde_json::json;
+
+    #[test]
+    fn a_pair_that_is_decided_otherwise_and_a_forged_growth_are_found() {
+        let asked = json!({"lambda1": "10", "lambda2": "2/5", "step1": "1/10", "step2": "1/10", "growth": "true",
+            "h1_range": "1/10..3/5", "h2_range": "1/10..3"});
+        let (question, options): (Map, _) = (serde_json::from_value(asked).unwrap(), Options::default());
+        let (grid, context) = (question.grid().unwrap(), Context::new(&options, None));
+        let (mut tally, mut bands) = (MapTally::default(), 0);
+        let each = |mut band: Band| {
+            tally.add(&grid, &band);
+            assert!(kick_by_kick(&grid, &band, 0, &context).is_ok());
+            band.verdicts[0] = (band.verdicts[0] + 1) % Verdict::ALL.len() as u8;
+            assert!(matches!(kick_by_kick(&grid, &band, 0, &context), Err(Fault::Wrong(_))));
+            bands += 1;
+            Ok(())
+        };
+        question.each(&grid, &context.work(), each).unwrap();
+        let fastest = tally.fastest.unwrap();
+        let is_right =
+            |fastest: &Fastest, largest: f64| grows_fastest(fastest, &grid, largest, &context).is_ok();
+        assert!(bands > 0 && is_right(&fastest, fastest.rate.lo));
+        assert!(!is_right(&fastest, 1.01 * fastest.rate.hi));
+        let mut forged = fastest.clone();
+        (forged.rate.lo, forged.rate.hi) = (1.01 * forged.rate.lo, 1.01 * forged.rate.hi);
+        assert!(!is_right(&forged, fastest.rate.lo));
+        let mut beside = fastest.clone();
+        beside.at[0] -= 1;
+        assert!(!is_right(&beside, 0.0));
+    }
 }

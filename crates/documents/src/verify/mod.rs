@@ -13,12 +13,12 @@
 //! | verdict | the filter, as a rule | the full period, kick by kick, in exact arithmetic |
 //! | map | the filter, as a rule | a sample of pairs kick by kick |
 //! | compare | the half period kick by kick, and the tan criterion | the filter for every pair, the full period for every offender |
-//! | curves | arcsines | arctangents; the samples again in doubles |
+//! | curves | arcsines | arctangents; pieces in the window by their branches' heights in doubles |
 //! | polynomial | products of polynomials | the full period at rational points |
 //! | system-verdict, system-map, simulate | signs, discs, simulation | exact arithmetic; the dense full period |
 //! | system-intervals | cells of signs, counts and discs | half periods at steps in the stretches, and the order of Krein's signs between; large schemes run |
 //! | bands | a common cone of return maps, in doubles with bounds | pairs in the boxes, worst placed, by the ladder |
-//! | compare-methods | polynomials in s, balls over y = h w/2 | traces letter by letter in doubles; those of trigonometric integrators by their formula |
+//! | compare-methods | polynomials in s, balls over y = h w/2 | the trace at each point letter by letter in doubles; those of trigonometric integrators by their formula |
 //! | word, methods | polynomials in s, Sturm chains | letter by letter, in numbers of the field, at a step of each interval; halved steps |
 //! | half | the half period, kick by kick | its determinant; the trace of the full period |
 //! | run | the names of the products | none |
@@ -51,7 +51,10 @@ mod compare;
 mod context;
 mod curves;
 mod exact;
+#[cfg(test)]
+mod forged;
 mod half;
+mod kind;
 mod map;
 mod polynomial;
 mod proposition;
@@ -65,71 +68,21 @@ mod verdict;
 mod word;
 mod written;
 
-use serde::Deserialize;
-use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
-use serde_path_to_error::{Path, Segment};
 
-use self::again::{Compared, Excluded, compare, place};
+use self::again::{Compared, compare, place};
 use self::by_rows::ByRows;
 use self::context::{Context, REMEDY};
+use self::kind::{Kind, asked};
 use crate::input::json;
 use crate::input::kind::{is_asked, of_another_kind};
 use crate::question::{
     Advised, Aperture, Bands, Closings, Compare, CompareMethods, Curves, Half, Methods, Polynomial, Proposition,
-    Question, Simulate, Survey, System, Verdict, Word,
+    Simulate, Survey, System, Verdict, Word,
 };
 use number::error::{Error, Result};
 
 pub use context::{Failure, Options, Outcome, Progress};
-
-/// A question whose answers are held against another route.
-trait Verify: Question + DeserializeOwned {
-    /// Values of its documents that the input does not determine.
-    const EXCLUDED: &'static [Excluded] = &[];
-
-    /// The outcome of the other route. The answer is typed: its document is equal to the one that is checked.
-    fn check(&self, answer: &Self::Answer, context: &Context) -> Result<Outcome>;
-}
-
-/// The other route, once nothing differs from the document computed again.
-type Check<'a> = Box<dyn FnOnce() -> Result<Outcome> + 'a>;
-
-/// The document computed again, and the other route.
-type Again<'a> = (Value, Check<'a>);
-
-/// Documents of one kind.
-#[derive(Debug)]
-struct Kind {
-    /// NAME in `kickdrift/NAME/1`.
-    name: &'static str,
-    /// The key of the rows; empty where the document is one row itself.
-    table: &'static str,
-    excluded: &'static [Excluded],
-    /// Whether the input alone says what was asked.
-    by_input: bool,
-    /// That the question can be read.
-    read: fn(&Map<String, Value>) -> Result<()>,
-    again: for<'a> fn(&Map<String, Value>, &'a Context<'a>) -> Result<Again<'a>>,
-}
-
-impl Kind {
-    const fn of<Q: Verify + 'static>(name: &'static str, table: &'static str) -> Kind {
-        Kind {
-            name,
-            table,
-            excluded: Q::EXCLUDED,
-            by_input: true,
-            read: |document| asked::<Q>(document).map(drop),
-            again: |document, context| {
-                let question: Q = asked(document)?;
-                let answer = question.answer(&context.work())?;
-                let document = question.document(&answer).value();
-                Ok((document, Box::new(move || question.check(&answer, context))))
-            },
-        }
-    }
-}
 
 /// All documents that can be verified.
 const KINDS: &[Kind] = &[
@@ -271,16 +224,6 @@ fn asked_in(document: &Map<String, Value>) -> [Option<Value>; 2] {
     ["schema", "input"].map(|key| document.get(key).cloned())
 }
 
-/// The question in a document.
-fn asked<Q: DeserializeOwned>(document: &Map<String, Value>) -> Result<Q> {
-    #[derive(Deserialize)]
-    struct Input<Q> {
-        input: Q,
-    }
-    let input = document.iter().filter(|(key, _)| *key == "input");
-    typed(input.map(|(key, value)| (key.clone(), value.clone())).collect()).map(|Input { input }| input)
-}
-
 /// The limit of every check.
 const QUESTION: &str = "that this was the question, where another one has the same answer";
 
@@ -297,31 +240,6 @@ fn head(document: &Map<String, Value>) -> Result<()> {
         Some((key, _)) => Err(Error::input(&format!("input.{key}"), "null", REMEDY)),
         None => Ok(()),
     }
-}
-
-/// All fields by their types; one that is wrong is named by its path.
-fn typed<T: DeserializeOwned>(document: Map<String, Value>) -> Result<T> {
-    let whole = Value::Object(document);
-    serde_path_to_error::deserialize(&whole).map_err(|fault| {
-        let path = fault.path().to_string();
-        let why = format!("{}; {REMEDY}", json::plain(fault.inner()));
-        match at(&whole, fault.path()) {
-            Some(value) if !value.is_object() && !value.is_array() => Error::input(&path, value, why),
-            _ => {
-                let field = if path == "." { "document" } else { &path };
-                Error::input(field, "not as kickdrift writes it", why)
-            }
-        }
-    })
-}
-
-/// The value at a path.
-fn at<'a>(whole: &'a Value, path: &Path) -> Option<&'a Value> {
-    path.iter().try_fold(whole, |value, step| match step {
-        Segment::Map { key } => value.get(key),
-        Segment::Seq { index } => value.get(index),
-        _ => None,
-    })
 }
 
 fn not_json(cause: &serde_json::Error) -> String {

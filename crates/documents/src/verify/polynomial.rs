@@ -1,8 +1,8 @@
 //! Polynomials: numbers kicked and drifted at as many rational points as determine them.
 
-use super::Verify;
 use super::context::{Checked, Context, Outcome, holds, located};
 use super::exact::{check_ratio, fraction};
+use super::kind::Verify;
 use crate::question::{Polynomial, Polynomials};
 use clocks::propagator::methods::avi;
 use clocks::propagator::{TwoClocks, half_period};

@@ -2,8 +2,8 @@
 
 use num_integer::Integer;
 
-use super::Verify;
 use super::context::{Checked, Context, Outcome, holds, same};
+use super::kind::Verify;
 use crate::question::Proposition;
 use clocks::resonance::proposition::{Check, Witness};
 use number::error::Result;

@@ -1,7 +1,7 @@
 //! Integrators side by side: counted again by traces in doubles.
 
-use super::Verify;
 use super::context::{Checked, Context, Outcome, holds};
+use super::kind::Verify;
 use crate::question::{CompareMethods, Side};
 use number::error::Result;
 use number::rational::to_f64;

@@ -1,9 +1,9 @@
 //! A survey: its counts by the survey's own route again; the thin tongues, and a sample of all others, by
 //! exact signs.
 
-use super::Verify;
 use super::context::{Checked, Context, Failure, Outcome, holds, located};
 use super::exact::{ZeroOf, check_ratio, fraction, part};
+use super::kind::Verify;
 use super::sample::sample;
 use super::tongues::Tongue;
 use crate::question::{self, Survey};

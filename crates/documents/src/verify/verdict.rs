@@ -1,9 +1,9 @@
 //! A verdict: the full period, kick by kick, in exact arithmetic; for long periods the next tier of the
 //! ladder, for very long ones return maps over the other clock.
 
-use super::Verify;
 use super::context::{Checked, Context, Outcome, failure, holds, same};
 use super::exact::{FullPeriod, affordable, again, full_period, ln_multiplier, meets};
+use super::kind::Verify;
 use crate::question::{self, Decided};
 use clocks::verdict::{
     Growth, Kind, Limits, Tier, Verdict, decide_anew, exact_trace, growth, takes_return_maps,

@@ -3,8 +3,8 @@
 use nalgebra::Matrix2;
 use num_traits::{One, Zero};
 
-use super::Verify;
 use super::context::{Checked, Context, Outcome, holds, same};
+use super::kind::Verify;
 use super::side::step;
 use crate::question::{Linted, Listed, Methods, Span, Word};
 use number::error::Result;

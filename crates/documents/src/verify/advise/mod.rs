@@ -21,10 +21,10 @@ mod molecule;
 mod periods;
 mod row;
 
-use super::Verify;
-use super::again::Excluded;
-use super::context::{Context, Outcome};
 use crate::question::{Advised, Safe};
+use crate::verify::again::Excluded;
+use crate::verify::context::{Context, Outcome};
+use crate::verify::kind::Verify;
 use number::error::Result;
 
 impl Verify for Advised {

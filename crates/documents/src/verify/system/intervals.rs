@@ -12,10 +12,9 @@ use std::borrow::Cow;
 use faer::Mat;
 use num_traits::One;
 
-use super::{ALONE, outcome};
 use crate::input::{OUTER, SystemScene};
 use crate::question::System;
-use crate::verify::context::{Checked, Context, Fault, Outcome, failure, holds, too_costly};
+use crate::verify::context::{ALONE, Checked, Context, Fault, Outcome, failure, holds, too_costly};
 use crate::verify::sample::sample;
 use number::Rational;
 use number::error::Result;
@@ -109,7 +108,7 @@ impl Decided<'_> {
         } else {
             (STEP, "that nothing grows between these places")
         };
-        let mut found = outcome(route, Ok(()))?;
+        let mut found = Outcome::whole(route, Ok(()))?;
         if let Err(error) = allow(&decided) {
             found.not_rechecked.push(too_costly("the stretches", &error));
             return Ok(Outcome { route: ALONE, sample: Some((0, decided.count)), ..found });

@@ -10,13 +10,13 @@ mod intervals;
 mod levels;
 mod local;
 
-use super::Verify;
-use super::again::Excluded;
-use super::context::{Checked, Context, Fault, Outcome, failure, same, too_costly};
 use super::sample::sample;
 use crate::input::SystemScene;
 use crate::question::{Found, Simulate, Simulated, System, SystemAnswer};
 use crate::report::system::SystemMap;
+use crate::verify::again::Excluded;
+use crate::verify::context::{ALONE, Checked, Context, Fault, Outcome, failure, same, too_costly};
+use crate::verify::kind::Verify;
 use clocks::verdict::Kind;
 use number::error::{Kind as Reason, Result};
 use number::rational::to_f64;
@@ -29,15 +29,6 @@ const POINTS: u64 = 200;
 
 /// The file is a name.
 const EXCLUDED: &[Excluded] = &[("input.file", "a name")];
-
-/// The outcome of another route for the whole document.
-fn outcome(route: &'static str, other: Checked) -> Result<Outcome> {
-    let failures = failure(0, other)?.into_iter().collect();
-    Ok(Outcome { failures, ..Outcome::holding(route, 1) })
-}
-
-/// Where there is no other route.
-const ALONE: &str = "none: every value is computed again, by the same route";
 
 impl Verify for System {
     const EXCLUDED: &'static [Excluded] = EXCLUDED;
@@ -60,25 +51,25 @@ fn verdict(
     if let Model::Sparse(sparse_system) = scene.model() {
         if let Some((sparse_levels, outer)) = sparse_system.levels() {
             let (checked, unseen) = levels::run(sparse_levels, outer, analysis);
-            return Ok(Outcome { not_rechecked: unseen, ..outcome(levels::ROUTE, checked)? });
+            return Ok(Outcome { not_rechecked: unseen, ..Outcome::whole(levels::ROUTE, checked)? });
         }
-        let Some(steps) = sparse_system.local_steps() else { return outcome(ALONE, Ok(())) };
+        let Some(steps) = sparse_system.local_steps() else { return Outcome::whole(ALONE, Ok(())) };
         let checked = local::sparse(steps, to_f64(&scene.model().steps()[0]), analysis, local);
-        return Ok(seen(steps, outcome(RUN, checked)?));
+        return Ok(seen(steps, Outcome::whole(RUN, checked)?));
     }
     if let Some(measured) = &analysis.measured {
         let (limits, route) = (context.work().products(), dense::Stands::of(scene, measured)?);
         let checked = dense::growth(scene, analysis, &limits).and_then(|()| route.check(&limits));
         return match checked {
             Err(Fault::Error(error)) if error.kind() == Reason::Budget => {
-                let mut found = outcome(ALONE, Ok(()))?;
+                let mut found = Outcome::whole(ALONE, Ok(()))?;
                 found
                     .not_rechecked
                     .push(too_costly("the growth rate and how far the verdict stands", &error));
                 Ok(found)
             }
             checked => {
-                let mut found = outcome(route.name(), checked)?;
+                let mut found = Outcome::whole(route.name(), checked)?;
                 found.not_rechecked.extend(route.unseen());
                 Ok(found)
             }
@@ -103,7 +94,7 @@ fn verdict(
                     "the kind in exact arithmetic, multipliers by the traces of the dense full period and of its square"
                 }
             };
-            outcome(route, same_kind(analysis.kind, truth).and_then(|()| traces()))
+            Outcome::whole(route, same_kind(analysis.kind, truth).and_then(|()| traces()))
         }
         None => {
             let route = match scene.model() {
@@ -113,7 +104,7 @@ fn verdict(
                      more than is allowed)"
                 }
             };
-            outcome(route, traces())
+            Outcome::whole(route, traces())
         }
     }
 }
@@ -146,9 +137,9 @@ fn exact_kind(scene: &SystemScene, claimed: Option<Kind>, limits: &Limits) -> Re
 fn points(question: &System, scene: &SystemScene, map: &SystemMap, context: &Context) -> Result<Outcome> {
     let (count, limits) = (map.points.len() as u64, context.work().products());
     if matches!(scene.model(), Model::Sparse(_)) {
-        return outcome(ALONE, Ok(()));
+        return Outcome::whole(ALONE, Ok(()));
     }
-    let mut outcome = outcome("the kind of a random sample of points in exact arithmetic", Ok(()))?;
+    let mut outcome = Outcome::whole("the kind of a random sample of points in exact arithmetic", Ok(()))?;
     let Some(axes) = question.scan(scene)? else { return Ok(outcome) };
     let most = if context.options.all { count } else { POINTS };
     let mut decided = 0;
@@ -169,9 +160,9 @@ impl Verify for Simulate {
     fn check(&self, Simulated { scene, run }: &Simulated, _: &Context) -> Result<Outcome> {
         if run.linear && self.form == Ends::Symmetric {
             let route = "the amplitudes by powers of the dense full period";
-            return outcome(route, dense::linear_run(scene, &self.displace, run));
+            return Outcome::whole(route, dense::linear_run(scene, &self.displace, run));
         }
-        outcome(ALONE, Ok(()))
+        Outcome::whole(ALONE, Ok(()))
     }
 }
 

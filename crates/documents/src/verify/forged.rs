@@ -1,0 +1,347 @@
+//! Answers that are wrong from the start: the comparison with the document computed again would be one with
+//! another wrong document, so the other route has to find them.
+
+use serde_json::{Value, json};
+
+use super::context::{Context, Options};
+use super::kind::Verify;
+use crate::question::{
+    Advised, Bands, Closings, Compare, CompareMethods, Curves, Found, Half, Methods, Polynomial, Proposition,
+    Safe, Simulate, Survey, System, Verdict, Word,
+};
+use clocks::propagator::{TwoClocks, half_period};
+use clocks::verdict::{Kind, Side, Verdict as Decided};
+use number::{Rational, rational};
+use words::Bounded;
+
+type Forgery<Q> = fn(&mut <Q as crate::question::Question>::Answer);
+
+/// The other route agrees with the answer, and with none of the forged ones.
+fn finds<Q: Verify>(input: Value, forgeries: &[Forgery<Q>]) {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/cli/data").into();
+    let options = Options { folder, ..Options::default() };
+    let (question, context): (Q, _) = (serde_json::from_value(input).unwrap(), Context::new(&options, None));
+    let failures = |forge: Forgery<Q>| {
+        let mut answer = question.answer(&context.work()).unwrap();
+        forge(&mut answer);
+        question.check(&answer, &context).unwrap().failures
+    };
+    assert_eq!(failures(|_| ()), [], "{}", Q::NAME);
+    for (n, &forge) in forgeries.iter().enumerate() {
+        assert!(!failures(forge).is_empty(), "forgery {n} of {:?}", question.input());
+    }
+}
+
+/// A hundredth more.
+fn more((lo, hi): &mut (f64, f64)) {
+    (*lo, *hi) = (*lo * 1.01, *hi * 1.01);
+}
+
+#[test]
+fn forged_numbers_of_two_clocks_are_found() {
+    finds::<Half>(
+        json!({"ratio": "5/4", "s": "3/2", "rho": "1/7"}),
+        &[|half| {
+            let ratio = "5/4".parse().unwrap();
+            *half = half_period(&TwoClocks::with_rho(ratio, rational::ratio(8, 5), rational::ratio(1, 7)));
+        }],
+    );
+    finds::<Polynomial>(
+        json!({"ratio": "5/3"}),
+        &[
+            |all| all[0].1 = all[1].1.clone(),
+            |all| all[4].1 += number::Polynomial::constant(number::Polynomial::variable()),
+            |all| all[3].1 = all[3].1.shift(9),
+        ],
+    );
+    finds::<Proposition>(
+        json!({"max": "6"}),
+        &[
+            |(_, all)| all[4].b += 17,
+            |(_, all)| all.truncate(7),
+            |(_, all)| all.swap(0, 1),
+            |(check, _)| check.forward += 1,
+            |(check, _)| check.backward += 1,
+            |(check, all)| check.failures.push(all[0]),
+        ],
+    );
+    finds::<Curves>(
+        json!({"samples": "12", "a": "0..2", "b": "-2..2"}),
+        &[
+            |curves| shown(curves)[0].pieces[0][3].h2 *= 1.0 + 1e-14,
+            |curves| shown(curves)[0].pieces[0][3].theta_over_pi *= 1.0 + 1e-14,
+            |curves| shown(curves)[0].pieces.clear(),
+            |curves| shown(curves)[0].pieces[0].truncate(2),
+            |curves| drop(shown(curves)[0].pieces[0].drain(..1)),
+            |curves| curves.reverse(),
+        ],
+    );
+}
+
+fn shown(curves: &mut [clocks::resonance::Curve]) -> Vec<&mut clocks::resonance::Curve> {
+    curves.iter_mut().filter(|curve| !curve.pieces.is_empty()).collect()
+}
+
+#[test]
+fn forged_verdicts_are_found() {
+    let exact =
+        json!({"lambda1": "10", "lambda2": "2/5", "h1": "631/1000", "h2": "3499/1000", "exact": "true"});
+    let growing = json!({"lambda1": "10", "lambda2": "2/5", "h1": "3/5", "h2": "3"});
+    let long =
+        json!({"lambda1": "pi^2", "lambda2": "pi^2/25", "h1": "1/100000000", "h2": "77777777/100000000"});
+    let elsewhere: Forgery<Verdict> = |decided| decided.growth.trace = decided.growth.trace.scale2(1);
+    let turned: Forgery<Verdict> = |decided| {
+        let is_stable = decided.decision.verdict.is_stable();
+        decided.decision.verdict =
+            if is_stable { Decided::Hyperbolic(Side::Plus) } else { Decided::Elliptic };
+    };
+    finds::<Verdict>(
+        exact,
+        &[turned, elsewhere, |decided| {
+            *decided.exact_trace.as_mut().unwrap() += rational::ratio(1, 1_000_000);
+        }],
+    );
+    finds::<Verdict>(
+        growing,
+        &[
+            turned,
+            elsewhere,
+            |decided| decided.growth.ln_multiplier = None,
+            |decided| {
+                decided.growth.ln_multiplier = decided.growth.ln_multiplier.as_ref().map(|ln| ln.scale2(1))
+            },
+            |decided| decided.growth.label = decided.growth.label.map(|label| label + 2),
+            |decided| decided.growth.label = None,
+        ],
+    );
+    finds::<Verdict>(long, &[turned, elsewhere]);
+}
+
+#[test]
+fn forged_tongues_are_found() {
+    finds::<Closings>(
+        json!({"max_sum": "9"}),
+        &[
+            |all| all.iter_mut().for_each(|found| drop(found.closings.pop())),
+            |all| first(all).m += 2,
+            |all| first(all).below_verlet ^= true,
+            |all| first(all).exact = None,
+            |all| {
+                let rho = &mut inexact(all).rho;
+                rho.hi = &rho.hi * rational::ratio(1_000_001, 1_000_000);
+                rho.lo = rho.hi.clone();
+            },
+            |all| inexact(all).s = first(all).s.clone(),
+            |all| inexact(all).exact = Some((rational::ratio(1, 3), rational::ratio(1, 3))),
+        ],
+    );
+    finds::<Closings>(
+        json!({"ratio": "17/8", "m": "13..16", "samples": "60"}),
+        &[|all| {
+            all[0].closings.remove(0);
+        }],
+    );
+    finds::<Survey>(
+        json!({"max_sum": "9", "rho": "1/25", "thinnest": "5"}),
+        &[
+            |survey| more(&mut survey.thinnest[1].width),
+            |survey| survey.thinnest[1].s *= 1.0 + 1e-9,
+            |survey| survey.thinnest[1].m += 1,
+        ],
+    );
+}
+
+fn first(all: &mut [clocks::tongue::Found]) -> &mut clocks::tongue::Closing {
+    all.iter_mut().flat_map(|found| &mut found.closings).find(|closing| closing.exact.is_some()).unwrap()
+}
+
+fn inexact(all: &mut [clocks::tongue::Found]) -> &mut clocks::tongue::Closing {
+    all.iter_mut().flat_map(|found| &mut found.closings).find(|closing| closing.exact.is_none()).unwrap()
+}
+
+#[test]
+fn forged_bands_and_comparisons_are_found() {
+    let window = json!({"lambda1": "pi^2", "lambda2": "pi^2/25", "h1_range": "1/5..1/4", "h2_range": "9/10..1", "sectors": "60"});
+    finds::<Bands>(
+        window,
+        &[
+            |bands| bands.certified[0].sides[1][0] = bands.certified[0].sides[1][0] * 21 / 20,
+            |bands| bands.certified[0].sides[0] = bands.certified[0].sides[1],
+            |bands| bands.certified[0].family[0] += 1,
+            |bands| bands.certified.push(bands.certified[0].clone()),
+        ],
+    );
+    finds::<Compare>(
+        json!({"max_sum": "8", "rho": "1/25", "samples": "20"}),
+        &[
+            |found| found.tally.hits += 1,
+            |found| drop(found.offenders.pop()),
+            |found| found.offenders[1].comparison.trace.verdict = Decided::Parabolic(Side::Plus),
+            |found| found.offenders[1].comparison.tan = Decided::Parabolic(Side::Plus),
+            |found| found.offenders[1].comparison.nearest.as_mut().unwrap().m += 1,
+            |found| found.offenders[1].place[0] = number::Laurent::from_integer(1),
+        ],
+    );
+    let grid = json!({"lambda1": "16", "lambda2": "16/25", "step1": "1/10", "step2": "1/10", "h1_range": "1/10..3/5", "h2_range": "1/10..2"});
+    finds::<Compare>(grid, &[|found| found.tally.unstable += 1, |found| found.offenders.swap(0, 1)]);
+}
+
+#[test]
+fn forged_integrators_are_found() {
+    let steps = json!({"methods": "respa-4,impulse,molly-long", "lambda1": "pi^2/25", "h_range": "0..8", "h_step": "1",
+        "rho_range": "0..1/4", "rho_step": "1/16"});
+    finds::<CompareMethods>(
+        steps,
+        &[
+            |sides| sides[0].rows[2][3] = other(sides[0].rows[2][3]),
+            |sides| sides[2].rows[0][1] = other(sides[2].rows[0][1]),
+            |sides| drop(sides[1].rows.pop()),
+        ],
+    );
+    let stiff = |method: &str| json!({"method": method, "lambda1": "pi^2", "lambda2": "pi^2/25"});
+    finds::<Word>(
+        stiff("avi-3-2"),
+        &[
+            |linted| linted.order.order += 1,
+            |linted| linted.stability.as_mut().unwrap().intervals[0].stable ^= true,
+        ],
+    );
+    finds::<Word>(stiff("molly-long"), &[|linted| linted.pieces.as_mut().unwrap().all[0].stable ^= true]);
+    finds::<Methods>(
+        json!({}),
+        &[|all| {
+            let mut forged = all.to_vec();
+            forged[0].linted.word = forged[1].linted.word.clone();
+            *all = forged.leak();
+        }],
+    );
+}
+
+fn other(bounded: Bounded) -> Bounded {
+    if bounded == Bounded::Stable { Bounded::Unstable } else { Bounded::Stable }
+}
+
+#[test]
+fn forged_advice_on_periods_is_found() {
+    let mode = |name: &str, clock: u32, stiffness: &str| json!({"name": name, "from": "period", "clock": clock, "stiffness": stiffness});
+    let asked = json!({"band": "1/20", "modes": [mode("OH", 1, "pi^2/25"), mode("slow", 2, "pi^2/400")],
+        "schemes": [["1/2", "4"], ["1/2", "24/5"], ["1/2", "5"]], "length": "10000000", "friction": "1/1000"});
+    finds::<Advised>(
+        asked,
+        &[
+            |safe| more(&mut row(safe, 0).found.trace),
+            |safe| row(safe, 0).found.kind = Kind::Hyperbolic,
+            |safe| more(&mut row(safe, 1).found.rate),
+            |safe| row(safe, 1).masking.as_mut().unwrap().grows *= 1.1,
+            |safe| row(safe, 1).masking.as_mut().unwrap().ranges[0].0 *= 0.9,
+            |safe| row(safe, 1).is_damped = row(safe, 1).is_damped.map(|is_damped| !is_damped),
+            |safe| row(safe, 1).ratios.as_mut().unwrap().1 += Rational::from_integer(1.into()),
+            |safe| more(&mut row(safe, 0).first.as_mut().unwrap().lower),
+            |safe| more(row(safe, 1).inside.as_mut().unwrap().upper.as_mut().unwrap()),
+            |safe| row(safe, 1).inside.as_mut().unwrap().worst.as_mut().unwrap().steps *= 1.01,
+            |safe| more(&mut row(safe, 1).intervals[1].lower),
+            |safe| row(safe, 1).intervals[1].label += 1,
+            |safe| row(safe, 2).below = row(safe, 2).above.clone(),
+            |safe| more(&mut advice(safe).schemes[0].band_edge),
+            |safe| advice(safe).schemes[2].status = molecules::Status::Safe,
+            |safe| advice(safe).schemes[0].status = molecules::Status::Safe,
+            |safe| *advice(safe).schemes[0].largest.as_mut().unwrap() += rational::ratio(1, 2),
+            |safe| *advice(safe).schemes[0].safe.as_mut().unwrap() += rational::ratio(1, 2),
+            |safe| advice(safe).schemes[0].needs = Some(20.0),
+            |safe| {
+                advice(safe)
+                    .levers
+                    .as_mut()
+                    .unwrap()
+                    .rows
+                    .iter_mut()
+                    .for_each(|lever| lever.first.iter_mut().for_each(more))
+            },
+            |safe| {
+                advice(safe)
+                    .levers
+                    .as_mut()
+                    .unwrap()
+                    .rows
+                    .iter_mut()
+                    .for_each(|lever| lever.band_edge.iter_mut().for_each(more))
+            },
+        ],
+    );
+    // Nothing is known of the slow clock.
+    let silent = json!({"band": "1/20", "modes": [mode("OH", 1, "pi^2/25")], "schemes": [["1/2", "2"]]});
+    finds::<Advised>(
+        silent,
+        &[|safe| advice(safe).schemes[0].needs = advice(safe).schemes[0].needs.map(|x| 1.01 * x)],
+    );
+}
+
+fn advice(safe: &mut Safe) -> &mut molecules::Advice {
+    if let Safe::Periods(advice) = safe { advice } else { panic!("advice on periods") }
+}
+
+fn row(safe: &mut Safe, scheme: usize) -> &mut molecules::Row {
+    &mut advice(safe).schemes[scheme].rows[0]
+}
+
+#[test]
+fn forged_systems_are_found() {
+    let springs = json!({"schema": "kickdrift/system/1", "title": "", "masses": ["1", "3/2", "2"], "potentials": [
+        {"step": "1/8", "springs": [[0, 1, "10"], [1, 2, "20"]]}, {"step": "1/4", "springs": [[0, null, "5"], [2, null, "7"]]}]});
+    let asked = |more: Value| {
+        let mut asked = json!({"file": "a.json", "system": springs});
+        more.as_object().unwrap().iter().for_each(|(key, value)| asked[key] = value.clone());
+        asked
+    };
+    finds::<System>(
+        asked(json!({})),
+        &[|answer| {
+            let Found::Verdict(verdict) = &mut answer.found else { panic!("a verdict") };
+            verdict.analysis.kind = Some(Kind::Hyperbolic);
+        }],
+    );
+    finds::<System>(
+        asked(json!({"scan_x": "potentials.0.step=1/8..3/4:1/8"})),
+        &[|answer| {
+            let Found::Map(map) = &mut answer.found else { panic!("a map") };
+            map.points[1].kind = Some(Kind::Parabolic);
+        }],
+    );
+    finds::<System>(
+        asked(json!({"intervals": "outer=1/8..1/2", "width": "1e-2"})),
+        &[|answer| {
+            let Found::Intervals(found) = &mut answer.found else { panic!("intervals") };
+            found.stretches.swap(0, 1);
+        }],
+    );
+    finds::<Simulate>(asked(json!({"periods": "4"})), &[|answer| answer.run.series[3].amplitude *= 1.01]);
+}
+
+#[test]
+fn forged_advice_on_hessians_is_found() {
+    let read = |name: &str| -> Value {
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
+        serde_json::from_str(&std::fs::read_to_string(format!("{folder}/{name}")).unwrap()).unwrap()
+    };
+    let asked = |name: &str, steps: Value| json!({"band": "1/20", "schemes": [steps], "file": "a.json", "system": read(name), "no_levers": "true"});
+    finds::<Advised>(
+        asked("tests/cli/data/tiny.json", json!(["11/5", "22/5"])),
+        &[
+            |safe| more(findings(safe).first.as_mut().unwrap()),
+            |safe| findings(safe).rate = findings(safe).rate.map(|rate| rate + 1e-3),
+            |safe| *findings(safe).band_edge.as_mut().unwrap() *= 1.2,
+        ],
+    );
+    finds::<Advised>(
+        asked("data/scenes/no-gradient.json", json!(["40", "80"])),
+        &[|safe| {
+            let Safe::Direct(pair) = safe else { panic!("no gradient") };
+            let (lo, hi) = pair.1.schemes[0].rate.unwrap();
+            pair.1.schemes[0].rate = Some((lo + 1e-3, hi + 1e-3));
+        }],
+    );
+}
+
+fn findings(safe: &mut Safe) -> &mut molecules::Finding {
+    if let Safe::Hessians(pair) = safe { &mut pair.1.schemes[0] } else { panic!("Hessians") }
+}
