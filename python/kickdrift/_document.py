@@ -28,18 +28,6 @@ Row = Mapping[str, Any]
 _SHOWN = 20
 
 
-def ask(arguments: Sequence[str], form: str = "json") -> str:
-    """What the program writes for the arguments in one of its forms: json, csv, latex, text, or svg."""
-    target = ["--output", "answer.svg"] if form == "svg" else ["--format", form]
-    return _native.answer([*arguments, *target, "--quiet"]).decode()
-
-
-def given(**options: str | int | None) -> list[str]:
-    """Options that are not None, as flags."""
-    pairs = ((name, value) for name, value in options.items() if value is not None)
-    return [f"--{name.replace('_', '-')}={written(name, value)}" for name, value in pairs]
-
-
 class Frozen:
     """A frozen dataclass whose copy is itself; it is pickled by its fields alone, which stay read only."""
 
@@ -81,7 +69,7 @@ class Asked(Frozen):
     files: Mapping[str, list[str]] = field(default_factory=dict)
 
     @cached_property
-    def _answer(self) -> _native.Answer | _native.Tongues:
+    def _answer(self) -> _native.Answer:
         return _native.ask(self.name, *self._given())
 
     def _given(self) -> tuple[dict[str, str | list[str]], int | None, str | dict[str, npt.NDArray[np.float64]]]:
@@ -104,7 +92,7 @@ class Asked(Frozen):
             several = [value] if isinstance(value, str) else value
             if name == "file":
                 words += several
-            elif name != "system":
+            elif name not in ("system", "columns"):
                 words += [word for text in several for word in ([flag] if text == "true" else [flag, text])]
         return _native.draw(self.name, *self._given(), shlex.join(words))
 

@@ -12,8 +12,6 @@ __all__ = [
     "Page",
     "Pair",
     "Stop",
-    "Tongues",
-    "answer",
     "ask",
     "decide",
     "draw",
@@ -25,7 +23,6 @@ __all__ = [
     "number",
     "palette",
     "recheck",
-    "tongues",
     "verdicts",
 ]
 
@@ -118,17 +115,11 @@ def motions(
     masses: npt.NDArray[np.float64],
     groups: Sequence[npt.NDArray[np.float64]],
 ) -> list[str | None]: ...
-def answer(arguments: Sequence[str]) -> bytes: ...
 
 @final
 class Answer:
     def render(self, form: str) -> str: ...
 
-@final
-class Tongues:
-    def render(self, form: str) -> str: ...
-
-def tongues(fields: Mapping[str, str], columns: Sequence[str] | None) -> Tongues: ...
 def ask(
     name: str,
     fields: Mapping[str, str | list[str]],

@@ -2,35 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
-from functools import cached_property
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 import numpy.typing as npt
 
-from kickdrift import _native, _plot
-from kickdrift._document import Asked, Table, answered, ask, given
-from kickdrift._numbers import Exact, Labels, Range, labels_text, names_text, optional_range, optional_text, written
+from kickdrift import _plot
+from kickdrift._document import Asked, Table, answered
+from kickdrift._numbers import Exact, Labels, Range, labels_text, names_text, optional_range, optional_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class _AskedTongues(Asked):
-    """A question about tongues, which are found once."""
-
-    columns: Sequence[str] | None = None
-
-    @cached_property
-    def _answer(self) -> _native.Tongues:
-        return _native.tongues({name: written(name, text) for name, text in self.fields.items()}, self.columns)
-
-    def svg(self) -> str:
-        fields = {name: str(text) for name, text in self.fields.items() if name != "digits"}
-        return ask(["tongues", *given(**fields)], "svg")
 
 
 class Tongues(Table):
@@ -80,7 +63,9 @@ class Tongues(Table):
         >>> found.to_svg().startswith("<svg")
         True
         """
-        return self._asked.svg()
+        # An atlas shows edges alone.
+        fields = {name: text for name, text in self._asked.fields.items() if name != "digits"}
+        return Asked("tongues", {**fields, "columns": "edges"}).svg()
 
     def _repr_svg_(self) -> str | None:
         asked = self.data["input"]
@@ -137,23 +122,23 @@ def tongues(
     >>> tongue["lower"]["entry"], tongue["closed"]
     ('C', False)
     """
-    texts = {
-        "ratio": optional_text("ratio", ratio),
-        "max_sum": None if max_sum is None else written("max_sum", max_sum),
-        "rho": optional_text("rho", rho),
-        "lambda1": optional_text("lambda1", lambda1),
-        "lambda2": optional_text("lambda2", lambda2),
-        "h1_range": optional_range("h1", h1),
-        "h2_range": optional_range("h2", h2),
-        "m": None if m is None else labels_text(m),
-        "a": a,
-        "b": b,
-        "digits": None if digits is None else written("digits", digits),
-    }
-    names = None if columns is None else names_text("columns", columns, "name them, as ['edges']").split(",")
-    fields = {name: text for name, text in texts.items() if text is not None}
-    asked = _AskedTongues("tongues", fields, columns=names and [name.strip() for name in names])
-    return Tongues(asked.render("json"), "tongues", asked)
+    return answered(
+        Tongues,
+        "tongues",
+        "tongues",
+        ratio=optional_text("ratio", ratio),
+        max_sum=max_sum,
+        rho=optional_text("rho", rho),
+        lambda1=optional_text("lambda1", lambda1),
+        lambda2=optional_text("lambda2", lambda2),
+        h1_range=optional_range("h1", h1),
+        h2_range=optional_range("h2", h2),
+        m=None if m is None else labels_text(m),
+        a=a,
+        b=b,
+        digits=digits,
+        columns=None if columns is None else names_text("columns", columns, "name them, as ['edges']"),
+    )
 
 
 class Closings(Table):

@@ -14,7 +14,6 @@ mod pair;
 mod pairs;
 mod palette;
 mod program;
-mod tongues;
 
 /// The native half of the package `kickdrift`.
 #[pyo3::pymodule]
@@ -34,7 +33,5 @@ mod _native {
     #[pymodule_export]
     use crate::palette::palette;
     #[pymodule_export]
-    use crate::program::{Answer, answer, ask, draw, main, recheck};
-    #[pymodule_export]
-    use crate::tongues::{Tongues, tongues};
+    use crate::program::{Answer, ask, draw, main, recheck};
 }

@@ -1,4 +1,4 @@
-//! The program itself: run as such, or for the bytes that it would write.
+//! The program itself, and the questions that it answers.
 
 use std::collections::BTreeMap;
 use std::ffi::OsString;
@@ -15,7 +15,6 @@ use kickdrift::report::figure::file;
 use kickdrift::scene::{Array, Arrays};
 use numpy::{PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::prelude::*;
-use pyo3::types::PyBytes;
 
 use crate::arguments::Budget;
 use crate::error::raised;
@@ -25,14 +24,6 @@ use crate::job;
 #[pyfunction]
 pub fn main(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
     py.detach(|| cli::program(arguments))
-}
-
-/// What the program would write for the arguments.
-#[pyfunction]
-pub fn answer(py: Python<'_>, arguments: Vec<OsString>) -> PyResult<Bound<'_, PyBytes>> {
-    let name = OsString::from("kickdrift");
-    let bytes = job::run(py, move |_| cli::answer(std::iter::once(name).chain(arguments)))?;
-    Ok(PyBytes::new(py, &bytes))
 }
 
 /// The document that answers a question, in each of its forms.

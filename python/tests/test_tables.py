@@ -307,6 +307,6 @@ def chain() -> kd.System:
 def test_what_is_written_is_not_computed_again(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     ask, forms = WRITTEN[name]
     result = ask()
-    for function in ("answer", "ask", "decide", "map", "tongues", "verdicts"):
+    for function in ("ask", "decide", "map", "verdicts"):
         monkeypatch.setattr(_native, function, None)
     assert all(getattr(result, form)() for form in forms)

@@ -10,7 +10,7 @@ use clocks::verdict::Limits;
 use documents::format::Format;
 use documents::question::{Map, StepRange, flag};
 use documents::report::document::{Document, Layout};
-use documents::report::file::{is_captured, write_output};
+use documents::report::file::write_output;
 use documents::report::latex::Float;
 use documents::report::map::needed;
 use number::Laurent;
@@ -81,7 +81,7 @@ impl Common {
 
     /// Says on standard error that a file, or a number of them in a folder, is written.
     pub fn wrote(&self, what: impl Display) {
-        if !self.quiet && !is_captured() {
+        if !self.quiet {
             // Where standard error is closed, nobody wants to know.
             let _ = writeln!(
                 std::io::stderr(),
@@ -93,7 +93,7 @@ impl Common {
 
     /// An answer in words on standard output where `--output` has taken it in another form.
     pub fn tell_beside_output(&self, document: &Document) -> Result<()> {
-        if self.output.is_none() || self.quiet || is_captured() {
+        if self.output.is_none() || self.quiet {
             return Ok(());
         }
         write_output(None, document.render(Format::Text)?.as_bytes())

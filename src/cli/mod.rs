@@ -39,7 +39,7 @@ use documents::format::Format;
 use documents::question::{Closings, Curves, Half, Polynomial, Proposition, Question};
 #[cfg(unix)]
 use documents::report::file::abandon;
-use documents::report::file::{captured, is_captured, stdout_is_closed, writable, write_output};
+use documents::report::file::{stdout_is_closed, writable, write_output};
 use number::error::Result;
 use progress::Patience;
 
@@ -172,23 +172,6 @@ pub fn program(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     }
 }
 
-/// The bytes that the program would write for these arguments, its own name first: those of standard output,
-/// or of the file that `--output` names, which is not touched. Nothing is printed where `--quiet` is among
-/// them.
-///
-/// ```
-/// let arguments = ["kickdrift", "verdict", "--lambda1", "1", "--lambda2", "1/4", "--h1", "1", "--h2", "2", "--format", "json"];
-/// let document = kickdrift::cli::answer(arguments.map(Into::into)).unwrap();
-/// assert!(document.starts_with(b"{\n  \"schema\": \"kickdrift/verdict/1\""));
-/// ```
-///
-/// # Errors
-/// The error that the program prints as its one line.
-pub fn answer(arguments: impl IntoIterator<Item = OsString>) -> Result<Vec<u8>> {
-    let cli = parsed(arguments).map_err(|error| usage::explained(&error, &whole()))?;
-    captured(|| run(&cli).map(drop))
-}
-
 /// A process that a signal ends leaves no unfinished file behind, and ends as one without this would; a file
 /// that grows too large is an error of the stream.
 #[cfg(unix)]
@@ -232,8 +215,7 @@ fn run(cli: &Cli) -> Result<u8> {
     if !cli.command.draws() {
         common.format(&Format::DOCUMENT, Format::Text)?;
     }
-    let _patience =
-        Patience::new(common.quiet || is_captured() || matches!(cli.command, Command::Explore(_)));
+    let _patience = Patience::new(common.quiet || matches!(cli.command, Command::Explore(_)));
     match &cli.command {
         Command::Verdict(args) => return args.run(common),
         Command::Curves(args) => args.run(common, Default::Table)?,

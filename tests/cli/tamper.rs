@@ -3,7 +3,6 @@
 
 use std::path::Path;
 
-use kickdrift::error::Error;
 use kickdrift::recheck::{CheckedDocument, Options};
 use serde_json::{Value, json};
 
@@ -76,16 +75,11 @@ fn desk() -> Desk {
     desk
 }
 
-/// The document that a line of arguments makes.
-fn document(desk: &Desk, line: &str) -> Result<Value, Error> {
-    let word = |word: &str| {
-        let path = desk.path().join(word);
-        if path.is_file() { path.display().to_string() } else { word.into() }
-    };
-    let words = std::iter::once("kickdrift".to_string()).chain(line.split_whitespace().map(word));
-    let words = words.chain(["--format", "json", "--quiet"].map(String::from));
-    let bytes = kickdrift::cli::answer(words.map(Into::into))?;
-    Ok(serde_json::from_slice(&bytes).unwrap())
+/// The document that a line of arguments makes; the line of an error where it makes none.
+fn document(desk: &Desk, line: &str) -> Result<Value, String> {
+    let words = line.split_whitespace().chain(["--format", "json", "--quiet"]);
+    let ended = desk.run(&words.collect::<Vec<_>>());
+    serde_json::from_str(&ended.stdout).map_err(|_| ended.stderr)
 }
 
 /// Whether kickdrift writes these rows when it is asked what the input says: a question with another wording,
@@ -128,16 +122,6 @@ fn arguments(desk: &Desk, line: &str, tampered: &Value) -> Option<String> {
             _ => words.push(format!("--{} {given}", key.replace('_', "-"))),
         }
     }
-    let row = tampered["tongues"].get(0).filter(|_| schema == "kickdrift/tongues/1");
-    words.extend(row.map(|row| {
-        let columns = [("growth", "growth"), ("predicted", "predicted"), ("first_order", "first-order")];
-        let columns = columns.iter().filter(|(key, _)| row.get(key).is_some()).map(|(_, name)| *name);
-        let exact = row["lower"].get("exact").map(|_| "exact");
-        format!(
-            "--columns {}",
-            ["edges"].into_iter().chain(exact).chain(columns).collect::<Vec<_>>().join(",")
-        )
-    }));
     Some(words.join(" "))
 }
 

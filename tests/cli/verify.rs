@@ -250,6 +250,28 @@ fn a_lie_is_one_line_on_standard_error() {
     assert_eq!(ended.stderr.lines().count(), 1, "{}", ended.stderr);
 }
 
+/// The input names the columns, so rows that all lack one answer another question.
+#[test]
+fn a_column_that_is_gone_from_every_row_is_missed() {
+    let desk = Desk::new();
+    let mut document = write(&desk, "tongues --ratio 7/3 --rho 1/25", "d.json");
+    for row in document["tongues"].as_array_mut().unwrap() {
+        row.as_object_mut().unwrap().shift_remove("growth").unwrap();
+    }
+    desk.write("d.json", &document.to_string());
+    let ended = desk.run(&["verify", "d.json"]);
+    assert_eq!(ended.code, Some(2));
+    let told = ["growth is missing", "9 of 9 rows"];
+    assert!(told.iter().all(|part| ended.stderr.contains(part)), "{}", ended.stderr);
+    // What was asked for stands in the input: without growth it is another question.
+    document["input"]["columns"] = json!("exact,predicted,first-order");
+    desk.write("d.json", &document.to_string());
+    assert_eq!(desk.run(&["verify", "d.json"]).code, Some(2));
+    let ended = desk.run(&words("tongues --ratio 7/3 --rho 1/25", &["--columns", "exact,predicted,first-order", "--output", "e.json"]));
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    assert_eq!(desk.run(&["verify", "e.json"]).code, Some(0));
+}
+
 /// A document of one row has no other rows to count, and is named itself.
 #[test]
 fn a_lie_in_a_document_without_rows_names_the_document_and_counts_its_values() {

@@ -9,12 +9,10 @@ use plot::Figure;
 
 use crate::cli::args::{Common, TO_SEE_ROWS};
 use crate::cli::paper::Paper;
-use crate::cli::tongues::{self, Atlas};
 use clocks::map::{Grid, Products};
 use clocks::resonance::{Curve, Window};
-use clocks::tongue::Wanted;
 use documents::format::Format;
-use documents::question::{Colour, Map, Product, Question, Scene, Want};
+use documents::question::{Atlas, Colour, Form, Map, Product, Question, Scene, Want};
 use documents::report::document::Document;
 use documents::report::file::write_output;
 use documents::report::map::{MapArrays, Marked, Rows, marked};
@@ -104,8 +102,8 @@ impl<'a> Work<'a> {
         self.figures.get(product, || {
             if product == Product::Atlas {
                 let colour = self.scene.colour.unwrap_or(Colour::Family);
-                let question = tongues::Stream::new(self.scene.tongues()?, colour.needs())?;
-                return Atlas::new(&question, colour, Some(self.scene.families()))?.figure(self.common);
+                let atlas = Atlas::new(&self.scene.tongues()?, colour, Some(self.scene.families()))?;
+                return atlas.figure(&self.common.work());
             }
             let Verdicts { map, grid, marked, .. } = self.verdicts()?;
             let unstable = marked.iter().filter(|pair| !pair.decision.verdict.is_stable());
@@ -120,10 +118,8 @@ impl<'a> Work<'a> {
 
     /// The tongues' bytes in one format.
     fn tongues(&self, format: Format) -> Result<Vec<u8>> {
-        let growth = self.scene.max_sum.is_none();
-        let question = tongues::Stream::new(self.scene.tongues()?, Wanted { growth, ..Wanted::all() })?;
-        let mut bytes = Vec::new();
-        let tally = tongues::put(&question, self.common, format, &mut bytes)?;
+        let (mut bytes, form) = (Vec::new(), Form { format, float: self.common.float, to_see: TO_SEE_ROWS });
+        let tally = self.scene.tongues()?.write(&self.common.work(), form, &mut bytes)?;
         // It is the same in every format.
         let _ = self.tongues.set(tally);
         Ok(bytes)

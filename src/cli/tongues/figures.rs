@@ -1,9 +1,8 @@
 //! The other figures: diagrams over ρ, traces of one ratio, measured widths against the first-order law.
 
-use num_traits::Zero;
+use num_traits::{One, Signed, Zero};
 use plot::{Figure, Foot, typeset};
 
-use super::atlas::{below, share_of_pi};
 use clocks::tongue::sampled::{self, Diagram, LARGEST_S, Measured, Trace};
 use clocks::tongue::{Labels, Stiffness};
 use documents::question::Ratios;
@@ -68,7 +67,7 @@ pub fn strengths(ratios: Ratios, stiffness: &Stiffness, theta: &Laurent) -> Resu
         typeset(theta),
         stiffness.rho
     );
-    let foot = below(ratios, Foot::default().value("*ρ*", &stiffness.rho)).value("*θ*", theta);
+    let foot = ratios.below(Foot::default().value("*ρ*", &stiffness.rho)).value("*θ*", theta);
     Ok(strength::figure(rational::to_f64(&share), &title, &measured).footed(&foot))
 }
 
@@ -84,7 +83,7 @@ pub fn widths(ratios: Ratios, stiffness: &Stiffness) -> Result<Figure> {
         ));
     }
     let title = format!("All tongues with *p* + *q* ≤ {max_sum}, 0 < *m* < *p*; *ρ* = {}", stiffness.rho);
-    let foot = below(ratios, Foot::default().value("*ρ*", &stiffness.rho));
+    let foot = ratios.below(Foot::default().value("*ρ*", &stiffness.rho));
     Ok(strength::widths(&title, &measured).footed(&foot))
 }
 
@@ -94,4 +93,12 @@ fn measure(ratios: Ratios, stiffness: &Stiffness, shares: [Rational; 2]) -> Resu
         return Err(Error::missing("max-sum", "this figure is of many ratios: give --max-sum N"));
     };
     Ok((max_sum, sampled::widths(max_sum, &stiffness.rho, &shares)?))
+}
+
+/// θ/π of an angle strictly between 0 and π that is a rational multiple of π.
+fn share_of_pi(theta: &Laurent) -> Result<Rational> {
+    let share = theta.as_monomial().filter(|(power, _)| *power == 1).map(|(_, share)| share.clone());
+    share.filter(|share| share.is_positive() && *share < One::one()).ok_or_else(|| {
+        Error::input("theta", theta, "give a rational multiple of pi between 0 and pi, as pi/2")
+    })
 }

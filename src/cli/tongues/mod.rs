@@ -1,29 +1,25 @@
 //! `kickdrift tongues`: every unstable interval of one ratio or of all, with certified edges.
 
-mod atlas;
 mod figures;
-mod output;
 
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
+use plot::Figure;
 
-use super::args::{Common, unused};
+use super::args::{Common, TO_SEE_ROWS, unused};
 use super::paper::Paper;
 use super::verdict::{EDGES_WORTH_CERTIFYING, within};
-pub use atlas::Atlas;
-use clocks::tongue::{self, Selection, Stiffness, Tongues, Wanted};
+use clocks::tongue::{Selection, Tongues};
 use documents::format::Format;
 use documents::question::{
-    Colour, MOST_SUM, Question as _, Ratios, Survey, THINNEST, Tongues as Asked, flag,
+    Atlas, Colour, Columns, Form, Question as _, Ratios, Survey, THINNEST, Tongues as Asked, flag,
 };
 use documents::report::certificate::coq_of_tongue;
-use documents::report::file::write_output;
-use documents::report::tongues::needed;
+use documents::report::file::{write_output, write_with};
 use number::error::{Error, Result};
 use number::rational::ratio;
-use number::{Laurent, Ratio, Rational};
-pub use output::{Stream, put};
+use number::{Laurent, Ratio};
 
 /// Flags of `tongues`: a ratio or all of them, and rho or both stiffnesses.
 #[derive(Debug, clap::Args)]
@@ -31,20 +27,8 @@ pub struct Args {
     /// h2/h1 = p/q; several, as 5/3,7/2, for a diagram.
     #[arg(long, value_name = "P/Q", allow_hyphen_values = true, value_delimiter = ',', value_parser = flag::<Ratio>)]
     ratio: Vec<Ratio>,
-    /// All coprime p + q up to this number.
-    #[arg(long, value_name = "N", value_parser = flag::<u64>)]
-    max_sum: Option<u64>,
-    /// rho = lambda2/lambda1, not negative.
-    #[arg(long, value_name = "R", allow_hyphen_values = true, value_parser = flag::<Rational>)]
-    rho: Option<Rational>,
     #[command(flatten)]
     asked: Asked,
-    /// Columns by the names that csv has, or groups [default: all; with --max-sum all but growth; in LaTeX
-    /// edges].
-    ///
-    /// Groups: edges, exact, growth (takes longest), predicted, first-order.
-    #[arg(long, value_name = "LIST", value_delimiter = ',')]
-    columns: Option<Vec<String>>,
     /// Count and compare instead of listing: all tongues of all ratios that begin below s = 4
     /// (needs --max-sum).
     #[arg(long)]
@@ -69,21 +53,6 @@ pub struct Args {
     paper: Paper,
 }
 
-/// Columns of a tongue beside p, q, m, (a, b), its edges and its width.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Columns {
-    /// Nothing else.
-    Edges,
-    /// Edges in closed form.
-    Exact,
-    /// The fastest growth inside.
-    Growth,
-    /// The point p theta = m pi against the tongue.
-    Predicted,
-    /// The first-order law against the tongue.
-    FirstOrder,
-}
-
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Drawn {
     /// All tongues as segments in the (h1, h2) plane, over the curves (a, b).
@@ -106,35 +75,44 @@ impl Args {
         let forms = if self.survey { &Format::DOCUMENT[..] } else { &Format::DOCUMENT_OR_FIGURE };
         let format = common.format_of_table(forms)?;
         self.check(format)?;
-        let put = |figure| self.paper.write(figure, format, common.output.as_deref(), common);
-        match (format, self.figure) {
-            _ if self.survey => common.write(&self.all_tongues()?.ask(&common.work())?, format),
-            (Format::Svg | Format::Pdf | Format::Png, Some(Drawn::Strength)) => {
+        if self.survey {
+            return common.write(&self.all_tongues()?.ask(&common.work())?, format);
+        }
+        if format.is_figure() {
+            return self.paper.write(self.drawn(common)?, format, common.output.as_deref(), common);
+        }
+        let mut question = self.question()?;
+        if format == Format::Latex {
+            question.columns.get_or_insert_with(Columns::edges);
+        }
+        let form = Form { format, float: common.float, to_see: TO_SEE_ROWS };
+        write_with(common.output.as_deref(), |sink| question.write(&common.work(), form, sink).map(drop))?;
+        common.wrote_output();
+        Ok(())
+    }
+
+    /// The figure that is asked for.
+    fn drawn(&self, common: &Common) -> Result<Figure> {
+        if self.figure == Some(Drawn::Diagram) {
+            return figures::diagram(self.several()?, &self.asked.stiffness()?.rho, self.paper.width_mm());
+        }
+        let question = self.question()?;
+        let (ratios, stiffness) = (question.ratios()?, || question.stiffness());
+        match self.figure.unwrap_or(Drawn::Atlas) {
+            Drawn::Strength => {
                 let theta = self.theta.clone().unwrap_or_else(|| Laurent::monomial(ratio(1, 2), 1));
-                put(figures::strengths(self.ratios()?, &self.stiffness()?, &theta)?)
+                figures::strengths(ratios, &stiffness()?, &theta)
             }
-            (Format::Svg | Format::Pdf | Format::Png, Some(Drawn::Widths)) => {
-                put(figures::widths(self.ratios()?, &self.stiffness()?)?)
-            }
-            (Format::Svg | Format::Pdf | Format::Png, Some(Drawn::Trace)) => {
-                let Ratios::One(ratio) = self.ratios()? else {
+            Drawn::Widths => figures::widths(ratios, &stiffness()?),
+            Drawn::Trace => {
+                let Ratios::One(ratio) = ratios else {
                     return Err(Error::missing("ratio", "traces are of one ratio: give --ratio P/Q"));
                 };
-                put(figures::trace(ratio, &self.stiffness()?.rho, self.asked.m.as_ref())?)
+                figures::trace(ratio, &stiffness()?.rho, question.m.as_ref())
             }
-            (Format::Svg | Format::Pdf | Format::Png, Some(Drawn::Diagram)) => {
-                put(figures::diagram(self.several()?, &self.stiffness()?.rho, self.paper.width_mm())?)
-            }
-            (Format::Svg | Format::Pdf | Format::Png, _) => {
+            Drawn::Atlas | Drawn::Diagram => {
                 let colour = self.colour.unwrap_or(Colour::Family);
-                let question = self.question(colour.needs())?;
-                Atlas::new(&question, colour, None)?.write(common, format, &self.paper)
-            }
-            _ => {
-                let names = self.columns.clone().filter(|_| self.groups().is_none());
-                let mut question = self.question(self.wanted(format)?)?;
-                question.columns = names;
-                output::write(&question, common, format)
+                Atlas::new(&question, colour, None)?.figure(&common.work())
             }
         }
     }
@@ -142,9 +120,9 @@ impl Args {
     /// Writes the proof of one tongue's edges.
     fn certify(&self, path: &Path, common: &Common) -> Result<()> {
         common.apart_from_output("certificate", path)?;
-        let rho = self.stiffness()?.rho;
+        let rho = self.asked.stiffness()?.rho;
         let one = |remedy| Error::input("--certificate", path.display(), remedy);
-        let [ratio] = self.ratios()?.list()[..] else {
+        let [ratio] = self.question()?.ratios()?.list()[..] else {
             return Err(one("is for one ratio: give --ratio P/Q"));
         };
         within(ratio.kicks(), EDGES_WORTH_CERTIFYING, common.budget)?;
@@ -180,7 +158,7 @@ impl Args {
                 "is for --figure strength with --output FILE.svg, FILE.pdf or FILE.png",
             ),
             ("thinnest", self.thinnest.is_some() && !self.survey, "is for --survey"),
-            ("columns", self.columns.is_some() && (figure || self.survey), "is for tables"),
+            ("columns", self.asked.columns.is_some() && (figure || self.survey), "is for tables"),
             ("digits", self.asked.digits.is_some() && (figure || self.survey), "is for tables"),
         ];
         match wrong.iter().find(|(_, wrong, _)| *wrong) {
@@ -203,16 +181,16 @@ impl Args {
     }
 
     fn all_tongues(&self) -> Result<Survey> {
-        let Ratios::UpTo(max_sum) = self.ratios()? else {
+        let Ratios::UpTo(max_sum) = self.question()?.ratios()? else {
             return Err(Error::missing("max-sum", "a survey is of many ratios: give --max-sum N"));
         };
-        let (rho, thinnest) = (self.stiffness()?.rho, self.thinnest.unwrap_or(THINNEST));
+        let (rho, thinnest) = (self.asked.stiffness()?.rho, self.thinnest.unwrap_or(THINNEST));
         Ok(Survey { max_sum, rho, thinnest })
     }
 
     /// The ratios that were named, one or more.
     fn several(&self) -> Result<&[Ratio]> {
-        match (&self.ratio[..], self.max_sum) {
+        match (&self.ratio[..], self.asked.max_sum) {
             (named @ [_, ..], None) => Ok(named),
             _ => Err(Error::missing(
                 "ratio",
@@ -221,53 +199,15 @@ impl Args {
         }
     }
 
-    fn ratios(&self) -> Result<Ratios> {
-        match (&self.ratio[..], self.max_sum) {
+    /// The question about one ratio, or about all up to a sum.
+    fn question(&self) -> Result<Asked> {
+        match (&self.ratio[..], self.asked.max_sum) {
             ([_, second, ..], None) => Err(Error::input(
                 "ratio",
                 second,
                 "is a second ratio, and tables are of one: ask for each alone, or for all by --max-sum",
             )),
-            (named, max_sum) => Ratios::of(named.first().copied(), max_sum)?.within(MOST_SUM),
+            (named, _) => Ok(Asked { ratio: named.first().copied(), ..self.asked.clone() }),
         }
-    }
-
-    fn stiffness(&self) -> Result<Stiffness> {
-        Stiffness::new(self.rho.clone(), self.asked.lambda1.clone(), self.asked.lambda2.clone())
-    }
-
-    fn question(&self, wanted: Wanted) -> Result<Stream> {
-        let ((ratio, max_sum), rho) = (self.ratios()?.fields(), self.stiffness()?.rho);
-        Stream::new(Asked { ratio, max_sum, rho, ..self.asked.clone() }, wanted)
-    }
-
-    /// The groups of `--columns`, where it names groups and not columns.
-    fn groups(&self) -> Option<Vec<Columns>> {
-        let names = self.columns.iter().flatten();
-        names.map(|name| Columns::from_str(name.trim(), false).ok()).collect()
-    }
-
-    fn wanted(&self, format: Format) -> Result<Wanted> {
-        Ok(match (&self.columns, self.groups()) {
-            (None, _) if format == Format::Latex => Wanted { family: true, ..Wanted::default() },
-            (None, _) => Wanted { growth: self.max_sum.is_none(), ..Wanted::all() },
-            (Some(names), None) => {
-                let lambda1 = self.asked.lambda1.clone();
-                needed(
-                    names,
-                    &tongue::Request { lambda1, digits: self.asked.digits, ..tongue::Request::default() },
-                )?
-            }
-            (Some(_), Some(list)) => {
-                let has = |column| list.contains(&column);
-                Wanted {
-                    family: true,
-                    exact: has(Columns::Exact),
-                    growth: has(Columns::Growth),
-                    predicted: has(Columns::Predicted),
-                    first_order: has(Columns::FirstOrder),
-                }
-            }
-        })
     }
 }

@@ -1,5 +1,7 @@
 //! One ratio of steps, or all up to a sum: what tongues and closings range over.
 
+use plot::Foot;
+
 use number::Ratio;
 use number::error::{Error, Result};
 
@@ -63,6 +65,15 @@ impl Ratios {
         match self {
             Ratios::One(ratio) => format!("h2/h1 = {ratio}"),
             Ratios::UpTo(max_sum) => format!("all h2/h1 = p/q, p + q <= {max_sum}"),
+        }
+    }
+
+    /// Below a figure.
+    #[must_use]
+    pub fn below(self, foot: Foot) -> Foot {
+        match self {
+            Ratios::One(ratio) => foot.value("*h*_2/*h*_1", ratio),
+            Ratios::UpTo(max_sum) => foot.part(format!("all *h*_2/*h*_1 = *p*/*q*, *p* + *q* ≤ {max_sum}")),
         }
     }
 }

@@ -8,7 +8,6 @@
 //! behind that is ended by a signal it can catch, it removes by itself, see [`abandon`]; what another one
 //! left is known by its missing lock, and the next process that writes to the directory removes it.
 
-use std::cell::RefCell;
 use std::ffi::{OsStr, OsString};
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, BufWriter, ErrorKind, Write};
@@ -35,38 +34,10 @@ pub fn write_output(path: Option<&Path>, bytes: &[u8]) -> Result<()> {
 /// Those of the content as they are, and those of the sink, which the content hands on by [`Error::stream`],
 /// as [`write_output`].
 pub fn write_with(path: Option<&Path>, content: impl FnOnce(&mut dyn Write) -> Result<()>) -> Result<()> {
-    if is_captured() {
-        let mut bytes = Vec::new();
-        content(&mut bytes)?;
-        CAPTURED.with_borrow_mut(|all| all.as_mut().expect("captured").extend(bytes));
-        return Ok(());
-    }
     match path {
         None => to_stdout(content),
         Some(path) => to_path(path, content).map_err(|error| explained(path, error)),
     }
-}
-
-thread_local! {
-    /// The bytes that this thread would have written, while it is captured.
-    static CAPTURED: RefCell<Option<Vec<u8>>> = const { RefCell::new(None) };
-}
-
-/// Whether this thread's output is [`captured`].
-pub fn is_captured() -> bool {
-    CAPTURED.with_borrow(Option::is_some)
-}
-
-/// Runs `work` and returns what [`write_output`] and [`write_with`] would have written on this thread,
-/// wherever to; no file and no stream is touched by them.
-///
-/// # Errors
-/// Those of the work.
-pub fn captured(work: impl FnOnce() -> Result<()>) -> Result<Vec<u8>> {
-    CAPTURED.set(Some(Vec::new()));
-    let done = work();
-    let bytes = CAPTURED.take().unwrap_or_default();
-    done.map(|()| bytes)
 }
 
 /// Whether what is written to standard output is lost, though nobody says so.
@@ -153,7 +124,7 @@ fn permissions(old: &fs::Metadata) -> fs::Permissions {
 /// # Errors
 /// [`Kind::Io`](number::error::Kind::Io) naming a file that is read-only, for all or for this process.
 fn replaceable(path: &Path) -> Result<()> {
-    let old = fs::metadata(path).ok().filter(|old| old.is_file() && !CAPTURED.with_borrow(Option::is_some));
+    let old = fs::metadata(path).ok().filter(fs::Metadata::is_file);
     let Some(old) = old else { return Ok(()) };
     let opened = if old.permissions().readonly() {
         Err(ErrorKind::PermissionDenied.into())
@@ -174,9 +145,7 @@ fn replaceable(path: &Path) -> Result<()> {
 /// folder.
 pub fn writable(path: &Path) -> Result<()> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-    let cause = if is_captured() {
-        return Ok(());
-    } else if path.is_dir() {
+    let cause = if path.is_dir() {
         ErrorKind::IsADirectory
     } else if folder.is_some_and(|folder| !folder.exists()) {
         ErrorKind::NotFound

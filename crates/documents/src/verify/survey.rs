@@ -6,9 +6,9 @@ use super::exact::{ZeroOf, check_ratio, fraction, part};
 use super::kind::Verify;
 use super::sample::sample;
 use super::tongues::Tongue;
-use crate::question::{self, Survey};
+use crate::question::Survey;
 use crate::report::tongues::record;
-use clocks::tongue::{self, Entry, Request, Thin, Tongues, Wanted};
+use clocks::tongue::{self, Entry, Request, Stiffness, Thin, Tongues, Wanted};
 use clocks::verdict::Limits;
 use num_traits::Zero;
 use number::error::Result;
@@ -75,5 +75,5 @@ fn exact_signs(ratio: Ratio, rho: &Rational, limits: &Limits) -> Checked {
     let request = Request { wanted, ..Request::default() };
     let row = record(&request, false).entries(&request.answer(&tongues, gap)?);
     let row: Tongue = serde_json::from_value(row).expect("a row as documents have it");
-    row.holds(&question::Tongues { rho: rho.clone(), ..Default::default() }, limits)
+    row.holds(&Stiffness { rho: rho.clone(), lambda1: None, lambda2: None }, limits)
 }

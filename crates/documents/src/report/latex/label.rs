@@ -6,9 +6,9 @@ use serde_json::{Map, Value};
 const LONGEST_LABEL: usize = 60;
 
 /// A name that tables of other inputs do not have: the values of all of them, or a checksum where these are
-/// long.
+/// long. Columns are told by a table's form.
 pub fn label(name: &str, input: &Map<String, Value>) -> String {
-    let values = input.iter().map(|(key, value)| match value {
+    let values = input.iter().filter(|(key, _)| *key != "columns").map(|(key, value)| match value {
         Value::String(text) => format!("-{key}-{text}"),
         other => format!("-{key}-{other}"),
     });

@@ -4,15 +4,14 @@ use serde_json::Value;
 
 use super::edge::Zero;
 use super::listing::last;
-use super::rows::{Claim, Input, Tongue};
-use crate::report::document::Document;
-use crate::report::tongues::{TongueTally, record};
+use super::rows::{Claim, Tongue};
+use crate::question::{Question, Work};
 use crate::verify::again::Recheck;
-use crate::verify::context::{Checked, Context, Outcome, holds};
+use crate::verify::context::{Checked, Context, Fault, Outcome, holds};
 use crate::verify::exact::{check_ratio, fraction, part, signs};
 use crate::verify::written::Ends;
 use clocks::resonance::dominant_family;
-use clocks::tongue::{Tongues, entries};
+use clocks::tongue::{Stiffness, Tongues, entries};
 use clocks::verdict::{Kind, Limits, decide, growth};
 use number::error::Result;
 use number::{Ratio, Rational};
@@ -22,56 +21,46 @@ const ROUTE: &str = "the entries' exact signs at both ends of every enclosure, v
 
 impl Recheck for Claim {
     const TABLE: &'static str = "tongues";
-    const READS_ROWS: bool = true;
     type Found = ();
 
     fn again(&self, context: &Context) -> Result<(Value, ())> {
-        let asked = self.question(&context.limits())?;
-        let (mut tally, mut rows) = (TongueTally::default(), Vec::new());
-        let record = record(&asked.request, false);
-        asked.each(&(), |part| {
-            part.iter().for_each(|tongue| tally.add(tongue));
-            rows.extend(part.iter().map(|tongue| record.entries(tongue)));
-            Ok(())
-        })?;
-        let document = Document::new("tongues").input("rho", &asked.stiffness.rho).entry("tongues", rows);
-        let entries = tally.entries().into_iter();
-        let document = entries.fold(document, |document, (key, value)| document.entry(key, value));
-        Ok((document.value(), ()))
+        if let Some(longest) = self.input.ratios()?.list().iter().max_by_key(|ratio| ratio.kicks()) {
+            check_ratio(longest.p(), longest.q(), &context.limits()).map_err(Fault::refused)?;
+        }
+        Ok((self.input.ask(&Work { watch: None, ..context.work() })?.value(), ()))
     }
 
     fn check(&self, (): (), context: &Context) -> Result<Outcome> {
-        let whole = self.complete(&context.limits());
-        context.outcome(ROUTE, ("the list", whole), &self.tongues, |row| {
-            row.holds(&self.input, &context.limits())
-        })
+        let (limits, given) = (context.limits(), self.input.stiffness()?);
+        let whole = self.complete(&given.rho, &limits);
+        context.outcome(ROUTE, ("the list", whole), &self.tongues, |row| row.holds(&given, &limits))
     }
 }
 
 impl Tongue {
     /// That all of the row holds.
-    pub fn holds(&self, input: &Input, limits: &Limits) -> Checked {
-        let (p, m, rho) = (self.p, self.m, &input.rho);
+    pub fn holds(&self, given: &Stiffness, limits: &Limits) -> Checked {
+        let (p, m, rho) = (self.p, self.m, &given.rho);
         let ratio = check_ratio(p, self.q, limits)?;
         let last = last(ratio, rho);
         holds((1..=last).contains(&m), || format!("{ratio} has the tongues 1 to {last}"))?;
         self.family(ratio)?;
-        let lower = self.lower.zero("lower", (ratio, m), input)?;
+        let lower = self.lower.zero("lower", (ratio, m), given)?;
         let finite = self.upper.is_some();
         holds(finite == (m < last), || "the last tongue has no upper edge, and no other one".into())?;
         let (Some(upper), Some(width)) = (&self.upper, self.width) else {
             holds(!self.closed, || "the last tongue is open".into())?;
             return self.unstable(&lower, &(&lower.zero.hi * fraction(2, 1)));
         };
-        let upper = upper.zero("upper", (ratio, m), input)?;
+        let upper = upper.zero("upper", (ratio, m), given)?;
         let entries = (lower.zero.entry, upper.zero.entry);
         holds(entries.0 != entries.1, || "both edges are zeros of one entry".into())?;
         let order = lower.zero.lo <= upper.zero.hi;
         holds(order, || "its lower edge lies above its upper one".into())?;
         if self.closed {
-            self.closed(&lower, &upper, width, input)?;
+            self.closed(&lower, &upper, width, given)?;
         } else {
-            self.open(&lower, &upper, width, input, limits)?;
+            self.open(&lower, &upper, width, given, limits)?;
         }
         if let Some(predicted) = self.predicted.value() {
             predicted.holds(self.m, &lower, &upper)?;
@@ -96,7 +85,7 @@ impl Tongue {
     }
 
     /// The edges part in the order given, and between them all is unstable with the label m.
-    fn open(&self, lower: &Zero, upper: &Zero, width: Ends, input: &Input, limits: &Limits) -> Checked {
+    fn open(&self, lower: &Zero, upper: &Zero, width: Ends, given: &Stiffness, limits: &Limits) -> Checked {
         let (mut below, mut above) = (lower.zero.clone(), upper.zero.clone());
         let order = part(&mut below, &mut above);
         holds(order.is_some_and(std::cmp::Ordering::is_lt), || {
@@ -113,13 +102,13 @@ impl Tongue {
         let verdict = decide(&clocks, limits)?.verdict;
         let label = growth(&clocks, verdict, limits)?.label;
         holds(label == Some(self.m), || format!("the growing solution turns {label:?} times"))?;
-        self.growth.value().map_or(Ok(()), |growth| growth.holds(self, input, (&below, &above)))
+        self.growth.value().map_or(Ok(()), |growth| growth.holds(self, given, (&below, &above)))
     }
 
     /// Both entries vanish at one point, and it is this tongue's.
-    fn closed(&self, lower: &Zero, upper: &Zero, width: Ends, input: &Input) -> Checked {
+    fn closed(&self, lower: &Zero, upper: &Zero, width: Ends, given: &Stiffness) -> Checked {
         holds((width.lo, width.hi) == (0.0, 0.0), || "a closed tongue is 0 wide".into())?;
-        let (ratio, rho) = (lower.zero.ratio, &input.rho);
+        let (ratio, rho) = (lower.zero.ratio, &given.rho);
         if *rho == Rational::default() {
             return lower.on_resonance(self.m); // without slow kicks both are zeros of sin p theta
         }

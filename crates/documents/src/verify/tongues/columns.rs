@@ -5,12 +5,12 @@ use std::f64::consts::{LN_10, PI};
 use num_traits::{Signed, Zero as _};
 
 use super::edge::Zero;
-use super::rows::{FirstOrder, Growth, Input, Predicted, Tongue};
+use super::rows::{FirstOrder, Growth, Predicted, Tongue};
 use crate::verify::context::{Checked, Fault, holds};
 use crate::verify::exact::{ZeroOf, fraction, ln_multiplier_at, resonance};
 use crate::verify::written::Ends;
 use clocks::propagator::{TwoClocks, half_period};
-use clocks::tongue::{Resonance, Side};
+use clocks::tongue::{Resonance, Side, Stiffness};
 use number::{Ball, Rational, rational};
 
 /// Rounded numbers are right to nine digits: some are the end of a few hundred operations in doubles.
@@ -26,7 +26,7 @@ fn exact(x: f64) -> Checked<Rational> {
 
 impl Growth {
     /// The growth is that of its place, and falls on both sides of it.
-    pub fn holds(&self, row: &Tongue, input: &Input, (lower, upper): (&ZeroOf, &ZeroOf)) -> Checked {
+    pub fn holds(&self, row: &Tongue, given: &Stiffness, (lower, upper): (&ZeroOf, &ZeroOf)) -> Checked {
         const BITS: u32 = 256;
         let s = exact(self.s)?;
         let ends = row.upper.as_ref().map_or(f64::INFINITY, |upper| upper.hi);
@@ -56,7 +56,7 @@ impl Growth {
         holds(near(self.rate, rate), || format!("the rate is {rate}"))?;
         let steps = LN_10 * row.q as f64 / truth;
         holds(near(self.steps_until_tenfold, steps), || format!("tenfold takes {steps} slow steps"))?;
-        let truth = input.lambda1.as_ref().map(|lambda1| rate * lambda1.to_f64().sqrt());
+        let truth = given.lambda1.as_ref().map(|lambda1| rate * lambda1.to_f64().sqrt());
         match (self.growth_rate, truth) {
             (Some(said), Some(truth)) => holds(near(said, truth), || format!("the growth rate is {truth}")),
             (None, None) => Ok(()),

@@ -2,12 +2,12 @@
 
 use num_traits::Signed;
 
-use super::rows::{Edge, Input};
+use super::rows::Edge;
 use crate::verify::context::{Checked, Fault, holds};
 use crate::verify::exact::{ZeroOf, fraction, resonance};
 use crate::verify::written::{Decimal, exact};
 use clocks::propagator::TwoClocks;
-use clocks::tongue::{Entry, Resonance};
+use clocks::tongue::{Entry, Resonance, Stiffness};
 use clocks::verdict::Decidable;
 use number::rational::simplest;
 use number::{Ball, Cyclotomic, Laurent, Ratio, Rational, Ring, Sign};
@@ -30,24 +30,24 @@ impl Edge {
         &self,
         name: &'static str,
         (ratio, m): (Ratio, u64),
-        input: &'a Input,
+        given: &'a Stiffness,
     ) -> Checked<Zero<'a>> {
         let entry = *self.entry;
         let pair = Entry::of_tongue(m % 2 == 1);
         holds(pair.contains(&entry), || format!("{name}: {} bounds no tongue m = {m}", entry.name()))?;
         holds(self.lo > 0.0, || format!("{name}: s is positive"))?;
-        let mut zero = ZeroOf::new((ratio, &input.rho), entry, exact(self.lo, self.hi)?, name)?;
+        let mut zero = ZeroOf::new((ratio, &given.rho), entry, exact(self.lo, self.hi)?, name)?;
         if let Some(decimal) = &self.decimal {
             let ends = decimal.ends()?;
             // The digits enclose the same zero.
             let (lo, hi) = (ends.0.max(zero.lo.clone()), ends.1.min(zero.hi.clone()));
             holds(lo <= hi, || format!("{name}: doubles and digits have nothing in common"))?;
-            zero = ZeroOf::new((ratio, &input.rho), entry, (lo, hi), name)?;
+            zero = ZeroOf::new((ratio, &given.rho), entry, (lo, hi), name)?;
         }
         let exact = self.exact.value().map(|s| s.0.clone());
         let found = Zero { zero, exact, name };
         self.closed_form(&found, m)?;
-        self.steps(&found, input)?;
+        self.steps(&found, given)?;
         Ok(found)
     }
 
@@ -81,9 +81,9 @@ impl Edge {
     }
 
     /// h² L over an enclosure of a step meets the enclosure of s.
-    fn steps(&self, found: &Zero, input: &Input) -> Checked {
+    fn steps(&self, found: &Zero, given: &Stiffness) -> Checked {
         let (name, back) = (found.name, Rational::from(found.zero.ratio.inverse()));
-        let Some(lambda1) = &input.lambda1 else { return Ok(()) };
+        let Some(lambda1) = &given.lambda1 else { return Ok(()) };
         let [from, upto] = [&found.zero.lo, &found.zero.hi].map(|s| Laurent::from_rational(s.clone()));
         for (key, step, back) in [("h1", &self.h1, fraction(1, 1)), ("h2", &self.h2, back)] {
             let step = step.as_ref().ok_or_else(|| Fault::Wrong(format!("{name}: {key} is missing")))?;

@@ -5,9 +5,8 @@ use crate::question::StepRange;
 use crate::verify::context::{Checked, Fault, Place, holds};
 use crate::verify::exact::check_ratio;
 use clocks::resonance::dominant_family;
-use clocks::tongue::{Listing, Selection, Tongues, Wanted};
+use clocks::tongue::{Selection, Tongues};
 use clocks::verdict::Limits;
-use number::error::Result;
 use number::{Laurent, Ratio, Rational};
 
 /// The label of the last tongue, which has no upper edge.
@@ -18,12 +17,12 @@ pub fn last(ratio: Ratio, rho: &Rational) -> u64 {
 impl Claim {
     /// The labels asked for are there, in order: as many edges as an entry has zeros, so each enclosure holds
     /// one.
-    pub(super) fn complete(&self, limits: &Limits) -> Checked {
+    pub(super) fn complete(&self, rho: &Rational, limits: &Limits) -> Checked {
         let list = self.input.ratios()?.list();
         let mut rows = self.tongues.iter().zip(1..);
         for ratio in list {
             let (p, q) = ratio.terms();
-            for m in self.labels(ratio, limits)? {
+            for m in self.labels(ratio, rho, limits)? {
                 let place = format!("p = {p}, q = {q}, m = {m}");
                 let missing = || Fault::Wrong(format!("{place} is missing at the end"));
                 let (row, i): (&Tongue, u64) = rows.next().ok_or_else(missing)?;
@@ -35,35 +34,11 @@ impl Claim {
         let next = rows.next();
         holds(next.is_none(), || format!("row {} is one tongue too many", next.map_or(0, |(_, i)| i)))
     }
-}
-
-impl Claim {
-    /// The columns asked for: those that the first row has.
-    pub(super) fn wanted(&self) -> Wanted {
-        let has = |find: fn(&Tongue) -> bool| self.tongues.first().is_some_and(find);
-        Wanted {
-            family: true,
-            exact: has(|row| !row.lower.exact.is_absent()),
-            growth: has(|row| !row.growth.is_absent()),
-            predicted: has(|row| !row.predicted.is_absent()),
-            first_order: has(|row| !row.first_order.is_absent()),
-        }
-    }
-}
-
-impl Claim {
-    /// The question, within the limits.
-    pub(super) fn question(&self, limits: &Limits) -> Result<Listing> {
-        if let Some(longest) = self.input.ratios()?.list().iter().max_by_key(|ratio| ratio.kicks()) {
-            check_ratio(longest.p(), longest.q(), limits).map_err(Fault::refused)?;
-        }
-        self.input.asked(self.wanted())
-    }
 
     /// The labels asked for; those in a window by the string's counts again.
-    fn labels(&self, ratio: Ratio, limits: &Limits) -> Checked<Vec<u64>> {
+    fn labels(&self, ratio: Ratio, rho: &Rational, limits: &Limits) -> Checked<Vec<u64>> {
         check_ratio(ratio.p(), ratio.q(), limits)?;
-        let last = last(ratio, &self.input.rho);
+        let last = last(ratio, rho);
         if let Some(list) = self.input.m.as_ref().filter(|_| self.input.ratio.is_some()) {
             let labels = list.0.iter().flat_map(|&(from, upto)| [from, upto]);
             holds(labels.into_iter().all(|m| (1..=last).contains(&m)), || {
@@ -87,7 +62,7 @@ impl Claim {
         let labels: Vec<u64> = (1..=last).filter(wanted).collect();
         let Some(window) = self.window(ratio) else { return Ok(labels) };
         let selection = Selection { s: Some(window), ..Selection::default() };
-        let met = Tongues::new(ratio, &self.input.rho)?.select(&selection)?;
+        let met = Tongues::new(ratio, rho)?.select(&selection)?;
         Ok(met.iter().map(|gap| gap.m).filter(|m| labels.binary_search(m).is_ok()).collect())
     }
 

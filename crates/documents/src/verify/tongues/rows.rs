@@ -1,6 +1,6 @@
 //! The rows of a document of tongues.
 
-pub use crate::question::Tongues as Input;
+use crate::question::Tongues;
 use crate::verify::written::{Column, Decimal, Ends, Written};
 use clocks::tongue::{Entry, Resonance, Side};
 use number::Rational;
@@ -8,7 +8,7 @@ use number::Rational;
 rows! {
     /// `kickdrift/tongues/1`.
     pub struct Claim {
-        pub input: Input,
+        pub input: Tongues,
         pub tongues: Vec<Tongue>,
     }
 

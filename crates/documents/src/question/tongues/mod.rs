@@ -1,0 +1,293 @@
+//! The tongues of one ratio or of all.
+
+mod atlas;
+mod written;
+
+use super::asking::{Fields, Question, Work, question};
+use super::field::{flag, notation};
+use super::ratios::{MOST_SUM, Ratios};
+use crate::report::document::{Document, Layout};
+use crate::report::tongues::{CAPTION, CAPTION_LATEX, TongueTally, needed, record};
+pub use atlas::Atlas;
+use clocks::tongue::{Labels, Listing, Range, Request, Selection, StepWindow, Stiffness, Tongue, Wanted};
+use number::error::{Error, Result};
+use number::named;
+use number::{Laurent, Ratio, Rational};
+pub use written::Form;
+
+question! {
+    /// Tongues of one ratio or of all, at one ρ, and what is wanted of each.
+    #[derive(Default)]
+    args struct Tongues {
+        /// h2/h1 = p/q.
+        #[arg(skip)]
+        ratio: Option<Ratio>,
+        /// All coprime p + q up to this number.
+        #[arg(long, value_name = "N", value_parser = flag::<u64>)]
+        max_sum: Option<u64>,
+        /// rho = lambda2/lambda1, not negative.
+        #[arg(long, value_name = "R", allow_hyphen_values = true, value_parser = flag::<Rational>)]
+        rho: Option<Rational>,
+        /// The fast stiffness: edges are given in h1 and h2 too.
+        #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
+        lambda1: Option<Laurent>,
+        /// The slow stiffness, in place of --rho.
+        #[arg(long, value_name = "Y", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
+        lambda2: Option<Laurent>,
+        /// Only tongues that meet this closed range of h1 (needs --lambda1).
+        #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<(Laurent, Laurent)>)]
+        h1_range: Option<Range>,
+        /// Only tongues that meet this closed range of h2 (needs --lambda1).
+        #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<(Laurent, Laurent)>)]
+        h2_range: Option<Range>,
+        /// Only these labels, as 4 or 1,3,7..9.
+        #[arg(long, value_name = "LIST", allow_hyphen_values = true, value_parser = flag::<Labels>)]
+        m: Option<Labels>,
+        /// Only tongues whose dominant family has its a in this range.
+        #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<(i64, i64)>)]
+        a: Option<(i64, i64)>,
+        /// Only tongues whose dominant family has its b in this range.
+        #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<(i64, i64)>)]
+        b: Option<(i64, i64)>,
+        /// Give the edges to so many significant digits, more or fewer than doubles have.
+        #[arg(long, value_name = "N", value_parser = flag::<u32>)]
+        digits: Option<u32>,
+        /// Columns by the names that csv has, or groups [default: all; with --max-sum all but growth; in LaTeX
+        /// edges].
+        ///
+        /// Groups: edges, exact, growth (takes longest), predicted, first-order.
+        #[arg(long, value_name = "LIST", value_parser = flag::<Columns>)]
+        columns: Option<Columns>,
+    }
+}
+
+/// Columns of tongues, by the names that CSV has or in groups. Documents name the groups that were asked for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Columns(Vec<String>);
+
+/// The groups beside p, q, m, (a, b), the edges and the width, which alone are `EDGES`.
+const EDGES: &str = "edges";
+const GROUPS: [&str; 4] = ["exact", "growth", "predicted", "first-order"];
+
+impl Columns {
+    /// The edges, and no other group.
+    pub fn edges() -> Columns {
+        Columns::of(Wanted::default())
+    }
+
+    /// The groups that are wanted.
+    fn of(Wanted { exact, growth, predicted, first_order, .. }: Wanted) -> Columns {
+        let wanted = GROUPS.into_iter().zip([exact, growth, predicted, first_order]);
+        let groups: Vec<String> =
+            wanted.filter(|(_, wanted)| *wanted).map(|(group, _)| group.to_string()).collect();
+        Columns(if groups.is_empty() { vec![EDGES.into()] } else { groups })
+    }
+
+    /// What is wanted, where all names are those of groups.
+    fn groups(&self) -> Option<Wanted> {
+        let is_group = |name: &String| name == EDGES || GROUPS.contains(&name.as_str());
+        let [exact, growth, predicted, first_order] =
+            GROUPS.map(|group| self.0.iter().any(|name| name == group));
+        self.0.iter().all(is_group).then_some(Wanted { family: true, exact, growth, predicted, first_order })
+    }
+}
+
+named! {
+    /// The quantity shown by the colours of an atlas.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    #[derive(clap::ValueEnum)]
+    pub enum Colour {
+        /// The a of the dominant family.
+        Family = "family",
+        /// The fastest growth inside the tongue.
+        Growth = "growth",
+    }
+}
+
+impl Colour {
+    /// The groups that the colours need.
+    fn needs(self) -> Columns {
+        Columns::of(Wanted { growth: self == Colour::Growth, ..Wanted::default() })
+    }
+
+    fn read(field: &str, text: &str) -> Result<Colour> {
+        let known = Colour::ALL.into_iter().find(|colour| colour.name() == text);
+        known.ok_or_else(|| Error::input(field, text, "choose family or growth"))
+    }
+}
+
+notation! {
+    Columns: |_, text: &str| Ok::<_, Error>(Columns(text.split(',').map(|name| name.trim().into()).collect())),
+        |columns: &Columns| columns.0.join(",");
+    Colour: Colour::read, |colour: &Colour| colour.name().to_string();
+}
+
+/// Digits beyond this are a slip of the keyboard.
+const MOST_DIGITS: u32 = 10_000;
+
+/// Rows unless a budget says otherwise: some gigabytes of text, minutes of work.
+const MOST_ROWS: u64 = 30_000_000;
+
+/// Tongues that were found, or the first of them and the counts of all.
+pub struct Answer {
+    /// The question with ρ and with groups in place of columns, as documents echo it.
+    asked: Tongues,
+    request: Request,
+    pub tongues: Vec<Tongue>,
+    tally: TongueTally,
+}
+
+impl Tongues {
+    /// All tongues of these ratios.
+    pub fn of(ratios: Ratios, Stiffness { rho, lambda1, lambda2 }: Stiffness) -> Tongues {
+        let (ratio, max_sum) = ratios.fields();
+        Tongues { ratio, max_sum, rho: Some(rho), lambda1, lambda2, ..Tongues::default() }
+    }
+
+    /// The ratios.
+    ///
+    /// # Errors
+    /// Neither one ratio nor a sum, or both; a sum out of range.
+    pub fn ratios(&self) -> Result<Ratios> {
+        Ratios::of(self.ratio, self.max_sum)?.within(MOST_SUM)
+    }
+
+    /// ρ, given as such or by both stiffnesses; a document has all three.
+    ///
+    /// # Errors
+    /// As [`Stiffness::new`]; a ρ that is another one than the stiffnesses'.
+    pub fn stiffness(&self) -> Result<Stiffness> {
+        let Tongues { rho, lambda1, lambda2, .. } = self.clone();
+        if let (Some(rho), Some(_)) = (&rho, &lambda2) {
+            let both = Stiffness::new(None, lambda1, lambda2).ok();
+            let refused = || Error::input("rho", "given with lambda2", "give one of them");
+            return both.filter(|both| both.rho == *rho).ok_or_else(refused);
+        }
+        Stiffness::new(rho, lambda1, lambda2)
+    }
+
+    /// The question in words.
+    ///
+    /// # Errors
+    /// As [`Tongues::ratios`] and [`Tongues::stiffness`].
+    pub fn words(&self) -> Result<String> {
+        Ok(format!("{} at rho = {}", self.ratios()?.words(), self.stiffness()?.rho))
+    }
+
+    /// What is wanted of each tongue beside its edges.
+    fn wanted(&self) -> Result<Wanted> {
+        let Some(columns) = &self.columns else {
+            return Ok(Wanted { growth: self.max_sum.is_none(), ..Wanted::all() });
+        };
+        let (lambda1, digits) = (self.lambda1.clone(), self.digits);
+        let request = Request { lambda1, digits, ..Request::default() };
+        columns.groups().map_or_else(|| needed(&columns.0, &request), Ok)
+    }
+
+    /// The columns of tables, where they are asked for one by one.
+    fn named(&self) -> Option<Vec<String>> {
+        self.columns.as_ref().filter(|columns| columns.groups().is_none()).map(|columns| columns.0.clone())
+    }
+
+    /// The question as documents echo it: with ρ, and with the groups of columns where some were asked for.
+    fn whole(&self) -> Result<Tongues> {
+        let (rho, wanted) = (self.stiffness()?.rho, self.wanted()?);
+        let columns = self.columns.as_ref().map(|_| Columns::of(wanted));
+        Ok(Tongues { rho: Some(rho), columns, ..self.clone() })
+    }
+
+    /// The question as the search takes it.
+    fn listing(&self) -> Result<Listing> {
+        if let Some(digits) = self.digits.filter(|digits| !(1..=MOST_DIGITS).contains(digits)) {
+            return Err(Error::input("digits", digits, format!("choose 1 to {MOST_DIGITS}")));
+        }
+        let window = StepWindow { h1: self.h1_range.clone(), h2: self.h2_range.clone() };
+        let selection = Selection { m: self.m.clone(), a: self.a, b: self.b, s: None };
+        let request = Request { wanted: self.wanted()?, lambda1: None, digits: self.digits };
+        Listing::new(self.ratios()?.list(), self.stiffness()?, window, selection, request)
+    }
+
+    /// That so many rows may be computed, where no window and no label says that they are fewer: p + q - 1 of
+    /// p/q.
+    fn allow(&self, listing: &Listing, work: &Work) -> Result<()> {
+        if listing.window != StepWindow::default() || listing.selection != Selection::default() {
+            return Ok(());
+        }
+        let rows = listing.ratios.iter().map(|ratio| ratio.kicks() - 1).sum::<u64>();
+        let most = work.budget.unwrap_or(MOST_ROWS);
+        if rows <= most {
+            return Ok(());
+        }
+        let ratios = self.ratios()?;
+        let cost = format!("the tongues of {} are {rows} rows, the budget is {most}", ratios.words());
+        Err(Error::budget(cost, rows).or(match ratios {
+            Ratios::One(_) => "choose labels by --m, or a window",
+            Ratios::UpTo(_) => "choose a smaller --max-sum, a window, or --survey",
+        }))
+    }
+
+    /// Hands on the tongues in the order of p + q, p, m.
+    fn each(&self, listing: &Listing, work: &Work, see: impl FnMut(&[Tongue]) -> Result<()>) -> Result<()> {
+        self.allow(listing, work)?;
+        let count = listing.ratios.len() as u64;
+        let progress = work.count(count, if count == 1 { "tongues" } else { "ratios" });
+        listing.each(&*progress, see)
+    }
+
+    /// The counts of all tongues, and the first of them, up to `most`.
+    fn first(&self, most: u64, work: &Work) -> Result<Answer> {
+        let (asked, listing) = (self.whole()?, self.listing()?);
+        let (mut tongues, mut tally) = (Vec::new(), TongueTally::default());
+        self.each(&listing, work, |part| {
+            for tongue in part {
+                tally.add(tongue);
+                if tally.count <= most {
+                    tongues.push(tongue.clone());
+                }
+            }
+            Ok(())
+        })?;
+        Ok(Answer { asked, request: listing.request, tongues, tally })
+    }
+
+    /// The tables and the summary, without rows in JSON; what people see has these columns.
+    fn tables(&self, answer: &Answer, seen: &Request) -> Document {
+        let Answer { asked, request, tongues, tally } = answer;
+        let table = |request, short| {
+            record(request, short).table("tongues", CAPTION, tongues).captioned(CAPTION_LATEX)
+        };
+        let words = asked.words().expect("it was answered");
+        // Places come with their digits already; what is left are widths and rounded numbers, which doubles hold.
+        let layout = Layout { columns: self.named(), digits: request.digits };
+        let document =
+            Document::new(Self::NAME).long_rows(table(request, false)).for_people(table(seen, true));
+        document.summary(&tally.lines(&words)).laid_out(&layout).expect("it was answered")
+    }
+}
+
+impl Question for Tongues {
+    const NAME: &'static str = "tongues";
+    type Answer = Answer;
+
+    fn answer(&self, work: &Work) -> Result<Answer> {
+        self.first(u64::MAX, work)
+    }
+
+    fn show(&self, answer: &Answer) -> Document {
+        let rows = record(&answer.request, false).all(&answer.tongues);
+        // A table for paper has edges alone unless it is asked for more.
+        let wanted = self.columns.as_ref().map_or_else(Wanted::default, |_| answer.request.wanted);
+        let seen = Request { wanted, ..answer.request.clone() };
+        self.tables(answer, &seen).entry("tongues", rows).entries(answer.tally.entries())
+    }
+
+    fn document(&self, answer: &Answer) -> Document {
+        self.show(answer).inputs(answer.asked.input())
+    }
+
+    fn figure(&self, answer: &Answer, _: &Work) -> Result<Option<plot::Figure>> {
+        let mut atlas = Atlas::new(self, Colour::Family, None)?;
+        atlas.add(&answer.tongues);
+        Ok(Some(atlas.drawn()))
+    }
+}
