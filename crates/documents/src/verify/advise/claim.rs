@@ -27,6 +27,14 @@ rows! {
         pub pairs: Vec<Pair>,
         #[serde(default)]
         pub levers: Vec<LeverRow>,
+        #[serde(default)]
+        pub measured: Vec<Measured>,
+    }
+
+    /// A bond of a known shape: the first step at which it is too hot, over its period.
+    pub struct Measured {
+        pub mode: String,
+        pub share: f64 | null,
     }
 
     pub struct ModeRow {
@@ -142,19 +150,29 @@ impl Claim {
     }
 
     /// Whether h w ≤ 1 of the stiffest mode on a clock, for a step of its own; lifted of harmonic bonds, but
-    /// not of the slowest force beside others.
+    /// not of the slowest force beside others. A bond of a known shape has the step that was measured in its
+    /// place.
     pub fn is_below_turn(&self, mass: &Mass, clock: usize, step: &Rational) -> bool {
         let last = mass.steps.len() - 1;
-        if self.input.harmonic && (clock < last || last == 0) {
-            return true;
+        let is_slow = clock == last && last > 0;
+        if is_slow || self.measured.is_empty() {
+            return !is_slow && self.input.harmonic || is_below_one(&mass.stiffness[clock], step);
         }
-        let square = Ball::from_rational(step, BITS).square(BITS).mul(&mass.stiffness[clock], BITS);
-        // Bounds are rounded down a little.
-        let most = Ball::from_rational(
-            &(Rational::one() - Rational::new(1.into(), 1_000_000_000_000_000_i64.into())),
-            BITS,
-        );
-        square.sub(&most, BITS).sign() == Some(Sign::Negative)
+        self.modes_asked().filter(|mode| mode.clock == Some(clock)).all(|mode| {
+            let stiffness = mode.stiffness.enclosure(BITS);
+            match self.measured.iter().find(|row| row.mode == mode.name) {
+                None => self.input.harmonic || is_below_one(&stiffness, step),
+                // h below T (1 - band) share, that is h w/(2 π (1 - band) share) below 1.
+                Some(Measured { share: Some(share), .. }) => {
+                    let part =
+                        Ball::from_rational(&(exact(*share) * (Rational::one() - &self.input.band)), BITS);
+                    let turn = Ball::pi(BITS).scale2(1).mul(&part, BITS);
+                    let scaled = stiffness.div(&turn.square(BITS), BITS);
+                    scaled.is_some_and(|scaled| is_below_one(&scaled, step))
+                }
+                Some(_) => true,
+            }
+        })
     }
 
     /// The stiffest mode on each clock, or this one on its own.
@@ -295,4 +313,14 @@ impl ModeRow {
         holds(shorter, || format!("heavy hydrogens do not shorten the period of {}", self.name))?;
         whole(1, self.verlet, Ball::from_integer(&4.into()), "verlet")
     }
+}
+
+/// Whether h w < 1; bounds are rounded down a little.
+fn is_below_one(stiffness: &Ball, step: &Rational) -> bool {
+    let square = Ball::from_rational(step, BITS).square(BITS).mul(stiffness, BITS);
+    let most = Ball::from_rational(
+        &(Rational::one() - Rational::new(1.into(), 1_000_000_000_000_000_i64.into())),
+        BITS,
+    );
+    square.sub(&most, BITS).sign() == Some(Sign::Negative)
 }
