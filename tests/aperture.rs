@@ -1,6 +1,7 @@
 //! The aperture of a bond beside the table of a loop in C, and beside loops written here.
 
 use kickdrift::advise::aperture::{Bond, EARLY, LATE, Measurement, PHASES, Step, rungs};
+use kickdrift::advise::{Advice, Bound, Mode, Question, Scheme, Status};
 use kickdrift::error::Result;
 use kickdrift::number::rational::{ratio, to_f64};
 
@@ -233,4 +234,57 @@ fn steps_know_which_resonance_is_near() {
     let resonances = measurement.resonances(2.7);
     assert_eq!(resonances.iter().map(|resonance| resonance.k).collect::<Vec<_>>(), [3, 4, 5, 6, 7, 8]);
     assert!(resonances.windows(2).all(|pair| pair[0].step > pair[1].step));
+}
+
+/// Advice on one clock with this bond, at 298 K, for 10^9 bonds times picoseconds.
+fn advice(bond: &str, harmonic: bool) -> Advice {
+    let modes = vec![Mode::from_bond(bond, None).unwrap()];
+    let scheme = Scheme::new(vec![ratio(1, 1)]).unwrap();
+    let question = Question::new(modes, vec![scheme], ratio(1, 20)).unwrap().with_harmonic_bonds(harmonic);
+    question.at_temperature(&ratio(298, 1), &ratio(1_000_000_000, 1)).unwrap().answer().unwrap()
+}
+
+#[test]
+fn advice_on_a_bond_of_a_known_shape_stays_where_it_is_cold_enough() {
+    for bond in [QUARTIC, MORSE] {
+        let found = advice(bond, false);
+        let answer = &found.schemes[0];
+        assert_eq!((answer.bound, answer.status), (Some(Bound::Aperture), Status::Safe), "{bond}");
+        // 1.4 fs is published as close to the upper bound; runs lose bonds within a picosecond at 1.65 fs.
+        let safe = to_f64(answer.safe.as_ref().unwrap());
+        assert!((1.15..1.45).contains(&safe), "{bond}: {safe}");
+        // Every period of the band, and every shorter step: the aperture is not below ln N.
+        let measurement = measurement(bond, VERLET);
+        for part in [15, 18, 19] {
+            let h = safe / 0.95 * f64::from(part) / 20.0;
+            let step = measurement.at(&ratio((h * 1e6) as i64, 1_000_000)).unwrap();
+            assert!(step.aperture.is_none_or(|aperture| aperture >= 1e9f64.ln()), "{bond}: {h} {step:?}");
+        }
+    }
+}
+
+#[test]
+fn advice_does_not_bound_harmonic_bonds_by_an_aperture() {
+    // The band's edge: 0.95 of 2.732 fs.
+    let answer = &advice(HARMONIC, true).schemes[0];
+    assert_eq!(answer.bound, Some(Bound::Band));
+    assert!((to_f64(answer.safe.as_ref().unwrap()) - 2.595_6).abs() < 1e-3);
+    // K and k alone do not say that a bond is harmonic.
+    assert_eq!(advice(HARMONIC, false).schemes[0].bound, Some(Bound::Turn));
+}
+
+#[test]
+fn a_heavier_bond_has_the_same_share_of_its_period() {
+    let heavy = QUARTIC.replace("1.008", "3.024");
+    let [light, heavy] = [QUARTIC, &heavy].map(|bond| {
+        let found = advice(bond, false);
+        (
+            found.cold[0].1.clone().unwrap().share,
+            to_f64(found.schemes[0].safe.as_ref().unwrap()),
+            found.modes[0].period().0,
+        )
+    });
+    // The steps of both measurements are not at the same parts of the period: two parts in a thousand.
+    assert!((light.0 - heavy.0).abs() < 0.002, "{light:?} {heavy:?}");
+    assert!((light.1 / light.2 - heavy.1 / heavy.2).abs() < 0.002);
 }

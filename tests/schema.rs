@@ -129,6 +129,7 @@ const LINES: &[&str] = &[
     "advise --bond OH:K=450kcal/mol/A^2,15.999,1.008 --bond CH:k=680kcal/mol/A^2,12.011,1.008,3 --period 3000/cm --hmr 3.024 --on 3000/cm=1 --steps 1fs,2fs",
     "advise --period 10fs --period 40fs --period 100fs --steps 0.7fs,1fs,3fs --band 0",
     "advise --bond OH:K=450kcal/mol/A^2,15.999,1.008 --period angle=13fs --period 40fs --constraints OH --friction 1/ps --steps 0.5fs,6fs --all-modes",
+    "advise --bond OH:poly:k2=254049kJ/mol/nm^2,k3=-5810111kJ/mol/nm^3,k4=77511731kJ/mol/nm^4,15.999,1.008 --period slow=40fs --steps 0.5fs,2fs --temperature 310K --bonds 1000 --no-levers",
     "advise data/scenes/water4.json --length 1ns",
     "advise data/scenes/water4.json --steps 0.5fs,4.5fs --friction 1/ps --hmr 1.5",
     "advise data/scenes/no-gradient.json --steps 20fs,60fs --friction 1/10/ps --length 1ns",

@@ -233,8 +233,14 @@ def _published(document: Mapping[str, Any]) -> float:
     last = len(document["input"]["schemes"][0])
     shortest = {clock: min(mode["period"]["lo"] for mode in document["modes"] if mode["clock"] == clock)
                 for clock in {mode["clock"] for mode in document["modes"]}}  # fmt: skip
-    is_lifted = last == 1 and "harmonic" in document["input"]
+    is_lifted = last == 1 and ("harmonic" in document["input"] or "measured" in document)
     turn = [shortest[last] / (2 * math.pi)] if last in shortest and not is_lifted else []
+    if last == 1:
+        share = {row["mode"]: row["share"] for row in document.get("measured", []) if row["share"] is not None}
+        part = 1 - float(Fraction(document["input"]["band"]))
+        turn += [
+            mode["period"]["lo"] * share[mode["name"]] * part for mode in document["modes"] if mode["name"] in share
+        ]
     return min([period / 3 for clock, period in shortest.items() if clock < last] + turn, default=math.inf)
 
 

@@ -2,6 +2,7 @@
 
 use num_traits::{One, Zero};
 
+use super::aperture::Cold;
 use super::beads::Beads;
 use super::caps::{Bound, Caps};
 use super::edges::Edges;
@@ -130,6 +131,8 @@ pub struct Advice {
     pub caps: Caps,
     /// Whether the bonds are said to be harmonic.
     pub harmonic: bool,
+    /// Of bonds whose shape is known, by name: the first step at which they are too hot, if there is one.
+    pub cold: Vec<(String, Option<Cold>)>,
     pub beads: Option<Beads>,
     /// Of all times.
     pub unit: TimeUnit,
@@ -157,13 +160,15 @@ impl Question {
         let silent = self.stiffest().iter().any(Option::is_none);
         let levers = if self.levers { Some(self.levers()?) } else { None };
         let (lacks_fast, caps) = (self.lacks_fast(), self.caps());
-        let Question { modes, band, length, held, friction, all_modes, harmonic, beads, unit, .. } = self;
+        let Question { modes, band, length, held, friction, all_modes, harmonic, cold, beads, unit, .. } =
+            self;
         Ok(Advice {
             fastest,
             silent,
             lacks_fast,
             caps,
             harmonic,
+            cold,
             beads,
             unit,
             schemes,

@@ -27,6 +27,8 @@ named! {
         Turn = "T/6.28",
         /// The same of the slow force, which every method here follows by Verlet's rule.
         SlowTurn = "slow T/6.28",
+        /// The step at which a bond of a known shape is too hot, with all periods of the band: measured.
+        Aperture = "aperture",
         /// The friction given masks what grows for the periods given; nothing is proven of the band.
         Friction = "friction, no band",
     }
@@ -39,6 +41,8 @@ pub struct Caps {
     third: Option<Rational>,
     /// T/6.28 of the fastest motion on each clock; `None` where none is known, or where it is lifted.
     turns: Vec<Option<Rational>>,
+    /// Which of these were measured of bonds of a known shape.
+    measured: Vec<bool>,
 }
 
 impl Caps {
@@ -59,17 +63,38 @@ impl Caps {
         Caps {
             third: fastest.and_then(|period| part(period, Place::Part(3))),
             turns: periods.iter().enumerate().map(turn).collect(),
+            measured: vec![false; periods.len()],
+        }
+    }
+
+    /// In place of T/6.28 of bonds whose shape is known the steps that were measured, in fs; `others` are the
+    /// bounds of the other motions. The step of the slow force stays as it is.
+    #[must_use]
+    pub(super) fn with_measured(mut self, others: &Caps, cold: &[Option<f64>]) -> Caps {
+        let last = self.turns.len().saturating_sub(1);
+        for (k, cold) in cold.iter().enumerate().filter(|(k, _)| last == 0 || *k < last) {
+            let (turn, cold) =
+                (others.turns[k].clone(), cold.and_then(|cold| from_f64_exact(cold.next_down())));
+            self.measured[k] = cold.as_ref().is_some_and(|cold| turn.as_ref().is_none_or(|turn| cold < turn));
+            self.turns[k] = cold.into_iter().chain(turn).min();
+        }
+        self
+    }
+
+    /// The kind of bound on a clock's own step.
+    pub fn bound(&self, clock: usize) -> Bound {
+        let is_slow = clock > 0 && clock + 1 == self.turns.len();
+        match self.measured.get(clock) {
+            Some(true) => Bound::Aperture,
+            _ if is_slow => Bound::SlowTurn,
+            _ => Bound::Turn,
         }
     }
 
     /// The bound on the outermost step; `None` where there is none.
     pub fn outer(&self) -> Option<(&Rational, Bound)> {
-        let is_alone = self.turns.len() == 1;
-        let turn = self
-            .turns
-            .last()?
-            .as_ref()
-            .map(|turns| (turns, if is_alone { Bound::Turn } else { Bound::SlowTurn }));
+        let last = self.turns.len().checked_sub(1)?;
+        let turn = self.turns[last].as_ref().map(|turn| (turn, self.bound(last)));
         let third = self.third.as_ref().map(|third| (third, Bound::Third));
         third.into_iter().chain(turn).min_by(|a, b| a.0.cmp(b.0))
     }
@@ -110,10 +135,10 @@ impl Caps {
     /// The bound on the outermost step where all steps keep the ratios of a scheme.
     pub fn at_ratio(&self, scheme: &Scheme) -> Option<(Rational, Bound)> {
         let last = self.turns.len().saturating_sub(1);
-        let scaled = |(cap, step): (&Option<Rational>, &Rational)| {
-            Some((cap.as_ref()? * scheme.outer() / step, Bound::Turn))
+        let scaled = |(k, (cap, step)): (usize, (&Option<Rational>, &Rational))| {
+            Some((cap.as_ref()? * scheme.outer() / step, self.bound(k)))
         };
-        let inner = self.turns[..last].iter().zip(scheme.steps()).filter_map(scaled);
+        let inner = self.turns[..last].iter().zip(scheme.steps()).enumerate().filter_map(scaled);
         inner.chain(self.outer().map(|(cap, bound)| (cap.clone(), bound))).min_by(|a, b| a.0.cmp(&b.0))
     }
 

@@ -14,6 +14,7 @@
 //! # Ok::<(), kickdrift_molecules::number::error::Error>(())
 //! ```
 
+use super::aperture;
 use super::caution::Place;
 use super::typical::Typical;
 use super::unit::{self, Dimension};
@@ -31,6 +32,8 @@ pub enum Origin {
     Half,
     /// E = K x², as Amber and CHARMM write it: k = 2 K.
     Whole,
+    /// The curvature at rest of a shape that is not harmonic.
+    Shape,
 }
 
 impl Origin {
@@ -42,6 +45,7 @@ impl Origin {
             Origin::Typical(typical) => typical.origin,
             Origin::Half => "k of E = k x^2/2",
             Origin::Whole => "K of E = K x^2",
+            Origin::Shape => "curvature at rest",
         }
     }
 }
@@ -57,6 +61,8 @@ pub struct Mode {
     pub clock: Option<usize>,
     /// Its masses, where it is a bond.
     pub bond: Option<Bond>,
+    /// Its potential, where that is known and not harmonic, with the masses as given.
+    pub shape: Option<aperture::Bond>,
 }
 
 /// The masses of a bond.
@@ -98,7 +104,7 @@ const EXAMPLES: &str =
 
 impl Mode {
     fn new(name: &str, origin: Origin, stiffness: Laurent) -> Mode {
-        Mode { name: name.trim().into(), origin, stiffness, clock: None, bond: None }
+        Mode { name: name.trim().into(), origin, stiffness, clock: None, bond: None, shape: None }
     }
 
     /// `NAME=10fs`, `10fs`, `NAME=3700/cm`, `slow=water`, `fast=water`: a period, a wavenumber, or what one
@@ -157,30 +163,25 @@ impl Mode {
             Error::input("bond", text.trim(), remedy)
         };
         let (name, rest) = text.split_once(':').ok_or_else(form)?;
-        let mut parts = rest.split(',');
-        let constant = parts.next().unwrap_or_default().trim();
-        let (origin, constant, double) = match constant.split_once('=') {
-            Some(("k", value)) => (Origin::Half, value, 1),
-            Some(("K", value)) => (Origin::Whole, value, 2),
+        let parts: Vec<&str> = rest.split(',').map(str::trim).collect();
+        let count = parts.iter().take_while(|part| part.contains('=')).count();
+        let (constants, rest) = parts.split_at(count);
+        let [m1, m2, hydrogens @ ..] = rest else { return Err(form()) };
+        let count = match hydrogens {
+            [] => 1,
+            [n] => match n.parse::<u8>() {
+                Ok(n @ 1..=4) => n,
+                _ => {
+                    let remedy = "a heavy atom has 1 to 4 hydrogens";
+                    return Err(Error::input(&format!("bond {name}"), text, remedy));
+                }
+            },
             _ => return Err(form()),
         };
-        let k = unit::measured(&format!("bond {name}"), constant, Dimension::Stiffness)?;
-        let k = &k * &Laurent::from_integer(double);
-        let masses: Vec<Rational> = parts.by_ref().take(2).map(|m| mass(name, m)).collect::<Result<_>>()?;
-        let [m1, m2] = <[Rational; 2]>::try_from(masses).map_err(|_| form())?;
-        let count = match parts.next().map(|n| n.trim().parse::<u8>()) {
-            None => 1,
-            Some(Ok(n @ 1..=4)) => n,
-            Some(_) => {
-                return Err(Error::input(&format!("bond {name}"), text, "a heavy atom has 1 to 4 hydrogens"));
-            }
-        };
-        if parts.next().is_some() {
-            return Err(form());
-        }
-        let bond = Bond::new([m1, m2], count, None);
+        let bond = Bond::new([unit::mass(name, m1)?, unit::mass(name, m2)?], count, None);
+        let (origin, k, shape) = constant(name, constants, [m1, m2]).transpose().ok_or_else(form)??;
         let stiffness = &k * &Laurent::from_rational(bond.inverse_mass(name, None)?);
-        let mode = Mode { bond: Some(bond), ..Mode::new(name, origin, stiffness) };
+        let mode = Mode { bond: Some(bond), shape, ..Mode::new(name, origin, stiffness) };
         hydrogen.map_or(Ok(mode.clone()), |hydrogen| mode.with_hydrogens(hydrogen))
     }
 
@@ -264,11 +265,24 @@ impl Mode {
     }
 }
 
-pub(super) fn mass(bond: &str, text: &str) -> Result<Rational> {
-    let field = format!("bond {bond}: mass");
-    let with_unit = unit::dimension(text).map_or_else(|| format!("{}amu", text.trim()), |_| text.into());
-    unit::rational(&field, &with_unit, Dimension::Mass)
-        .map_err(|error| Error::input(&field, text.trim(), error.remedy()))
+/// The force constant of a bond and where it comes from, and its shape where that is not harmonic; `None` of
+/// other constants.
+fn constant(
+    name: &str,
+    constants: &[&str],
+    [m1, m2]: [&str; 2],
+) -> Result<Option<(Origin, Laurent, Option<aperture::Bond>)>> {
+    let measured = |text: &str| unit::measured(&format!("bond {name}"), text, Dimension::Stiffness);
+    let named = constants.iter().filter_map(|part| part.split_once('=')).collect::<Vec<_>>();
+    Ok(match &named[..] {
+        [("k", value)] => Some((Origin::Half, measured(value)?, None)),
+        [("K", value)] => Some((Origin::Whole, &measured(value)? * &Laurent::from_integer(2), None)),
+        [(first, _), ..] if first.starts_with("morse:") || first.starts_with("poly:") => {
+            let shape = aperture::Bond::read(&format!("{name}:{},{m1},{m2}", constants.join(",")))?;
+            Some((Origin::Shape, Laurent::from_rational(shape.curvature()), Some(shape)))
+        }
+        _ => None,
+    })
 }
 
 /// Atoms up to this mass, in amu, are hydrogens (deuterium is none).

@@ -2,6 +2,7 @@
 
 use num_traits::{One, Zero};
 
+use super::aperture::Cold;
 use super::beads::Beads;
 use super::caps::Caps;
 use super::levels::Scheme;
@@ -10,6 +11,7 @@ use super::unit::TimeUnit;
 use clocks::schedule::Schedule;
 use clocks::verdict::Limits;
 use number::error::{Error, Result};
+use number::rational::to_f64;
 use number::{Laurent, Rational};
 
 /// Modes, the schemes that they are asked about, and how well the periods are known.
@@ -33,6 +35,8 @@ pub struct Question {
     pub(super) all_modes: bool,
     /// Whether bonds are said to be harmonic: then a clock's own step has no bound but the proven one.
     pub(super) harmonic: bool,
+    /// Of bonds whose shape is known, by name: the first step at which they are too hot, if there is one.
+    pub(super) cold: Vec<(String, Option<Cold>)>,
     /// Ring polymers in place of atoms.
     pub(super) beads: Option<Beads>,
     /// The unit of all times.
@@ -125,6 +129,7 @@ impl Question {
             levers: false,
             all_modes: false,
             harmonic: false,
+            cold: Vec::new(),
             beads: None,
             unit: TimeUnit::default(),
             limits: Limits::default(),
@@ -206,6 +211,18 @@ impl Question {
         Question { harmonic, ..self }
     }
 
+    /// Measures up to which steps of their own the bonds of a known shape stay at a temperature in K, where so
+    /// many independent energies are seen.
+    ///
+    /// # Errors
+    /// Where somebody has stopped the work.
+    pub fn at_temperature(mut self, temperature: &Rational, seen: &Rational) -> Result<Question> {
+        let shaped = self.modes.iter().filter_map(|mode| Some((mode.name.clone(), mode.shape.as_ref()?)));
+        let cold = shaped.map(|(name, bond)| Ok((name, Cold::of(bond, temperature, seen)?)));
+        self.cold = cold.collect::<Result<_>>()?;
+        Ok(self)
+    }
+
     /// Asks about ring polymers of so many beads.
     #[must_use]
     pub fn with_beads(self, beads: Option<Beads>) -> Question {
@@ -227,8 +244,23 @@ impl Question {
 
     /// What bounds the steps beside linear theory.
     pub(super) fn caps(&self) -> Caps {
-        let period = |i: Option<usize>| i.map(|i| self.modes[i].period().0);
-        Caps::new(&self.stiffest().into_iter().map(period).collect::<Vec<_>>(), self.harmonic)
+        let shortest = |period: &dyn Fn(&Mode) -> Option<f64>| -> Vec<Option<f64>> {
+            let on = |clock: usize| self.modes.iter().filter(move |mode| mode.clock == Some(clock));
+            (0..self.clocks()).map(|clock| on(clock).filter_map(period).reduce(f64::min)).collect()
+        };
+        let cold_of = |mode: &Mode| self.cold.iter().find(|(name, _)| *name == mode.name);
+        let caps = Caps::new(&shortest(&|mode| Some(mode.period().0)), self.harmonic);
+        if self.cold.is_empty() {
+            return caps;
+        }
+        let other = |mode: &Mode| cold_of(mode).is_none().then(|| mode.period().0);
+        // The shortest period of the band is the hottest; two roundings.
+        let shorter = to_f64(&(Rational::one() - &self.band));
+        let cold = |mode: &Mode| {
+            let share = cold_of(mode)?.1.as_ref()?.share;
+            Some((mode.period().0 * share * shorter).next_down().next_down())
+        };
+        caps.with_measured(&Caps::new(&shortest(&other), self.harmonic), &shortest(&cold))
     }
 
     /// The number of clocks.

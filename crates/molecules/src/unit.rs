@@ -275,6 +275,14 @@ fn without_pi(field: &str, text: &str, number: &Laurent) -> Result<Rational> {
         .ok_or_else(|| Error::input(field, text.trim(), "must be rational; write it without pi"))
 }
 
+/// A mass of a bond in amu, its unit as a rule not written.
+pub(super) fn mass(bond: &str, text: &str) -> Result<Rational> {
+    let field = format!("bond {bond}: mass");
+    let with_unit = dimension(text).map_or_else(|| format!("{}amu", text.trim()), |_| text.into());
+    rational(&field, &with_unit, Dimension::Mass)
+        .map_err(|error| Error::input(&field, text.trim(), error.remedy()))
+}
+
 /// The period in fs of a wavenumber in 1/cm: 1/(100 c ν̃) seconds, about 33356/ν̃; `None` where ν̃ is no c
 /// π^k.
 pub fn period_of_wavenumber(wavenumber: &Laurent) -> Option<Laurent> {

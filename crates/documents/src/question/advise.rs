@@ -3,6 +3,7 @@
 use plot::Figure;
 
 use super::asking::{Fields, Question, Work, question};
+use super::field::flag;
 use crate::input::{SystemFile, SystemScene, of_archive};
 use crate::report::advise as report;
 use crate::report::document::Document;
@@ -15,6 +16,7 @@ use molecules::{
 use number::Rational;
 use number::error::{Error, Result};
 use number::parse::parse_rational;
+use number::rational::to_f64;
 use systems::Limits;
 
 question! {
@@ -28,6 +30,8 @@ question! {
         #[arg(long, value_name = "[NAME=]T")]
         period: Vec<String>,
         /// A bond: k of E = k x^2/2 or K of E = K x^2, two masses in amu, the heavy atom's hydrogens if not 1
+        ///
+        /// In place of k=X also its shape, morse:D=X,a=Y or poly:k2=X,k3=Y,k4=Z, as aperture reads it.
         #[arg(long, value_name = "NAME:k=X,M1,M2[,N]")]
         bond: Vec<String>,
         /// The clocks of modes, 1 the fastest, as OH=1,bend=2.
@@ -45,6 +49,12 @@ question! {
         /// The length of the run, as 10ns.
         #[arg(long, value_name = "TIME")]
         length: Option<String>,
+        /// The temperature at which bonds of a known shape must stay [default: 298K]
+        #[arg(long, value_name = "T")]
+        temperature: Option<String>,
+        /// The bonds of a known shape, in a run of this length or of 100 ns [default: 10000]
+        #[arg(long, value_name = "N", value_parser = flag::<u64>)]
+        bonds: Option<u64>,
         /// The friction of the thermostat, as 1/ps: does it mask what grows?
         #[arg(long, value_name = "RATE")]
         friction: Option<String>,
@@ -87,6 +97,10 @@ question! {
         schemes: Vec<Scheme>,
         /// The length of the run.
         length: Option<Rational>,
+        /// The temperature at which bonds of a known shape must stay, in K.
+        temperature: Option<Rational>,
+        /// The bonds of a known shape in the system.
+        bonds: Option<u64>,
         /// The friction of the thermostat, 1/fs.
         friction: Option<Rational>,
         /// Modes that are held, on no clock.
@@ -138,6 +152,9 @@ const LEVERS: usize = 10;
 /// Fastest periods of molecules, in fs.
 const PLAUSIBLE: std::ops::RangeInclusive<f64> = 3.0..=3000.0;
 
+/// Energies beyond 40 kT, of which exp(40) are needed to see one, are not measured.
+const SEEN: std::ops::RangeInclusive<f64> = 1.0..=1e17;
+
 impl Question for Advised {
     const NAME: &'static str = "advised";
     type Answer = Safe;
@@ -150,6 +167,13 @@ impl Question for Advised {
             let question = question.holding(held).within(work.limits()).with_levers(!self.no_levers);
             let question = question.knowing_all_modes(self.all_modes).with_harmonic_bonds(self.harmonic);
             let mut question = question.with_beads(self.beads.clone()).in_units_of(self.unit());
+            if self.modes.iter().flatten().any(|mode| mode.shape.is_some()) {
+                let (temperature, seen) = self.heat()?;
+                question = question.at_temperature(&temperature, &seen)?;
+            } else if self.temperature.is_some() || self.bonds.is_some() {
+                let remedy = "are about bonds of a known shape, and none is given: write one, as OH:morse:D=485.72kJ/mol,a=22.87/nm,15.999,1.008";
+                return Err(Error::input("temperature or bonds", "given", remedy));
+            }
             if let Some(length) = &self.length {
                 question = question.of_length(length.clone())?;
             }
@@ -272,6 +296,19 @@ impl Advised {
         }
         all.compare();
         Ok(all)
+    }
+
+    /// The temperature in K, and how many independent energies of bonds are seen: about one a picosecond.
+    fn heat(&self) -> Result<(Rational, Rational)> {
+        let temperature = self.temperature.clone().unwrap_or_else(|| Rational::from_integer(298.into()));
+        let length = self.length.clone().unwrap_or_else(|| Rational::from_integer(100_000_000.into()));
+        let bonds = self.bonds.unwrap_or(10_000);
+        let seen = Rational::from_integer(bonds.into()) * length / Rational::from_integer(1000.into());
+        if !SEEN.contains(&to_f64(&seen)) {
+            let remedy = "choose 1 to 1e17 bonds times picoseconds: energies up to 40 kT are measured";
+            return Err(Error::input("bonds", bonds, remedy));
+        }
+        Ok((temperature, seen))
     }
 
     fn placed(&self, safe: &Safe) -> Advised {
@@ -400,6 +437,12 @@ impl Advise {
             modes: None,
             schemes,
             length: rational("length", &self.length, Dimension::Time)?,
+            temperature: self
+                .temperature
+                .as_deref()
+                .map(|text| unit::rational("temperature", text, Dimension::Temperature))
+                .transpose()?,
+            bonds: self.bonds,
             friction: rational("friction", &self.friction, Dimension::Rate)?,
             constrained: None,
             file: None,

@@ -4,6 +4,7 @@ use num_traits::Zero;
 use serde_json::{Map, Value, json};
 
 use super::field::{Field, notation, read};
+use molecules::aperture;
 use molecules::{Beads, Bond, Mode, Origin, Scheme, Typical};
 use number::error::{Error, Result};
 use number::parse::parse_rational;
@@ -73,7 +74,7 @@ fn beads(field: &str, text: &str) -> Result<Beads> {
 }
 
 fn origin(field: &str, text: &str) -> Result<Origin> {
-    let plain = [Origin::Period, Origin::Wavenumber, Origin::Half, Origin::Whole];
+    let plain = [Origin::Period, Origin::Wavenumber, Origin::Half, Origin::Whole, Origin::Shape];
     let all: Vec<Origin> = plain.into_iter().chain(Typical::all().map(Origin::Typical)).collect();
     let names = all.iter().map(|origin| origin.name()).collect::<Vec<_>>().join(", ");
     let found = all.into_iter().find(|origin| origin.name() == text);
@@ -98,6 +99,9 @@ impl Item for Mode {
                 shown["bond"]["heavy"] = heavy.to_string().into();
             }
         }
+        if let Some(shape) = &self.shape {
+            shown["shape"] = shape.to_string().into();
+        }
         shown
     }
 }
@@ -121,7 +125,7 @@ fn bond(given: &Value) -> Result<Bond> {
 }
 
 fn mode(given: &Map<String, Value>) -> Result<Mode> {
-    super::field::known(given, &["name", "from", "clock", "stiffness", "bond"])?;
+    super::field::known(given, &["name", "from", "clock", "stiffness", "bond", "shape"])?;
     let clock = match given.get("clock") {
         None | Some(Value::Null) => None,
         Some(value) => {
@@ -136,6 +140,7 @@ fn mode(given: &Map<String, Value>) -> Result<Mode> {
         stiffness: read("stiffness", given, None)?,
         clock,
         bond: given.get("bond").map(bond).transpose()?,
+        shape: read::<Option<aperture::Bond>>("shape", given, None)?,
     };
     match mode.stiffness.sign() {
         Sign::Positive => Ok(mode),

@@ -164,7 +164,7 @@ impl Aperture {
     /// The steps asked for, in fs, in order, each once.
     ///
     /// # Errors
-    /// None at all.
+    /// Neither steps nor a range; a range of too many.
     fn all_steps(&self) -> Result<Vec<Rational>> {
         let mut all = self.steps.as_ref().map_or_else(Vec::new, |steps| steps.values.clone());
         if let Some(TimeRange { ends: [lo, hi], .. }) = &self.h_range {

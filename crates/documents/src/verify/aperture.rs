@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use super::kind::Verify;
 use super::context::{Checked, Context, Outcome, holds};
+use super::kind::Verify;
 use crate::question::Aperture;
 use molecules::aperture::{Bond, FAR, LATE, Measured, Shape, Step, rungs, squared_frequency, thermal};
 use number::error::Result;

@@ -77,8 +77,8 @@ use self::kind::{Kind, asked};
 use crate::input::json;
 use crate::input::kind::{is_asked, of_another_kind};
 use crate::question::{
-    Advised, Aperture, Bands, Closings, Compare, CompareMethods, Curves, Half, Methods, Polynomial, Proposition,
-    Simulate, Survey, System, Verdict, Word,
+    Advised, Aperture, Bands, Closings, Compare, CompareMethods, Curves, Half, Methods, Polynomial,
+    Proposition, Simulate, Survey, System, Verdict, Word,
 };
 use number::error::{Error, Result};
 

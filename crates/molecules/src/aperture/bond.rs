@@ -2,7 +2,6 @@
 
 use std::fmt;
 
-use crate::mode;
 use crate::unit::{self, Dimension};
 use number::Rational;
 use number::error::{Error, Result};
@@ -41,7 +40,7 @@ impl Bond {
         let parts: Vec<&str> = rest.split(',').map(str::trim).collect();
         let [constants @ .., m1, m2] = &parts[..] else { return Err(form()) };
         let shape = Shape::read(name, constants)?.ok_or_else(form)?;
-        let masses = [mode::mass(name, m1)?, mode::mass(name, m2)?];
+        let masses = [unit::mass(name, m1)?, unit::mass(name, m2)?];
         Ok(Bond { text: text.trim().into(), name: name.trim().into(), shape, masses })
     }
 

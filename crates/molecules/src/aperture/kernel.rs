@@ -45,8 +45,9 @@ pub const DOUBLINGS: i32 = 8;
 const PARTS: [f64; 6] = [1.0 / 2.0, 1.0 / 3.0, 1.0 / 4.0, 1.0 / 5.0, 1.0 / 6.0, 1.0 / 7.0];
 
 impl Pull for Morse {
-    /// exp − 1 of z/2^8 by its series to the 7th power, then q ← q (2 + q) eight times. Up to |z| = 6, with 160,000
-    /// times the depth on the steep side, it errs by 1e-15 s or by 2e-14 of itself; at |z| = 23 by 1e-10.
+    /// exp − 1 of z/2^8 by its series to the 7th power, then q ← q (2 + q) eight times. Up to |z| = 6, with
+    /// 160,000 times the depth on the steep side, it errs by 1e-15 s or by 2e-14 of itself; at |z| = 23 by
+    /// 1e-10.
     #[inline(always)]
     fn kick<V: Vector>(&self, x: V) -> V {
         let one = V::splat(1.0);

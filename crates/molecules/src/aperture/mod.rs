@@ -25,11 +25,13 @@
 //! ```
 
 mod bond;
+mod cold;
 mod kernel;
 mod map;
 mod search;
 
 pub use bond::{Bond, Shape};
+pub use cold::Cold;
 pub use kernel::{FAR, PHASES};
 pub use map::{Map, Stage, squared_frequency};
 pub use search::{EARLY, LATE, Measurement, Resonance, Step, rungs, thermal};

@@ -171,50 +171,66 @@ impl Measurement {
         let h = to_f64(step);
         let turn = self.map.turn(h, self.squares);
         let nearest = turn.and_then(nearest_part).map(|k| (k, self.map.resonance(k, h, self.squares)));
-        let found = match &self.shape {
-            Shape::Morse { depth, a } => self.morse(h, to_f64(depth), to_f64(a))?,
-            Shape::Harmonic { k } => self.polynomial(h, [to_f64(k), 0.0, 0.0])?,
-            Shape::Polynomial { k2, k3, k4 } => {
-                let [k2, k3, k4] = [k2, k3, k4].map(to_f64);
-                self.polynomial(h, [2.0 * k2, 3.0 * k3, 4.0 * k4])?
-            }
-        };
+        let found = self.found(h, None)?;
         let enough = found.aperture.map(exp);
         let Found { aperture, half, share } = found;
         Ok(Step { step: step.clone(), turn, nearest, aperture, half, share, enough })
     }
 
+    /// E* at a step in fs where it is below a level, both in kT.
+    ///
+    /// # Errors
+    /// Where somebody has stopped the work.
+    pub fn aperture_below(&self, step: &Rational, level: f64) -> Result<Option<f64>> {
+        Ok(self.found(to_f64(step), Some(level))?.aperture)
+    }
+
+    /// What runs at a step tell; of E* alone, where that is below a level, if one is given.
+    fn found(&self, h: f64, below: Option<f64>) -> Result<Found> {
+        match &self.shape {
+            Shape::Morse { depth, a } => self.morse(h, [to_f64(depth), to_f64(a)], below),
+            Shape::Harmonic { k } => self.polynomial(h, [to_f64(k), 0.0, 0.0], below),
+            Shape::Polynomial { k2, k3, k4 } => {
+                let [k2, k3, k4] = [k2, k3, k4].map(to_f64);
+                self.polynomial(h, [2.0 * k2, 3.0 * k3, 4.0 * k4], below)
+            }
+        }
+    }
+
     /// Of the derivative c1 x + c2 x² + c3 x³.
-    fn polynomial(&self, h: f64, derivative: [f64; 3]) -> Result<Found> {
+    fn polynomial(&self, h: f64, derivative: [f64; 3], below: Option<f64>) -> Result<Found> {
         let [c1, c2, c3] = derivative.map(|c| c * (h * h / self.mass));
         let slow = self.squares[1] * (h * h);
         let pull = |stage: &Stage| {
             Polynomial([-(stage.bond * c1 + stage.slow * slow), -(stage.bond * c2), -(stage.bond * c3)])
         };
-        self.search(h, pull)
+        self.search(h, pull, below)
     }
 
-    fn morse(&self, h: f64, depth: f64, a: f64) -> Result<Found> {
+    fn morse(&self, h: f64, [depth, a]: [f64; 2], below: Option<f64>) -> Result<Found> {
         let strength = 2.0 * depth * a * (h * h / self.mass);
         let slow = self.squares[1] * (h * h);
         // −a/2^8, exactly; −V' is 2 D a (e − 1) e.
         let part = -a / f64::from(1 << DOUBLINGS);
         let pull =
             |stage: &Stage| Morse { linear: -(stage.slow * slow), strength: -(stage.bond * strength), part };
-        self.search(h, pull)
+        self.search(h, pull, below)
     }
 
     /// From the lowest rung up.
-    fn search<P: Pull>(&self, h: f64, pull: impl Fn(&Stage) -> P) -> Result<Found> {
+    fn search<P: Pull>(&self, h: f64, pull: impl Fn(&Stage) -> P, below: Option<f64>) -> Result<Found> {
         let turn = |stage: &Stage| Turn { drift: stage.drift, pull: pull(stage) };
         let first = turn(&self.map.first);
         let turns: Vec<_> = self.map.stages.iter().map(turn).collect();
         let mut found = Found { aperture: None, half: None, share: 0.0 };
         for (energy, weight) in rungs().zip(weights()) {
             go_on()?;
+            if below.is_some_and(|level| energy >= level || found.aperture.is_some()) {
+                break;
+            }
             let mut runs = self.start(h, energy, &first);
             let mut done = 0;
-            while done < LATE && !found.knows_all(&runs, done) {
+            while done < LATE && !found.knows_all(&runs, done) && (below.is_none() || runs.lost() == 0) {
                 runs.advance(&turns, PIECE);
                 done += PIECE;
                 if done == EARLY {

@@ -3,6 +3,7 @@
 use super::words::{Choice, cap, down, length, named, nearest, percent, within};
 use crate::report::decimal::few;
 use crate::report::friction;
+use molecules::aperture::Cold;
 use molecules::engine::{Engine, Reading, nested_beside, not_nested};
 use molecules::unit::{TimeUnit, decimal};
 use molecules::{
@@ -152,6 +153,12 @@ fn slow_forces(advice: &Advice, answer: &Answer) -> String {
 fn not_below(advice: &Advice, answer: &Answer) -> String {
     let (scheme, unit) = (&answer.scheme, advice.unit);
     if let Some((clock, value)) = advice.caps.too_long(scheme) {
+        if advice.caps.bound(clock) == Bound::Aperture {
+            let (step, own) = (length(&scheme.steps()[clock], unit), cap(value, unit));
+            return format!(
+                "the step of {step} is not below {own}, from which on hot bonds are lost, as measured"
+            );
+        }
         return format!(
             "the step of {} is not below T/6.28 = {} of its own forces",
             length(&scheme.steps()[clock], unit),
@@ -161,6 +168,9 @@ fn not_below(advice: &Advice, answer: &Answer) -> String {
     let third = || unit.of(nearest(advice.modes[advice.fastest].part(3), 3));
     match advice.caps.outer() {
         Some((_, Bound::Third)) => format!("not below T/3 = {}", third()),
+        Some((value, Bound::Aperture)) => {
+            format!("not below {}, from which on hot bonds are lost, as measured", cap(value, unit))
+        }
         Some((value, bound)) => format!("not below {} = {}", bound.name(), cap(value, unit)),
         None => "not below what is published".into(),
     }
@@ -346,6 +356,25 @@ fn ring(beads: &Beads) -> String {
     }
 }
 
+/// Up to which step of its own a bond of a known shape stays.
+fn measured(advice: &Advice, name: &str, cold: Option<&Cold>) -> String {
+    let Some(Cold { share, aperture, level, temperature }) = cold else {
+        return format!("  measured   {name}: hot bonds stay up to the limit of small oscillations");
+    };
+    let mode = advice.modes.iter().find(|mode| mode.name == name);
+    let at = mode.map_or_else(String::new, |mode| {
+        let (lo, hi) = mode.period();
+        format!(" = {}", advice.unit.of(nearest((lo * share, hi * share), 4)))
+    });
+    format!(
+        "  measured   {name} at {} K: from T/{}{at} on velocity Verlet loses bonds of {aperture} kT, and about one of all is as hot as {} kT \
+         (kickdrift aperture)",
+        decimal(temperature),
+        few(share.recip(), 4),
+        few(*level, 3)
+    )
+}
+
 /// What is proven, published, unknown.
 fn reasons(advice: &Advice) -> Vec<String> {
     let unit = advice.unit;
@@ -355,7 +384,8 @@ fn reasons(advice: &Advice) -> Vec<String> {
         answer.scheme.steps().windows(2).map(|pair| decimal(&(&pair[1] / &pair[0]))).collect();
     let ratio =
         if ratios.is_empty() { String::new() } else { format!(" at the ratio {}", ratios.join(" x ")) };
-    let inner = advice.caps.inner().map(|value| cap(value, unit));
+    let inner = advice.caps.inner().filter(|_| advice.caps.bound(0) != Bound::Aperture);
+    let inner = inner.map(|value| cap(value, unit));
     let mut lines = vec![format!(
         "  proven     {}every outer step below {}{ratio} is stable for all periods within {}{}",
         if advice.lacks_fast {
@@ -380,6 +410,7 @@ fn reasons(advice: &Advice) -> Vec<String> {
         if unit == TimeUnit::Plain { own.replace(&format!(": {PRACTICE}"), "") } else { own }
     };
     lines.extend((!advice.lacks_fast).then(limits));
+    lines.extend(advice.cold.iter().map(|(name, cold)| measured(advice, name, cold.as_ref())));
     lines.push(format!("  unknown    {}", unknown(advice)[0]));
     lines.extend(advice.beads.as_ref().map(ring));
     lines.extend(advice.harmonic.then(|| {

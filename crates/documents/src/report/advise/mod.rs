@@ -14,6 +14,7 @@ use super::record::Record;
 use super::table::{Cell, Column, Table};
 use serde_json::Value;
 
+use molecules::aperture::Cold;
 use molecules::engine::Reading;
 use molecules::unit::{TimeUnit, decimal};
 use molecules::{Advice, Answer, Caution, DirectFindings, Findings, Mode, Pair, Row, Unstable};
@@ -82,7 +83,8 @@ fn of_periods(advice: &Advice, reading: Option<&Reading>) -> Document {
                 published(steps, whose.map(|whose| whose.name.as_str()), limit)
             },
         )
-        .entry("unknown", lines::unknown(advice).to_vec());
+        .entry("unknown", lines::unknown(advice).to_vec())
+        .entries((!advice.cold.is_empty()).then(|| ("measured", cold_record().all(&advice.cold))));
     let changed = advice.modes.iter().any(|mode| mode.before().is_some());
     let modes = for_people(&modes, |key| key != "stiffness" && (key != "before" || changed));
     let document = document.long_rows(rows).for_people(row_table(advice, false));
@@ -120,6 +122,17 @@ fn mode_table(advice: &Advice) -> Table {
             mode.before().into()
         })
         .table("modes", &caption, &advice.modes)
+}
+
+/// The record of a bond of a known shape.
+fn cold_record() -> Record<'static, (String, Option<Cold>)> {
+    type Named = (String, Option<Cold>);
+    let of = |find: fn(&Cold) -> f64| move |(_, cold): &Named| cold.as_ref().map(find).into();
+    Record::new()
+        .field(Column::new("mode"), |(name, _): &Named| name.as_str().into())
+        .field(Column::new("share"), of(|cold| cold.share))
+        .field(Column::new("aperture"), of(|cold| cold.aperture))
+        .field(Column::new("level"), of(|cold| cold.level))
 }
 
 fn scheme_table(advice: &Advice) -> Table {

@@ -143,7 +143,12 @@ impl Choice<'_> {
             return format!("advice: no step is proven stable for all periods within {band}");
         }
         let edge = unit.of(down(edge));
-        match self.caps.outer().filter(|_| self.bound == Some(Bound::Turn)) {
+        match self.caps.outer().filter(|(_, bound)| self.bound == Some(*bound)) {
+            Some((value, Bound::Aperture)) => format!(
+                "advice: keep the step below {}, as measured and not proven: beyond it hot bonds are lost; proven stable is all below {edge} (all periods \
+                 within {band}), but of small oscillations",
+                cap(value, unit),
+            ),
             Some((value, _)) => format!(
                 "advice: keep the step below {} = T/6.28 of {name}, that is h w <= 1: proven stable is all below {edge} (all periods within {band}), but \
                  of small oscillations; beyond T/6.28 bonds that are not harmonic are lost{}. Say --harmonic if they are harmonic",
@@ -166,6 +171,12 @@ impl Choice<'_> {
             let whose =
                 if clock == 0 { "the fastest motion" } else { "the fastest motion of its own forces" };
             let own = cap(value, unit);
+            if self.caps.bound(clock) == Bound::Aperture {
+                return format!(
+                    "advice: none with a step of {step} inside: it is not below {own}, from which on hot bonds are lost, as measured: take a shorter one. \
+                     Up to {largest} is proven stable for all periods within {band}, of small oscillations"
+                );
+            }
             return format!(
                 "advice: none with a step of {step} inside: it is not below T/6.28 = {own} of {whose} (h w <= 1), beyond which bonds that are not \
                  harmonic are lost{}: take a shorter one, or say --harmonic if they are. Up to {largest} is proven stable for all periods \

@@ -100,17 +100,28 @@ impl Periods<'_> {
     }
 
     /// Whether h w ≤ 1 of the stiffest mode on a clock, for a step of its own; lifted of harmonic bonds, but
-    /// not of the slowest force beside others.
+    /// not of the slowest force beside others. A bond of a known shape has the step that was measured in its
+    /// place.
     fn is_below_turn(&self, given: &Mass, clock: usize, step: &Rational) -> bool {
         let last = given.steps.len() - 1;
-        if self.advice.harmonic && (clock < last || last == 0) {
-            return true;
+        let is_slow = clock == last && last > 0;
+        if is_slow || self.advice.cold.is_empty() {
+            return !is_slow && self.advice.harmonic || is_below_one(&given.stiffness[clock], step);
         }
-        let square = Ball::from_rational(step, BITS).square(BITS).mul(&given.stiffness[clock], BITS);
-        // Bounds are rounded down a little.
-        let little = Rational::new(1.into(), 1_000_000_000_000_000_i64.into());
-        let most = Ball::from_rational(&(Rational::one() - little), BITS);
-        square.sub(&most, BITS).sign() == Some(Sign::Negative)
+        self.advice.modes.iter().filter(|mode| mode.clock == Some(clock)).all(|mode| {
+            let stiffness = mode.stiffness.enclosure(BITS);
+            match self.advice.cold.iter().find(|(name, _)| *name == mode.name) {
+                None => self.advice.harmonic || is_below_one(&stiffness, step),
+                // h below T (1 - band) share, that is h w/(2 π (1 - band) share) below 1.
+                Some((_, Some(cold))) => {
+                    let part = Ball::from_rational(&(exact(cold.share) * self.shorter()), BITS);
+                    let turn = Ball::pi(BITS).scale2(1).mul(&part, BITS);
+                    let scaled = stiffness.div(&turn.square(BITS), BITS);
+                    scaled.is_some_and(|scaled| is_below_one(&scaled, step))
+                }
+                Some((_, None)) => true,
+            }
+        })
     }
 
     /// That the band's corner is in the first region at `largest`, and not at the next multiple; and `safe`
@@ -187,4 +198,12 @@ fn has_parts(mode: &Mode) -> Checked {
     }
     let are_so = is(1, mode.period(), &turn) && is(1, mode.verlet(), &Ball::from_integer(&4.into()));
     holds(are_so, || "its stiffness has another period".into())
+}
+
+/// Whether h w < 1; bounds are rounded down a little.
+fn is_below_one(stiffness: &Ball, step: &Rational) -> bool {
+    let square = Ball::from_rational(step, BITS).square(BITS).mul(stiffness, BITS);
+    let little = Rational::new(1.into(), 1_000_000_000_000_000_i64.into());
+    let most = Ball::from_rational(&(Rational::one() - little), BITS);
+    square.sub(&most, BITS).sign() == Some(Sign::Negative)
 }
