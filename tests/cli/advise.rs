@@ -140,7 +140,7 @@ fn a_friction_that_stops_all_velocities_does_not_panic() {
 
 #[test]
 fn a_friction_that_masks_is_told_and_is_no_advice() {
-    let line = "advise --period OH=10fs --period 40fs --steps 0.48fs,4.8fs --friction";
+    let line = "advise --period OH=10fs --period 40fs --steps 0.48fs,4.8fs --no-levers --friction";
     let first =
         |rate: &str| stdout(&words(&format!("{line} {rate}"), &[])).lines().next().unwrap().to_string();
     assert!(
@@ -357,7 +357,7 @@ fn an_inner_step_that_is_too_long_is_named_and_no_line_is_written() {
 
 #[test]
 fn times_without_a_unit_are_plain_numbers() {
-    let line = "advise --period bond=0.2 --period slow=0.8 --steps 0.01,0.09 --friction 3 --length 50";
+    let line = "advise --period bond=0.2 --period slow=0.8 --steps 0.01,0.09 --friction 1/2 --length 50";
     let text = stdout(&words(line, &[]));
     assert!(
         text.starts_with("0.09    ")

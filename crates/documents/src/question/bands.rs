@@ -56,7 +56,7 @@ impl Question for Bands {
     const NAME: &'static str = "bands";
     const EXAMPLES: &'static [&'static str] = &[
         "bands --lambda1 pi^2 --lambda2 pi^2/25 --h1-range 1/5..1/4 --h2-range 9/10..1 --sectors 2000",
-        "bands --lambda1 pi^2 --lambda2 pi^2/25 --h1-range 0..2/pi --h2-range 0..7/2 --area 3/40 --output bands.png",
+        "bands --lambda1 pi^2 --lambda2 pi^2/25 --h1-range 0..2/pi --h2-range 0..7/2 --area 3/50 --output bands.png",
     ];
     type Answer = band::Bands;
 

@@ -6,7 +6,6 @@
 
 use serde_json::{Map, Value};
 
-pub use super::by_rows::Recheck;
 use super::context::Failure;
 
 /// A value that the input does not determine: its path (`*` stands for every row), and why.

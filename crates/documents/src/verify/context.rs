@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-pub use super::by_rows::Place;
 use crate::input::Arrays;
 use crate::question::{Watch, Work};
 use clocks::tongue::Progress as Counter;

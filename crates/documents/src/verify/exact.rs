@@ -166,6 +166,12 @@ pub fn encloses((lo, hi): (f64, f64), ball: &Ball) -> bool {
     lo.is_none_or(|lo| lo <= ball.upper()) && hi.is_none_or(|hi| ball.lower() <= hi)
 }
 
+/// Two doubles exactly, as an interval.
+pub fn between(lo: f64, hi: f64) -> Checked<(Rational, Rational)> {
+    let ends = rational::from_f64_exact(lo).zip(rational::from_f64_exact(hi)).filter(|(lo, hi)| lo <= hi);
+    ends.ok_or_else(|| Fault::Wrong(format!("{lo}..{hi} is no enclosure")))
+}
+
 /// The rational n/d.
 pub fn fraction(n: u64, d: u64) -> Rational {
     Rational::new(n.into(), d.into())

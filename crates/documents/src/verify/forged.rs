@@ -7,7 +7,7 @@ use super::context::{Context, Options};
 use super::kind::Verify;
 use crate::question::{
     Advised, Bands, Closings, Compare, CompareMethods, Curves, Found, Half, Methods, Polynomial, Proposition,
-    Safe, Simulate, Survey, System, Verdict, Word,
+    Safe, Simulate, Survey, System, Tongues, Verdict, Word,
 };
 use clocks::propagator::{TwoClocks, half_period};
 use clocks::verdict::{Kind, Side, Verdict as Decided};
@@ -344,4 +344,27 @@ fn forged_advice_on_hessians_is_found() {
 
 fn findings(safe: &mut Safe) -> &mut molecules::Finding {
     if let Safe::Hessians(pair) = safe { &mut pair.1.schemes[0] } else { panic!("Hessians") }
+}
+
+#[test]
+fn forged_rows_of_tongues_are_found() {
+    finds::<Tongues>(
+        json!({"ratio": "7/3", "rho": "1/25", "lambda1": "pi^2", "digits": "30"}),
+        &[
+            |found| drop(found.tongues.remove(3)),
+            |found| found.tongues.swap(1, 2),
+            |found| found.tongues[2].row.family = Some((1, 1)),
+            |found| (found.tongues[2].lower.s.lo, found.tongues[2].lower.s.hi) = (0.5, 0.6),
+            |found| found.tongues[4].row.gap.closed = true,
+            |found| more(&mut found.tongues[2].row.gap.width),
+            |found| found.tongues[2].row.peak.as_mut().unwrap().ln_multiplier *= 1.01,
+            |found| found.tongues[2].row.peak.as_mut().unwrap().s *= 1.001,
+            |found| found.tongues[2].growth_rate = None,
+            |found| found.tongues[2].row.predicted.as_mut().unwrap().distance *= 1.01,
+            |found| found.tongues[2].row.first_order.as_mut().unwrap().width *= 1.01,
+            |found| more(&mut found.tongues[2].row.first_order.as_mut().unwrap().width_ratio),
+            |found| found.tongues[2].upper.as_mut().unwrap().steps = None,
+            |found| found.tongues[2].lower.exact = Some(rational::ratio(1, 2)),
+        ],
+    );
 }

@@ -39,9 +39,6 @@
 //! assert_eq!(forged.verify(&Options::default(), None).unwrap().failures[0].row, 1);
 //! ```
 
-#[macro_use]
-mod by_rows;
-
 mod advise;
 mod again;
 mod aperture;
@@ -66,19 +63,17 @@ mod system;
 mod tongues;
 mod verdict;
 mod word;
-mod written;
 
 use serde_json::{Map, Value};
 
 use self::again::{Compared, compare, place};
-use self::by_rows::ByRows;
 use self::context::{Context, REMEDY};
 use self::kind::{Kind, asked};
 use crate::input::json;
 use crate::input::kind::{is_asked, of_another_kind};
 use crate::question::{
     Advised, Aperture, Bands, Closings, Compare, CompareMethods, Curves, Half, Methods, Polynomial,
-    Proposition, Simulate, Survey, System, Verdict, Word,
+    Proposition, Simulate, Survey, System, Tongues, Verdict, Word,
 };
 use number::error::{Error, Result};
 
@@ -86,7 +81,7 @@ pub use context::{Failure, Options, Outcome, Progress};
 
 /// All documents that can be verified.
 const KINDS: &[Kind] = &[
-    ByRows::of::<tongues::Claim>("tongues"),
+    Kind::of::<Tongues>("tongues", "tongues"),
     Kind::of::<Closings>("closings", "closings"),
     Kind::of::<Survey>("survey", "thinnest"),
     Kind::of::<Verdict>("verdict", ""),
@@ -96,7 +91,7 @@ const KINDS: &[Kind] = &[
     Kind::of::<Curves>("curves", "curves"),
     Kind::of::<Polynomial>("polynomial", "terms"),
     Kind::of::<Proposition>("proposition", "witnesses"),
-    ByRows::of::<run::Claim>("run"),
+    run::KIND,
     Kind::of::<Half>("half", "entries"),
     Kind::of::<Bands>("bands", "sectors"),
     Kind::of::<Word>("word", "intervals"),

@@ -5,9 +5,8 @@ use super::context::{Checked, Context, Failure, Outcome, holds, located};
 use super::exact::{ZeroOf, check_ratio, fraction, part};
 use super::kind::Verify;
 use super::sample::sample;
-use super::tongues::Tongue;
+use super::tongues::Row;
 use crate::question::Survey;
-use crate::report::tongues::record;
 use clocks::tongue::{self, Entry, Request, Stiffness, Thin, Tongues, Wanted};
 use clocks::verdict::Limits;
 use num_traits::Zero;
@@ -73,7 +72,7 @@ fn exact_signs(ratio: Ratio, rho: &Rational, limits: &Limits) -> Checked {
     let Some(gap) = below.get(below.len() / 2).filter(|gap| gap.upper.is_some()) else { return Ok(()) };
     let wanted = Wanted { family: true, ..Wanted::default() };
     let request = Request { wanted, ..Request::default() };
-    let row = record(&request, false).entries(&request.answer(&tongues, gap)?);
-    let row: Tongue = serde_json::from_value(row).expect("a row as documents have it");
-    row.holds(&Stiffness { rho: rho.clone(), lambda1: None, lambda2: None }, limits)
+    let tongue = request.answer(&tongues, gap)?;
+    let given = Stiffness { rho: rho.clone(), lambda1: None, lambda2: None };
+    Row { tongue: &tongue, given: &given, has_closed_forms: false, limits }.holds()
 }

@@ -129,10 +129,10 @@ const MOST_DIGITS: u32 = 10_000;
 const MOST_ROWS: u64 = 30_000_000;
 
 /// Tongues that were found, or the first of them and the counts of all.
-pub struct Answer {
+pub struct FoundTongues {
     /// The question with ρ and with groups in place of columns, as documents echo it.
     asked: Tongues,
-    request: Request,
+    pub request: Request,
     pub tongues: Vec<Tongue>,
     tally: TongueTally,
 }
@@ -235,7 +235,7 @@ impl Tongues {
     }
 
     /// The counts of all tongues, and the first of them, up to `most`.
-    fn first(&self, most: u64, work: &Work) -> Result<Answer> {
+    fn first(&self, most: u64, work: &Work) -> Result<FoundTongues> {
         let (asked, listing) = (self.whole()?, self.listing()?);
         let (mut tongues, mut tally) = (Vec::new(), TongueTally::default());
         self.each(&listing, work, |part| {
@@ -247,12 +247,12 @@ impl Tongues {
             }
             Ok(())
         })?;
-        Ok(Answer { asked, request: listing.request, tongues, tally })
+        Ok(FoundTongues { asked, request: listing.request, tongues, tally })
     }
 
     /// The tables and the summary, without rows in JSON; what people see has these columns.
-    fn tables(&self, answer: &Answer, seen: &Request) -> Document {
-        let Answer { asked, request, tongues, tally } = answer;
+    fn tables(&self, answer: &FoundTongues, seen: &Request) -> Document {
+        let FoundTongues { asked, request, tongues, tally } = answer;
         let table = |request, short| {
             record(request, short).table("tongues", CAPTION, tongues).captioned(CAPTION_LATEX)
         };
@@ -267,13 +267,13 @@ impl Tongues {
 
 impl Question for Tongues {
     const NAME: &'static str = "tongues";
-    type Answer = Answer;
+    type Answer = FoundTongues;
 
-    fn answer(&self, work: &Work) -> Result<Answer> {
+    fn answer(&self, work: &Work) -> Result<FoundTongues> {
         self.first(u64::MAX, work)
     }
 
-    fn show(&self, answer: &Answer) -> Document {
+    fn show(&self, answer: &FoundTongues) -> Document {
         let rows = record(&answer.request, false).all(&answer.tongues);
         // A table for paper has edges alone unless it is asked for more.
         let wanted = self.columns.as_ref().map_or_else(Wanted::default, |_| answer.request.wanted);
@@ -281,11 +281,11 @@ impl Question for Tongues {
         self.tables(answer, &seen).entry("tongues", rows).entries(answer.tally.entries())
     }
 
-    fn document(&self, answer: &Answer) -> Document {
+    fn document(&self, answer: &FoundTongues) -> Document {
         self.show(answer).inputs(answer.asked.input())
     }
 
-    fn figure(&self, answer: &Answer, _: &Work) -> Result<Option<plot::Figure>> {
+    fn figure(&self, answer: &FoundTongues, _: &Work) -> Result<Option<plot::Figure>> {
         let mut atlas = Atlas::new(self, Colour::Family, None)?;
         atlas.add(&answer.tongues);
         Ok(Some(atlas.drawn()))

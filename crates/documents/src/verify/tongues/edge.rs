@@ -2,12 +2,10 @@
 
 use num_traits::Signed;
 
-use super::rows::Edge;
 use crate::verify::context::{Checked, Fault, holds};
-use crate::verify::exact::{ZeroOf, fraction, resonance};
-use crate::verify::written::{Decimal, exact};
+use crate::verify::exact::{ZeroOf, between, fraction, resonance};
 use clocks::propagator::TwoClocks;
-use clocks::tongue::{Entry, Resonance, Stiffness};
+use clocks::tongue::{Bounds, Entry, Resonance, Stiffness, TongueEdge};
 use clocks::verdict::Decidable;
 use number::rational::simplest;
 use number::{Ball, Cyclotomic, Laurent, Ratio, Rational, Ring, Sign};
@@ -24,29 +22,33 @@ const MOST_TERMS: u64 = 64;
 
 const BITS: u32 = 128;
 
-impl Edge {
+/// An edge that is to be found again.
+#[derive(Clone, Copy)]
+pub struct Claimed<'a> {
+    pub edge: &'a TongueEdge,
+    pub name: &'static str,
+    /// Whether closed forms and resonances were asked for.
+    pub has_closed_forms: bool,
+}
+
+impl Claimed<'_> {
     /// The zero of its entry that the edge encloses; all that it says of it holds.
-    pub fn zero<'a>(
-        &self,
-        name: &'static str,
-        (ratio, m): (Ratio, u64),
-        given: &'a Stiffness,
-    ) -> Checked<Zero<'a>> {
-        let entry = *self.entry;
+    pub fn zero<'a>(&self, (ratio, m): (Ratio, u64), given: &'a Stiffness) -> Checked<Zero<'a>> {
+        let (name, TongueEdge { entry, s, exact, .. }) = (self.name, self.edge);
         let pair = Entry::of_tongue(m % 2 == 1);
-        holds(pair.contains(&entry), || format!("{name}: {} bounds no tongue m = {m}", entry.name()))?;
-        holds(self.lo > 0.0, || format!("{name}: s is positive"))?;
-        let mut zero = ZeroOf::new((ratio, &given.rho), entry, exact(self.lo, self.hi)?, name)?;
-        if let Some(decimal) = &self.decimal {
-            let ends = decimal.ends()?;
+        holds(pair.contains(entry), || format!("{name}: {} bounds no tongue m = {m}", entry.name()))?;
+        holds(s.lo > 0.0, || format!("{name}: s is positive"))?;
+        let mut zero = ZeroOf::new((ratio, &given.rho), *entry, between(s.lo, s.hi)?, name)?;
+        if let Some(precise) = &s.precise {
             // The digits enclose the same zero.
-            let (lo, hi) = (ends.0.max(zero.lo.clone()), ends.1.min(zero.hi.clone()));
+            let (lo, hi) = (precise.lo.clone().max(zero.lo.clone()), precise.hi.clone().min(zero.hi.clone()));
             holds(lo <= hi, || format!("{name}: doubles and digits have nothing in common"))?;
-            zero = ZeroOf::new((ratio, &given.rho), entry, (lo, hi), name)?;
+            zero = ZeroOf::new((ratio, &given.rho), *entry, (lo, hi), name)?;
         }
-        let exact = self.exact.value().map(|s| s.0.clone());
-        let found = Zero { zero, exact, name };
-        self.closed_form(&found, m)?;
+        let found = Zero { zero, exact: exact.clone(), name };
+        if self.has_closed_forms {
+            self.closed_form(&found, m)?;
+        }
         self.steps(&found, given)?;
         Ok(found)
     }
@@ -57,20 +59,17 @@ impl Edge {
         if let Some(s) = &found.exact {
             holds(zero.lo <= *s && *s <= zero.hi, || format!("{name}: {s} lies outside its enclosure"))?;
             holds(zero.vanishes(s), || format!("{name}: {} does not vanish at {s}", zero.entry.name()))?;
-        } else if !self.exact.is_absent() {
+        } else {
             // A few units in the last place hold few rationals of small denominators.
             let simple = simplest(&zero.lo, &zero.hi);
             let hidden = simple.denom().bits() <= 20 && zero.vanishes(&simple);
             holds(!hidden, || format!("{name}: it is rational, {simple}"))?;
         }
-        if self.on.is_absent() {
-            return Ok(());
-        }
         let sits = |on: Resonance| found.sits(on, m);
         let truth = [Resonance::Fast, Resonance::Slow].map(|on| (on, sits(on)));
-        match self.on.value() {
+        match self.edge.on {
             Some(on) => {
-                let sits = truth.iter().any(|(other, sits)| *other == on.0 && *sits != Some(false));
+                let sits = truth.iter().any(|(other, sits)| *other == on && *sits != Some(false));
                 holds(sits, || format!("{name}: it does not sit on {}", on.name()))
             }
             None => {
@@ -84,15 +83,16 @@ impl Edge {
     fn steps(&self, found: &Zero, given: &Stiffness) -> Checked {
         let (name, back) = (found.name, Rational::from(found.zero.ratio.inverse()));
         let Some(lambda1) = &given.lambda1 else { return Ok(()) };
+        let missing = || Fault::Wrong(format!("{name}: h1 and h2 are missing"));
+        let [h1, h2] = self.edge.steps.as_ref().ok_or_else(missing)?;
         let [from, upto] = [&found.zero.lo, &found.zero.hi].map(|s| Laurent::from_rational(s.clone()));
-        for (key, step, back) in [("h1", &self.h1, fraction(1, 1)), ("h2", &self.h2, back)] {
-            let step = step.as_ref().ok_or_else(|| Fault::Wrong(format!("{name}: {key} is missing")))?;
+        for (key, Bounds { lo, hi, precise }, back) in [("h1", h1, fraction(1, 1)), ("h2", h2, back)] {
             let s = |h: Rational| {
                 let h = h * &back;
                 &Laurent::from_rational(&h * &h) * lambda1
             };
-            let decimal = step.decimal.as_ref().map(Decimal::ends).transpose()?;
-            for (lo, hi) in [exact(step.lo, step.hi)?].into_iter().chain(decimal) {
+            let precise = precise.as_ref().map(|precise| (precise.lo.clone(), precise.hi.clone()));
+            for (lo, hi) in [between(*lo, *hi)?].into_iter().chain(precise) {
                 let meets = !lo.is_negative() && s(lo) <= upto && from <= s(hi);
                 holds(meets, || format!("{name}: {key} is not the step of s"))?;
             }

@@ -3,7 +3,6 @@
 //!
 //! | file | what is there |
 //! |---|---|
-//! | `rows` | the rows |
 //! | `edge` | an edge: its zero, closed form, digits, steps |
 //! | `columns` | what else a row says: growth, the predicted point, the law of first order |
 //! | `listing` | the list: none left out, none counted twice |
@@ -13,6 +12,5 @@ mod check;
 mod columns;
 mod edge;
 mod listing;
-mod rows;
 
-pub use rows::{Claim, Tongue};
+pub use check::Row;
