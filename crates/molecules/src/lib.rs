@@ -20,10 +20,10 @@
 //! | `mode` | periods, wavenumbers, bonds → stiffnesses |
 //! | `levels` | one mass, K clocks: verdict, first stable region |
 //! | `interval`, `edges` | unstable intervals of the outer step, on two clocks and on more |
-//! | `levers` | what would let the step grow |
+//! | `lever`, `levers` | what would let the step grow: one change, and all of them |
 //! | `direct` | forces that are no gradient: what the steps add to their own growth |
 //! | `constraint` | bonds that do not vibrate |
-//! | `molecule` | Hessians in place of periods |
+//! | `molecule`, `finding` | Hessians in place of periods, and what is found of them |
 //! | `names` | what the motions of molecules are called |
 //! | `question`, `answer` | what is asked, what is answered |
 //! | `caution`, `caps` | what is published, and the steps below it |
@@ -56,8 +56,10 @@ mod constraint;
 mod direct;
 mod edges;
 pub mod engine;
+mod finding;
 mod interval;
 mod levels;
+mod lever;
 mod levers;
 mod mode;
 mod molecule;
@@ -77,11 +79,13 @@ pub use caps::{Bound, Caps, shortest_of};
 pub use caution::{Caution, GROMPP, HEEDED, OF_MANY, OF_ONE, PRACTICE, Place, published};
 pub use constraint::Constraints;
 pub use direct::{Adds, Direct, DirectFinding, DirectFindings, Rung, TIMES};
+pub use finding::{Finding, Findings, Group};
 pub use interval::{Unstable, Worst};
 pub use levels::{Found, Levels, Scheme};
-pub use levers::{Engine, Lever, Levers, RATIOS, SOLVED, Way, heavy};
+pub use lever::{Engine, Lever, Way};
+pub use levers::{Levers, RATIOS, SOLVED, heavy};
 pub use mode::{Bond, Mode, Origin};
-pub use molecule::{Finding, Findings, Group, MOST_PRODUCTS, Molecule};
+pub use molecule::{MOST_PRODUCTS, Molecule};
 pub use names::{Names, Told};
 pub use question::{Question, place};
 pub use typical::{FAST, SLOW, Typical};

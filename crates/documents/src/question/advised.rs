@@ -1,14 +1,245 @@
-//! The fields of advice that have parts of their own: modes, schemes of steps, beads.
+//! The typed question of advice, its answer, and its fields that have parts of their own: modes, schemes of steps,
+//! beads.
 
 use num_traits::Zero;
 use serde_json::{Map, Value, json};
 
+use super::asking::{Fields, Question, Work, question};
 use super::field::{Field, notation, read};
-use molecules::aperture;
-use molecules::{Beads, Bond, Mode, Origin, Scheme, Typical};
+use crate::input::{SystemFile, SystemScene};
+use crate::report::advise as report;
+use crate::report::document::Document;
+use molecules::unit::{TimeUnit, decimal};
+use molecules::{
+    Advice, Beads, Bond, DirectFindings, Findings, Levers, MOST_PRODUCTS, Mode, Molecule, Origin, SOLVED,
+    Scheme, Typical, Way, aperture,
+};
 use number::error::{Error, Result};
 use number::parse::parse_rational;
+use number::rational::to_f64;
 use number::{ExactSign, Rational, Sign};
+use systems::Limits;
+
+question! {
+    /// The input in exact numbers: modes on their clocks or a system, and schemes of steps; lengths of time
+    /// in fs.
+    struct Advised {
+        /// How far every period may be off, relatively.
+        band: Rational,
+        /// The modes that vibrate.
+        modes: Option<Vec<Mode>>,
+        /// The steps, from the innermost to the outermost one.
+        schemes: Vec<Scheme>,
+        /// The length of the run.
+        length: Option<Rational>,
+        /// The temperature at which bonds of a known shape must stay, in K.
+        temperature: Option<Rational>,
+        /// The bonds of a known shape in the system.
+        bonds: Option<u64>,
+        /// The friction of the thermostat, 1/fs.
+        friction: Option<Rational>,
+        /// Modes that are held, on no clock.
+        constrained: Option<Vec<Mode>>,
+        /// The name of a system's file.
+        file: Option<String>,
+        /// The contents of the system's file, in place of modes.
+        system: Option<SystemFile>,
+        /// Whether what would let the step grow is left out.
+        no_levers: bool,
+        /// Whether the periods are the shortest of all motions on their clocks.
+        all_modes: bool,
+        /// Whether the bonds are harmonic.
+        harmonic: bool,
+        /// Ring polymers in place of atoms.
+        beads: Option<Beads>,
+        /// Whether all times are plain numbers, and not in fs.
+        plain_time: bool,
+    }
+}
+
+/// The advice.
+pub enum Safe {
+    /// On periods and bonds.
+    Periods(Box<Advice>),
+    /// On the Hessians of a system.
+    Hessians(Box<(SystemScene, Findings)>),
+    /// On forces that are no gradient.
+    Direct(Box<(SystemScene, DirectFindings)>),
+}
+
+/// Kicks a second that advice on periods follows, and products a second of advice on Hessians, as measured.
+const KICKS_A_SECOND: f64 = 5e6;
+const PRODUCTS_A_SECOND: f64 = 1e10;
+
+/// Levers of a molecule cost about as much as so many schemes.
+const LEVERS: usize = 10;
+
+/// Energies beyond 40 kT, of which exp(40) are needed to see one, are not measured.
+const SEEN: std::ops::RangeInclusive<f64> = 1.0..=1e17;
+
+impl Question for Advised {
+    const NAME: &'static str = "advised";
+    type Answer = Safe;
+
+    fn answer(&self, work: &Work) -> Result<Safe> {
+        let Some(file) = &self.system else {
+            let modes = self.modes.clone().unwrap_or_default();
+            let held = self.constrained.clone().unwrap_or_default();
+            let question = molecules::Question::new(modes, self.schemes.clone(), self.band.clone())?;
+            let question = question.holding(held).within(work.limits()).with_levers(!self.no_levers);
+            let question = question.knowing_all_modes(self.all_modes).with_harmonic_bonds(self.harmonic);
+            let mut question = question.with_beads(self.beads.clone()).in_units_of(self.unit());
+            if self.modes.iter().flatten().any(|mode| mode.shape.is_some()) {
+                let (temperature, seen) = self.heat()?;
+                question = question.at_temperature(&temperature, &seen)?;
+            } else if self.temperature.is_some() || self.bonds.is_some() {
+                let remedy = "are about bonds of a known shape, and none is given: write one, as OH:morse:D=485.72kJ/mol,a=22.87/nm,15.999,1.008";
+                return Err(Error::input("temperature or bonds", "given", remedy));
+            }
+            if let Some(length) = &self.length {
+                question = question.of_length(length.clone())?;
+            }
+            if let Some(rate) = &self.friction {
+                question = question.with_friction(rate.clone())?;
+            }
+            work.announce("advice on these steps", question.cost() as f64 / KICKS_A_SECOND);
+            return Ok(Safe::Periods(Box::new(question.answer()?)));
+        };
+        let scene = work.read(file)?;
+        let (length, friction) = (self.length.as_ref(), self.friction.as_ref());
+        let size = scene.model().size();
+        if let Some(direct) = scene.direct()?.map(|direct| direct.with_harmonic_bonds(self.harmonic)) {
+            let limits = Limits { products: work.budget.unwrap_or(MOST_PRODUCTS), ..Limits::default() };
+            let seconds = direct.cost(&self.schemes)? as f64 / PRODUCTS_A_SECOND;
+            work.announce(&format!("advice on {size} degrees of freedom"), seconds);
+            let found = direct.advise(&self.schemes, &self.band, (length, friction), &limits)?;
+            return Ok(Safe::Direct(Box::new((scene, found))));
+        }
+        // Levers are computed where they are cheap, whatever the budget: the document does not depend on it.
+        let others: Vec<_> = self.schemes.iter().take(1).cycle().take(LEVERS).cloned().collect();
+        let levers = !self.no_levers && Molecule::allow(size, &others, friction.is_some(), None).is_ok();
+        let schemes = [&self.schemes[..], if levers { &others } else { &[] }].concat();
+        let cost = Molecule::allow(size, &schemes, friction.is_some(), work.budget)?;
+        let seconds = cost as f64 / PRODUCTS_A_SECOND;
+        work.announce(&format!("advice on {size} degrees of freedom"), seconds);
+        let molecule = scene.molecule()?.0.with_harmonic_bonds(self.harmonic);
+        let mut findings = molecule.advise(&self.schemes, &self.band, length, friction)?;
+        if levers {
+            findings.levers = Some(self.of_hessians(file, &scene, work)?);
+        }
+        Ok(Safe::Hessians(Box::new((scene, findings))))
+    }
+
+    fn show(&self, safe: &Safe) -> Document {
+        report::document(safe.view(), None, &[])
+    }
+
+    /// With the clocks that modes are on by their places.
+    fn document(&self, safe: &Safe) -> Document {
+        self.show(safe).inputs(self.placed(safe).input())
+    }
+}
+
+impl Safe {
+    pub(super) fn view(&self) -> report::View<'_> {
+        match self {
+            Safe::Periods(advice) => report::View::Periods(advice),
+            Safe::Hessians(pair) => report::View::Hessians(&pair.1),
+            Safe::Direct(pair) => report::View::Direct(&pair.1),
+        }
+    }
+}
+
+impl Safe {
+    /// The levers that would let the step grow, where that was asked.
+    pub fn levers(&self) -> Option<&Levers> {
+        match self {
+            Safe::Periods(advice) => advice.levers.as_ref(),
+            Safe::Hessians(pair) => pair.1.levers.as_ref(),
+            Safe::Direct(_) => None,
+        }
+    }
+}
+
+impl Advised {
+    pub(super) fn unit(&self) -> TimeUnit {
+        if self.plain_time { TimeUnit::Plain } else { TimeUnit::Femtoseconds }
+    }
+
+    /// The levers that would let the outer step of a molecule grow.
+    fn of_hessians(&self, file: &SystemFile, scene: &SystemScene, work: &Work) -> Result<Levers> {
+        let molecule = scene.molecule()?.0.with_harmonic_bonds(self.harmonic);
+        let scheme = &self.schemes[0];
+        let mut all = Levers::default();
+        all.rows.push(molecule.lever("as given".into(), Way::Respa, scheme, &self.band)?);
+        let given = |field: &str| !file.source()[field].is_null();
+        let masses = molecules::heavy().map(|mass| decimal(&mass));
+        let heavy =
+            |mass: &String| (format!("hydrogens of {mass} amu"), Way::Hydrogens, Some(mass.clone()), None);
+        let held = || Some("h-bonds".to_string());
+        let mut ways: Vec<_> = masses.iter().map(heavy).collect();
+        ways.push(("h-bonds held".into(), Way::Held, None, held()));
+        ways.push((format!("both, {} amu", masses[0]), Way::HeldAndHeavy, Some(masses[0].clone()), held()));
+        for (name, way, mass, constraints) in ways {
+            if mass.is_some() && given("hydrogen_mass") || constraints.is_some() && given("constraints") {
+                all.left_out.push(format!("{name}: the file says it"));
+                continue;
+            }
+            let file = file.with([("hydrogen_mass", mass), ("constraints", constraints)]);
+            let lever = work.read(&file).and_then(|other| {
+                let moved = other.molecule()?.0.with_harmonic_bonds(self.harmonic);
+                moved.lever(name.clone(), way, scheme, &self.band)
+            });
+            match lever {
+                Ok(lever) => all.rows.push(lever),
+                Err(error) => all.left_out.push(format!("{name}: {error}")),
+            }
+        }
+        let is_of_two = scheme.steps().len() == 2;
+        for (name, way) in SOLVED {
+            match molecule.method(name, way, scheme, &self.band) {
+                Some(lever) => all.rows.push(lever),
+                None if is_of_two => all.left_out.push(format!("{name}: F + S is not proven definite")),
+                None => {
+                    all.left_out.push(format!("{name}: it is for two clocks, of which the slower one kicks"))
+                }
+            }
+        }
+        if is_of_two {
+            let why = "MOLLY, equilibrium: Hessians do not say which motions the fast forces leave alone";
+            all.left_out.push(why.into());
+        }
+        all.rows.extend(molecule.ratios(scheme, &self.band)?);
+        if let Some(rate) = &self.friction {
+            match molecule.masked(scheme, rate)? {
+                Some(lever) => all.rows.push(lever),
+                None => all.left_out.push("masked by the friction: not even the first step".into()),
+            }
+        }
+        all.compare();
+        Ok(all)
+    }
+
+    /// The temperature in K, and how many independent energies of bonds are seen: about one a picosecond.
+    fn heat(&self) -> Result<(Rational, Rational)> {
+        let temperature = self.temperature.clone().unwrap_or_else(|| Rational::from_integer(298.into()));
+        let length = self.length.clone().unwrap_or_else(|| Rational::from_integer(100_000_000.into()));
+        let bonds = self.bonds.unwrap_or(10_000);
+        let seen = Rational::from_integer(bonds.into()) * length / Rational::from_integer(1000.into());
+        if !SEEN.contains(&to_f64(&seen)) {
+            let remedy = "choose 1 to 1e17 bonds times picoseconds: energies up to 40 kT are measured";
+            return Err(Error::input("bonds", bonds, remedy));
+        }
+        Ok((temperature, seen))
+    }
+
+    pub(super) fn placed(&self, safe: &Safe) -> Advised {
+        match safe {
+            Safe::Periods(advice) => Advised { modes: Some(advice.modes.clone()), ..self.clone() },
+            Safe::Hessians(_) | Safe::Direct(_) => self.clone(),
+        }
+    }
+}
 
 /// One of several that make a field.
 trait Item: Sized {

@@ -43,7 +43,8 @@ mod verdict;
 mod want;
 mod word;
 
-pub use advise::{Advise, Advised, Safe};
+pub use advise::Advise;
+pub use advised::{Advised, Safe};
 pub use aperture::Aperture;
 pub(crate) use asking::question;
 pub use asking::{Fields, Question, Watch, Work};

@@ -35,10 +35,12 @@
 //! | file | what |
 //! |---|---|
 //! | `model` | the Hessians, their accuracy, the rigid motions |
+//! | `scaled` | coordinates in which positions and momenta are of one size |
 //! | `decide` | the half period with its bound, the verdict, how far it stands |
 
 mod decide;
 mod model;
+mod scaled;
 
 pub use decide::{OwnOrbit, decide_along};
 pub use model::Along;

@@ -17,8 +17,10 @@
 //! | `scheme` | the levels, the effective stiffness |
 //! | `intervals` | all unstable intervals of dt, exactly |
 //! | `elements` | AVI of elements in levels |
+//! | `columns` | the effective stiffness in sparse doubles |
 //! | `sparse` | many thousands of degrees of freedom: f in sparse doubles, its verdicts, what grows fastest |
 
+mod columns;
 mod elements;
 mod intervals;
 mod scheme;
