@@ -406,7 +406,8 @@ fn nonsense_in_a_document_is_an_error_and_never_a_panic() {
             });
         }
     }
-    assert!(refused > 500, "{refused}");
+    // What stands in rows is compared and not read, so inputs and heads alone are refused.
+    assert!(refused > 400, "{refused}");
 }
 
 #[test]

@@ -12,7 +12,7 @@ use crate::cli::paper::Paper;
 use clocks::map::{Grid, Products};
 use clocks::resonance::{Curve, Window};
 use documents::format::Format;
-use documents::question::{Atlas, Colour, Form, Map, Product, Question, Scene, Want};
+use documents::question::{Colour, Form, Map, Product, Question, Scene, Want};
 use documents::report::document::Document;
 use documents::report::file::write_output;
 use documents::report::map::{MapArrays, Marked, Rows, marked};
@@ -102,8 +102,7 @@ impl<'a> Work<'a> {
         self.figures.get(product, || {
             if product == Product::Atlas {
                 let colour = self.scene.colour.unwrap_or(Colour::Family);
-                let atlas = Atlas::new(&self.scene.tongues()?, colour, Some(self.scene.families()))?;
-                return atlas.figure(&self.common.work());
+                return self.scene.tongues()?.atlas(colour, Some(self.scene.families()), &self.common.work());
             }
             let Verdicts { map, grid, marked, .. } = self.verdicts()?;
             let unstable = marked.iter().filter(|pair| !pair.decision.verdict.is_stable());

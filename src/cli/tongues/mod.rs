@@ -13,7 +13,7 @@ use super::verdict::{EDGES_WORTH_CERTIFYING, within};
 use clocks::tongue::{Selection, Tongues};
 use documents::format::Format;
 use documents::question::{
-    Atlas, Colour, Columns, Form, Question as _, Ratios, Survey, THINNEST, Tongues as Asked, flag,
+    Colour, Columns, Form, Question as _, Ratios, Survey, THINNEST, Tongues as Asked, flag,
 };
 use documents::report::certificate::coq_of_tongue;
 use documents::report::file::{write_output, write_with};
@@ -112,7 +112,7 @@ impl Args {
             }
             Drawn::Atlas | Drawn::Diagram => {
                 let colour = self.colour.unwrap_or(Colour::Family);
-                Atlas::new(&question, colour, None)?.figure(&common.work())
+                question.atlas(colour, None, &common.work())
             }
         }
     }

@@ -82,7 +82,9 @@ question! {
         /// poly:k2=X,k3=Y,k4=Z
         ///
         /// K of E = K x^2, k of E = k x^2/2, D and a of E = D (1 - exp(-a x))^2, k2, k3 and k4 of E = k2 x^2 +
-        /// k3 x^3 + k4 x^4; masses in amu.
+        /// k3 x^3 + k4 x^4.
+        ///
+        /// Masses in amu.
         #[arg(long, value_name = "NAME:SHAPE,M1,M2", allow_hyphen_values = true, value_parser = flag::<Bond>)]
         bond: Bond,
         /// The temperature.

@@ -63,7 +63,7 @@ pub use side::{CompareMethods, Side};
 pub use simulate::{Answer as Simulated, Displacement, Simulate};
 pub use survey::{Survey, THINNEST};
 pub use system::{Answer as SystemAnswer, Found, System};
-pub use tongues::{Atlas, Colour, Columns, Form, FoundTongues, Tongues};
+pub use tongues::{Colour, Columns, Form, FoundTongues, Tongues};
 pub use verdict::{Decided, Verdict};
 pub use want::{Product, Want};
 pub use word::{Linted, Methods, Word};

@@ -2,17 +2,39 @@
 
 use plot::{Figure, Foot};
 
-use super::{Colour, Tongues};
-use crate::question::{Ratios, Work};
+use crate::question::field::notation;
+use crate::question::ratios::Ratios;
 use crate::report::plane::{self, Segment};
 use clocks::resonance::{Curve, Families, Window};
 use clocks::tongue::{Bounds, Listing, Range, Tongue, TongueEdge};
-use number::Laurent;
 use number::error::{Error, Result};
+use number::{Laurent, named};
+
+named! {
+    /// The quantity shown by the colours of an atlas.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    #[derive(clap::ValueEnum)]
+    pub enum Colour {
+        /// The a of the dominant family.
+        Family = "family",
+        /// The fastest growth inside the tongue.
+        Growth = "growth",
+    }
+}
+
+impl Colour {
+    fn read(field: &str, text: &str) -> Result<Colour> {
+        let known = Colour::ALL.into_iter().find(|colour| colour.name() == text);
+        known.ok_or_else(|| Error::input(field, text, "choose family or growth"))
+    }
+}
+
+notation! {
+    Colour: Colour::read, |colour: &Colour| colour.name().to_string();
+}
 
 /// A figure to which tongues are added.
 pub struct Atlas {
-    question: Tongues,
     ratios: Ratios,
     listing: Listing,
     colour: Colour,
@@ -29,9 +51,7 @@ impl Atlas {
     ///
     /// # Errors
     /// A question that makes no sense; λ1 or a range of steps that is missing; a window without a step.
-    pub fn new(question: &Tongues, colour: Colour, families: Option<Families>) -> Result<Self> {
-        let question = Tongues { columns: Some(colour.needs()), ..question.clone() };
-        let (ratios, listing) = (question.ratios()?, question.listing()?);
+    pub fn new(ratios: Ratios, listing: Listing, colour: Colour, families: Option<Families>) -> Result<Self> {
         let missing =
             |field: &str, example: &str| Error::missing(field, format!("an atlas needs it, as {example}"));
         let lambda1 =
@@ -45,25 +65,12 @@ impl Atlas {
             }
         }
         let families = families.unwrap_or(Families {
-            a: question.a.unwrap_or((0, 3)),
-            b: question.b.unwrap_or((-12, 12)),
+            a: listing.selection.a.unwrap_or((0, 3)),
+            b: listing.selection.b.unwrap_or((-12, 12)),
             samples: SAMPLES,
         });
         let curves = families.curves(lambda1, &window)?;
-        Ok(Atlas { question, ratios, listing, colour, window, curves, segments: Vec::new() })
-    }
-
-    /// Finds the tongues and draws them.
-    ///
-    /// # Errors
-    /// As [`Question::answer`](crate::question::Question::answer).
-    pub fn figure(mut self, work: &Work) -> Result<Figure> {
-        let (question, listing) = (self.question.clone(), self.listing.clone());
-        question.each(&listing, work, |part| {
-            self.add(part);
-            Ok(())
-        })?;
-        Ok(self.drawn())
+        Ok(Atlas { ratios, listing, colour, window, curves, segments: Vec::new() })
     }
 
     /// Adds tongues, as many as come.

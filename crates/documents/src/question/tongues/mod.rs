@@ -8,10 +8,11 @@ use super::field::{flag, notation};
 use super::ratios::{MOST_SUM, Ratios};
 use crate::report::document::{Document, Layout};
 use crate::report::tongues::{CAPTION, CAPTION_LATEX, TongueTally, needed, record};
-pub use atlas::Atlas;
+use atlas::Atlas;
+pub use atlas::Colour;
+use clocks::resonance::Families;
 use clocks::tongue::{Labels, Listing, Range, Request, Selection, StepWindow, Stiffness, Tongue, Wanted};
 use number::error::{Error, Result};
-use number::named;
 use number::{Laurent, Ratio, Rational};
 pub use written::Form;
 
@@ -92,34 +93,9 @@ impl Columns {
     }
 }
 
-named! {
-    /// The quantity shown by the colours of an atlas.
-    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-    #[derive(clap::ValueEnum)]
-    pub enum Colour {
-        /// The a of the dominant family.
-        Family = "family",
-        /// The fastest growth inside the tongue.
-        Growth = "growth",
-    }
-}
-
-impl Colour {
-    /// The groups that the colours need.
-    fn needs(self) -> Columns {
-        Columns::of(Wanted { growth: self == Colour::Growth, ..Wanted::default() })
-    }
-
-    fn read(field: &str, text: &str) -> Result<Colour> {
-        let known = Colour::ALL.into_iter().find(|colour| colour.name() == text);
-        known.ok_or_else(|| Error::input(field, text, "choose family or growth"))
-    }
-}
-
 notation! {
     Columns: |_, text: &str| Ok::<_, Error>(Columns(text.split(',').map(|name| name.trim().into()).collect())),
         |columns: &Columns| columns.0.join(",");
-    Colour: Colour::read, |colour: &Colour| colour.name().to_string();
 }
 
 /// Digits beyond this are a slip of the keyboard.
@@ -234,6 +210,22 @@ impl Tongues {
         listing.each(&*progress, see)
     }
 
+    /// Finds the tongues and draws them over the curves of these families, else of those selected.
+    ///
+    /// # Errors
+    /// As [`Question::answer`]; λ1 or a range of steps that is missing; a window without a step.
+    pub fn atlas(&self, colour: Colour, families: Option<Families>, work: &Work) -> Result<plot::Figure> {
+        let growth = colour == Colour::Growth;
+        let columns = Some(Columns::of(Wanted { growth, ..Wanted::default() }));
+        let listing = Tongues { columns, ..self.clone() }.listing()?;
+        let mut atlas = Atlas::new(self.ratios()?, listing.clone(), colour, families)?;
+        self.each(&listing, work, |part| {
+            atlas.add(part);
+            Ok(())
+        })?;
+        Ok(atlas.drawn())
+    }
+
     /// The counts of all tongues, and the first of them, up to `most`.
     fn first(&self, most: u64, work: &Work) -> Result<FoundTongues> {
         let (asked, listing) = (self.whole()?, self.listing()?);
@@ -286,7 +278,7 @@ impl Question for Tongues {
     }
 
     fn figure(&self, answer: &FoundTongues, _: &Work) -> Result<Option<plot::Figure>> {
-        let mut atlas = Atlas::new(self, Colour::Family, None)?;
+        let mut atlas = Atlas::new(self.ratios()?, self.listing()?, Colour::Family, None)?;
         atlas.add(&answer.tongues);
         Ok(Some(atlas.drawn()))
     }
