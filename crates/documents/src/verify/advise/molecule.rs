@@ -32,6 +32,9 @@ fn route<'a>(scene: &'a SystemScene, band: f64, limits: &'a Limits) -> Result<Bo
     })
 }
 
+/// Steps of this part of a band's edge are short: the scheme is unstable there only where the stiffnesses are.
+const SHORT: f64 = 1.0 / 1024.0;
+
 /// Levels of any number as a rational system of the doubles given: half periods kick by kick, each at one
 /// step.
 struct Many<'a> {
@@ -95,11 +98,16 @@ impl Route for Many<'_> {
             for which in 0..1usize << (levels - 1) {
                 let slower = (0..levels - 1).map(|k| if which >> k & 1 == 1 { least } else { most });
                 let scales: Vec<f64> = [most].into_iter().chain(slower).collect();
-                self.is(
+                let corner = self.is(
                     Holds::Stable,
                     (&finding.scheme, edge * (1.0 - ROOM), &scales),
                     "a corner of the band",
-                )?;
+                );
+                // The band is of stiffnesses whose sum is definite: of others not even short steps are stable.
+                let short = SHORT * edge / to_f64(finding.scheme.outer());
+                if corner.is_err() && self.at(&finding.scheme, short, &scales)? != Holds::Unstable {
+                    return corner;
+                }
             }
         }
         Ok(())
