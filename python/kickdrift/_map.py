@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from kickdrift import _native, _plot
-from kickdrift._document import Document, Frozen, ask, given
+from kickdrift._document import Document, Frozen
 from kickdrift._errors import KickdriftError, required
 from kickdrift._numbers import Exact, Range, flag, frozen, range_text, text
 from kickdrift._verdict import _STABLE, TIERS, VERDICTS
@@ -42,7 +42,7 @@ class Map(Frozen):
     (dtype('uint8'), (15, 87), 'hyperbolic+')
     """
 
-    _arguments: tuple[str, ...]
+    _question: tuple[Any, ...]
     _texts: tuple[str, str]
     arrays: Mapping[str, npt.NDArray[Any]]
     """All arrays by name, as in the program's ``map.npz``, read only."""
@@ -92,6 +92,9 @@ class Map(Frozen):
     def __getstate__(self) -> dict[str, Any]:
         return super().__getstate__() | {"_map": None}
 
+    def _writer(self) -> _native.Map:
+        return _native.map(*self._question)[0] if self._map is None else self._map
+
     def _asked(self, name: str, product: str) -> npt.NDArray[Any]:
         if name not in self.arrays:
             raise KickdriftError(name, "not computed", f"ask for it: map(..., {product}=True)")
@@ -124,7 +127,7 @@ class Map(Frozen):
         >>> len(small.to_csv().splitlines()) == 1 + int((~small.stable).sum())
         True
         """
-        return ask(self._arguments, "csv") if self._map is None else self._map.csv(self.verdict, self.tier)
+        return self._writer().csv(self.verdict, self.tier)
 
     def to_xarray(self) -> xarray.Dataset:
         """The arrays over the coordinates h1 and h2, none of them copied.
@@ -203,7 +206,7 @@ class Map(Frozen):
         >>> small.to_svg().startswith("<svg")
         True
         """
-        return ask(self._arguments, "svg") if self._map is None else self._map.svg(self.verdict, self.tier)
+        return self._writer().svg(self.verdict, self.tier)
 
     def _repr_svg_(self) -> str | None:
         return self.to_svg() if self.verdict.size <= _FEW else None
@@ -275,19 +278,12 @@ def map(
             raise KickdriftError(name, None, remedy)
     ends = [_ends("h1", h1), _ends("h2", h2)]
     label, growth = flag("label", label), flag("growth", growth)
-    made, arrays = _native.map([lambda1, lambda2], steps, ends, (label, growth), budget, threads)
-    arguments = ["map"] + given(
-        lambda1=text("lambda1", lambda1),
-        lambda2=text("lambda2", lambda2),
-        step1=text("step1", steps[0]),
-        step2=text("step2", steps[1]),
-        h1_range=range_text("h1", h1),
-        h2_range=range_text("h2", h2),
-        budget=budget,
-    )
-    arguments += [flag for flag, asked in (("--label", label), ("--growth", growth)) if asked]
+    stiffnesses = [text("lambda1", lambda1), text("lambda2", lambda2)]
+    spacings = [text("step1", steps[0]), text("step2", steps[1])]
+    question = (stiffnesses, spacings, ends, (label, growth), budget, threads)
+    made, arrays = _native.map(*question)
     kept = MappingProxyType({name: frozen(array) for name, array in arrays.items()})
-    return Map(tuple(arguments), (made.render("json"), made.render("text")), kept, made)
+    return Map(question, (made.render("json"), made.render("text")), kept, made)
 
 
 def _ends(field: str, value: Range) -> list[Exact]:
