@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -50,11 +51,8 @@ def test_steps_ranges_and_units_mean_the_same() -> None:
     assert kd.recheck(asked).holds
 
 
-def test_the_program_writes_the_same_document() -> None:
-    from kickdrift import _native
-
-    arguments = ["aperture", "--bond", MORSE, "--steps=1.95fs,2.2fs", "--format", "json", "--quiet"]
-    document = _native.answer(arguments).decode()
+def test_the_program_writes_the_same_document(program: Callable[..., str]) -> None:
+    document = program("aperture", "--bond", MORSE, "--steps=1.95fs,2.2fs", "--format", "json", "--quiet")
     assert document == kd.aperture(MORSE, steps="1.95fs,2.2fs").to_json()
     assert json.loads(document)["steps"][0]["k"] == 4
 

@@ -167,6 +167,7 @@ impl Tongues {
 
     /// The question as documents echo it: with ρ, and with the groups of columns where some were asked for.
     fn whole(&self) -> Result<Tongues> {
+        self.ratios()?;
         let (rho, wanted) = (self.stiffness()?.rho, self.wanted()?);
         let columns = self.columns.as_ref().map(|_| Columns::of(wanted));
         Ok(Tongues { rho: Some(rho), columns, ..self.clone() })
