@@ -89,7 +89,7 @@ enum Command {
     /// Which steps are safe for these periods or bonds, for how long, and why.
     Advise(advise::Args),
     /// How hot may a bond be before the method throws it out? Measured over steps, no proof.
-    Aperture(aperture::Args),
+    Aperture(Box<aperture::Args>),
     /// Runs a system as Algorithm 1 of Fong, Darve and Lew does: its energy and growth beside the prediction.
     Simulate(simulate::Args),
     /// A page on this machine to move in the plane of steps: maps, tongues and verdicts, at any depth.

@@ -88,11 +88,12 @@ impl Plain {
     fn linear(&self, h: f64) -> [[f64; 2]; 2] {
         let mut q = [[1.0, 0.0], [0.0, 1.0]];
         for part in &self.parts {
-            for column in 0..2 {
+            let [lengths, velocities] = &mut q;
+            for (x, v) in lengths.iter_mut().zip(velocities) {
                 match part {
-                    Part::Drift(time) => q[0][column] += h * time * q[1][column],
+                    Part::Drift(time) => *x += h * time * *v,
                     Part::Kick { bond, slow } => {
-                        q[1][column] -= h * (bond * self.squares[0] + slow * self.squares[1]) * q[0][column];
+                        *v -= h * (bond * self.squares[0] + slow * self.squares[1]) * *x;
                     }
                 }
             }
