@@ -93,7 +93,7 @@ impl Steps<'_> {
     /// these stiffnesses have in common.
     ///
     /// # Errors
-    /// As [`cover`].
+    /// An empty range, a width outside \[10^-9, 1/10\], an interruption.
     pub fn stretches(&self, (lo, hi): (f64, f64), width: f64, epsilon: f64) -> Result<Vec<Stretch>> {
         let holds = |step: f64| self.is_in_first_region(step, epsilon);
         // What is stable at a step of the first region is so at every smaller one.
