@@ -9,6 +9,7 @@ use super::field::{Field, notation, read};
 use crate::input::{SystemFile, SystemScene};
 use crate::report::advise as report;
 use crate::report::document::Document;
+use molecules::aperture::energies_seen;
 use molecules::unit::{TimeUnit, decimal};
 use molecules::{
     Advice, Beads, Bond, DirectFindings, Findings, Levers, MOST_PRODUCTS, Mode, Molecule, Origin, SOLVED,
@@ -16,7 +17,6 @@ use molecules::{
 };
 use number::error::{Error, Result};
 use number::parse::parse_rational;
-use number::rational::to_f64;
 use number::{ExactSign, Rational, Sign};
 use systems::Limits;
 
@@ -73,9 +73,6 @@ const PRODUCTS_A_SECOND: f64 = 1e10;
 
 /// Levers of a molecule cost about as much as so many schemes.
 const LEVERS: usize = 10;
-
-/// Energies beyond 40 kT, of which exp(40) are needed to see one, are not measured.
-const SEEN: std::ops::RangeInclusive<f64> = 1.0..=1e17;
 
 impl Question for Advised {
     const NAME: &'static str = "advised";
@@ -225,12 +222,7 @@ impl Advised {
         let temperature = self.temperature.clone().unwrap_or_else(|| Rational::from_integer(298.into()));
         let length = self.length.clone().unwrap_or_else(|| Rational::from_integer(100_000_000.into()));
         let bonds = self.bonds.unwrap_or(10_000);
-        let seen = Rational::from_integer(bonds.into()) * length / Rational::from_integer(1000.into());
-        if !SEEN.contains(&to_f64(&seen)) {
-            let remedy = "choose 1 to 1e17 bonds times picoseconds: energies up to 40 kT are measured";
-            return Err(Error::input("bonds", bonds, remedy));
-        }
-        Ok((temperature, seen))
+        Ok((temperature, energies_seen(bonds, &length)?))
     }
 
     pub(super) fn placed(&self, safe: &Safe) -> Advised {

@@ -7,12 +7,12 @@ use super::asking::{Question, Work, question};
 use super::field::{flag, notation};
 use crate::report::aperture as report;
 use crate::report::document::Document;
-use molecules::aperture::{Bond, Measured, Measurement};
+use molecules::aperture::{Bond, Measured, Measurement, energies_seen, hottest_of};
 use molecules::unit::{self, Dimension};
+use number::Rational;
 use number::error::{Error, Result};
 use number::parallel::try_map;
 use number::rational::to_f64;
-use number::{Ball, Rational};
 use words::Word;
 
 /// A quantity as it is written, and its value.
@@ -186,17 +186,6 @@ impl Aperture {
         all.dedup();
         Ok(all)
     }
-
-    /// ln of bonds times picoseconds.
-    fn level(&self) -> Result<f64> {
-        let seen = Rational::from_integer(self.bonds.into()) * &self.length.value
-            / Rational::from_integer(1000.into());
-        if to_f64(&seen) < 1.0 || to_f64(&seen) > 1e17 {
-            let remedy = "choose 1 to 1e17 bonds times picoseconds: energies up to 40 kT are measured";
-            return Err(Error::input("bonds", self.bonds, remedy));
-        }
-        Ok(Ball::nearest_f64(|bits| Ball::from_rational(&seen, bits).ln(bits).expect("a positive number")))
-    }
 }
 
 /// A figure needs no more steps, and a text names them all.
@@ -212,7 +201,8 @@ impl Question for Aperture {
     type Answer = Measured;
 
     fn answer(&self, work: &Work) -> Result<Measured> {
-        let (measurement, all, level) = (self.measurement()?, self.all_steps()?, self.level()?);
+        let (measurement, all) = (self.measurement()?, self.all_steps()?);
+        let level = hottest_of(&energies_seen(self.bonds, &self.length.value)?);
         let cost = measurement.cost().saturating_mul(all.len() as u64);
         let most = work.budget.unwrap_or(MOST_KICKS);
         if cost > most {

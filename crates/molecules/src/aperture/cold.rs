@@ -3,11 +3,11 @@
 use num_traits::ToPrimitive;
 
 use super::bond::Bond;
-use super::search::Measurement;
+use super::search::{Measurement, hottest_of};
+use number::Rational;
 use number::error::Result;
 use number::parallel::try_map;
 use number::rational::to_f64;
-use number::{Ball, Rational};
 use words::method;
 
 /// The first step of velocity Verlet at which a bond is too hot.
@@ -40,9 +40,7 @@ impl Cold {
     /// Where somebody has stopped the work.
     pub fn of(bond: &Bond, temperature: &Rational, seen: &Rational) -> Result<Option<Cold>> {
         let measurement = Measurement::new(bond, temperature, &method("velocity-verlet")?.word(), None)?;
-        let level = Ball::nearest_f64(|bits| {
-            Ball::from_rational(seen, bits).ln(bits).expect("somebody looks at a bond")
-        });
+        let level = hottest_of(seen);
         // Whole fs or their thousandths keep the digits of the steps few.
         let period = measurement.period();
         let unit = Rational::new((period.ceil().to_u64().unwrap_or(u64::MAX)).into(), PARTS.into());

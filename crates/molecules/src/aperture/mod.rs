@@ -34,7 +34,7 @@ pub use bond::{Bond, Shape};
 pub use cold::Cold;
 pub use kernel::{FAR, PHASES};
 pub use map::{Map, Stage, squared_frequency};
-pub use search::{EARLY, LATE, Measurement, Resonance, Step, rungs, thermal};
+pub use search::{EARLY, LATE, Measurement, Resonance, Step, energies_seen, hottest_of, rungs, thermal};
 
 use number::Rational;
 use words::Word;

@@ -77,6 +77,28 @@ pub fn thermal(temperature: &Rational) -> Rational {
     number::parse::parse_rational("gas", GAS).expect("a number") * temperature
 }
 
+/// The fewest and the most independent energies that a run may see: energies beyond 40 kT, of which exp(40)
+/// are needed to see one, are not measured.
+const SEEN: std::ops::RangeInclusive<f64> = 1.0..=1e17;
+
+/// How many independent energies of bonds a run of `length` fs sees: about one a picosecond and bond.
+///
+/// # Errors
+/// Fewer than one, or more than 10^17.
+pub fn energies_seen(bonds: u64, length: &Rational) -> Result<Rational> {
+    let seen = Rational::from_integer(bonds.into()) * length / Rational::from_integer(1000.into());
+    if SEEN.contains(&to_f64(&seen)) {
+        return Ok(seen);
+    }
+    let remedy = "choose 1 to 1e17 bonds times picoseconds: energies up to 40 kT are measured";
+    Err(Error::input("bonds", bonds, remedy))
+}
+
+/// The energy in kT of about the hottest of so many: their logarithm, the double nearest to it.
+pub fn hottest_of(seen: &Rational) -> f64 {
+    Ball::nearest_f64(|bits| Ball::from_rational(seen, bits).ln(bits).expect("somebody looks at a bond"))
+}
+
 /// exp(x), the double nearest to it.
 fn exp(x: f64) -> f64 {
     let exact = rational::from_f64_exact(x).expect("energies are finite");
