@@ -8,11 +8,11 @@ use molecules::aperture::{Measured, Step, rungs};
 use molecules::unit::decimal;
 use number::rational::to_f64;
 
-/// Above the highest rung there is room for words.
-const ROOM: f64 = 9.0;
+/// Above the highest rung there is room for two lines of words, on a column of 85 mm, too.
+const ROOM: f64 = 15.0;
 
 /// Heights above the highest rung at which words stand: the steps asked for, and above them the resonances.
-const WORDS: [f64; 2] = [2.5, 6.5];
+const WORDS: [f64; 2] = [2.5, 9.5];
 
 /// Up to so many steps asked for have their energies beside them.
 const FEW: usize = 3;
