@@ -96,14 +96,19 @@ impl Letter {
         }
     }
 
-    fn is_nothing(&self) -> bool {
+    /// A time, or the strengths of the force's powers.
+    pub(super) fn coefficients(&self) -> &[Radical] {
         match self {
             Letter::Drift(time)
             | Letter::Friction(time)
             | Letter::Midpoint { time, .. }
-            | Letter::Flow { time, .. } => time.is_zero(),
-            Letter::Kick { powers, .. } => powers.iter().all(Zero::is_zero),
+            | Letter::Flow { time, .. } => std::slice::from_ref(time),
+            Letter::Kick { powers, .. } => powers,
         }
+    }
+
+    fn is_nothing(&self) -> bool {
+        self.coefficients().iter().all(Zero::is_zero)
     }
 
     pub(super) fn force(&self) -> Option<Force> {

@@ -1,0 +1,243 @@
+//! Orders on all problems, held against local errors in high precision on problems that are not linear.
+
+use kickdrift_words::number::{Radical, Rational, Real};
+use kickdrift_words::{Force, GeneralOrder, Letter, METHODS, NoGeneralOrder, Word, method};
+use num_bigint::BigInt;
+use num_traits::{One, Signed, Zero};
+
+fn orders(text: &str) -> GeneralOrder {
+    text.parse::<Word>().unwrap().general_order().unwrap()
+}
+
+/// The exact orders: in general, of a potential.
+fn exact(text: &str) -> (u64, u64) {
+    let orders = orders(text);
+    (orders.general.order, orders.nystrom.order)
+}
+
+fn terms(order: &kickdrift_words::FormalOrder) -> Vec<String> {
+    let text = |c: &Radical| c.text(ToString::to_string);
+    order.error.iter().map(|term| format!("{} {}", text(&term.coefficient), term.commutator)).collect()
+}
+
+/// Bits after the point of the numbers that the local errors are computed in: the least ones are near 2^-90.
+const BITS: u32 = 400;
+
+type Fixed = BigInt;
+
+fn fixed(x: &Rational) -> Fixed {
+    (x.numer() << BITS) / x.denom()
+}
+
+fn times(a: &Fixed, b: &Fixed) -> Fixed {
+    (a * b) >> BITS
+}
+
+/// A problem H = T(p) + V1(x) + V2(x).
+struct Problem {
+    /// Whether T = p²/2, or p²/2 + p³/3.
+    quadratic: bool,
+}
+
+impl Problem {
+    fn velocity(&self, p: &Fixed) -> Fixed {
+        if self.quadratic { p.clone() } else { p + times(p, p) }
+    }
+
+    /// −V1' = −x − x², −V2' = −x³, and both.
+    fn force(&self, force: Force, x: &Fixed) -> Fixed {
+        let square = times(x, x);
+        let first = -(x + &square);
+        match force {
+            Force::First => first,
+            Force::Second => -times(&square, x),
+            Force::All => first - times(&square, x),
+        }
+    }
+
+    /// The derivative of the whole force.
+    fn slope(&self, x: &Fixed) -> Fixed {
+        -((BigInt::from(1) << BITS) + BigInt::from(2) * x + BigInt::from(3) * times(x, x))
+    }
+
+    /// One step of a word that begins at (x, p).
+    fn step(&self, word: &Word, h: &Fixed, start: &[Fixed; 2]) -> [Fixed; 2] {
+        let [mut x, mut p] = start.clone();
+        let number = |c: &Radical| fixed(&c.enclosure(BITS + 8).upper());
+        for letter in word.letters() {
+            match letter {
+                Letter::Drift(time) => x += times(&times(&number(time), h), &self.velocity(&p)),
+                Letter::Kick { force, powers, filter } if !filter.zero => {
+                    let pull = self.force(*force, &x);
+                    p += times(&times(&number(&powers[0]), h), &pull);
+                    if let Some(strength) = powers.get(1) {
+                        // Of a linear force f = −F x: f' f = F² x, and v −= d F² x.
+                        let cube = times(&times(h, h), h);
+                        let gradient = times(&self.slope(&x), &pull);
+                        p -= times(&times(&number(strength), &cube), &gradient);
+                    }
+                }
+                _ => (),
+            }
+        }
+        [x, p]
+    }
+
+    /// The solution after h, by its Taylor series: the terms left out are below h^60.
+    fn solution(&self, h: &Fixed, start: &[Fixed; 2]) -> [Fixed; 2] {
+        const TERMS: usize = 60;
+        let (mut x, mut p) = (vec![start[0].clone()], vec![start[1].clone()]);
+        let at = |a: &[Fixed], b: &[Fixed], n: usize| {
+            (0..=n).fold(Fixed::zero(), |sum, k| sum + times(&a[k], &b[n - k]))
+        };
+        let mut squares: Vec<Fixed> = Vec::new();
+        for n in 0..TERMS {
+            squares.push(at(&x, &x, n));
+            let velocity = if self.quadratic { p[n].clone() } else { &p[n] + at(&p, &p, n) };
+            let force = -(&x[n] + &squares[n] + at(&squares, &x, n));
+            x.push(velocity / (n as i64 + 1));
+            p.push(force / (n as i64 + 1));
+        }
+        [x, p].map(|series| series.iter().rev().fold(Fixed::zero(), |sum, c| times(&sum, h) + c))
+    }
+
+    /// The order that a step shows when it is halved.
+    fn order(&self, word: &Word) -> f64 {
+        // Steps at which errors of rounded coefficients, 1e-16 h³, are far below those of order 8.
+        let start = [fixed(&Rational::new(3.into(), 10.into())), fixed(&Rational::new(2.into(), 5.into()))];
+        let error = |log2: u32| {
+            let h = Fixed::one() << (BITS - log2);
+            let (step, solution) = (self.step(word, &h, &start), self.solution(&h, &start));
+            let [x, p] = [0, 1].map(|i| (&step[i] - &solution[i]).abs());
+            x + p
+        };
+        let bits = |x: &Fixed| {
+            let top = x.bits().saturating_sub(50);
+            ((x >> top).to_string().parse::<f64>().unwrap()).log2() + top as f64
+        };
+        let (coarse, fine) = (error(7), error(8));
+        bits(&coarse) - bits(&fine) - 1.0
+    }
+}
+
+/// That the error halves as the order says; the next term changes it by about a step's length, 1 %.
+fn shows(word: &Word, quadratic: bool, order: u64, name: &str) {
+    let seen = Problem { quadratic }.order(word);
+    assert!((seen - order as f64).abs() < 0.25, "{name}: order {order}, seen {seen}");
+}
+
+#[test]
+fn methods_of_the_catalogue_converge_as_their_orders_say() {
+    let mut held = 0;
+    for listed in METHODS {
+        let word = listed.word();
+        let Ok(orders) = word.general_order() else { continue };
+        let can_step = word.letters().iter().all(|letter| !matches!(letter, Letter::Flow { .. }));
+        let has_gradient = word.cost().gradients > 0;
+        if can_step && orders.nystrom.nominal > 0 {
+            shows(&word, true, orders.nystrom.nominal, listed.name);
+            // A force gradient is a kick for a quadratic kinetic energy alone.
+            if !has_gradient {
+                shows(&word, false, orders.general.nominal, listed.name);
+            }
+            held += 1;
+        }
+        assert_eq!(orders.nystrom.nominal, listed.order, "{}: the order that its source states", listed.name);
+    }
+    assert!(held > 25, "{held} methods");
+}
+
+#[test]
+fn published_orders_are_met() {
+    assert_eq!(exact("K(1/2) D(1) K(1/2)"), (2, 2));
+    assert_eq!(exact("K(7/24) D(2/3) K(3/4) D(-2/3) K(-1/24) D(1)"), (3, 3));
+    assert_eq!(exact(method("forest-ruth").unwrap().text), (4, 4));
+    assert_eq!(exact(method("chin-4a").unwrap().text), (4, 4));
+    let atela = method("mclachlan-atela-4").unwrap().word().general_order().unwrap();
+    assert_eq!((atela.general.nominal, atela.nystrom.nominal), (3, 4));
+    let yoshida = method("yoshida-6").unwrap().word().general_order().unwrap();
+    assert_eq!((yoshida.general.nominal, yoshida.nystrom.nominal), (6, 6));
+    assert_eq!(exact("R(1)"), (9, 9));
+    assert_eq!(exact("K1(1/2) D(1) K2(1)"), (0, 0));
+}
+
+#[test]
+fn leading_errors_are_the_known_commutators() {
+    // Strang's splitting, Hairer, Lubich, Wanner III.4.
+    assert_eq!(terms(&orders("K(1/2) D(1) K(1/2)").general), ["1/24 [B,[A,B]]", "1/12 [A,[A,B]]"]);
+    assert_eq!(terms(&orders("K(1) D(1)").general), ["-1/2 [A,B]"]);
+    // [B,[B,[A,B]]] vanishes for a potential.
+    let ruth = orders("K(7/24) D(2/3) K(3/4) D(-2/3) K(-1/24) D(1)");
+    assert_eq!(terms(&ruth.general).len(), 3);
+    assert_eq!(terms(&ruth.nystrom), terms(&ruth.general)[1..]);
+    assert_eq!(terms(&orders("K1(1/2) D(1) K2(1)").general), ["-1/2 B1"]);
+    // Two forces: B = B1 + B2, and by symmetry as many terms begin with either.
+    let two = orders(&format!("{} K1(0)", method("forest-ruth").unwrap().text));
+    assert_eq!((two.general.order, two.nystrom.order), (4, 4));
+    let with = |name: &str| two.general.error.iter().filter(|term| term.commutator.contains(name)).count();
+    assert_eq!(with("B1"), with("B2"));
+    assert!(two.general.error.len() > orders(method("forest-ruth").unwrap().text).general.error.len());
+}
+
+#[test]
+fn two_coefficients_that_are_swapped_are_noticed() {
+    // Order 4 becomes order 2 or less (JuliaGNI/GeometricIntegrators.jl 220).
+    let right = "K(0.1344961992774310892) D(0.5153528374311229364) K(-0.2248198030794208058) D(-0.085782019412973646) K(0.7563200005156682911) D(0.4415830236164665242) K(0.3340036032863214255) D(0.1288461583653841854)";
+    let wrong = right
+        .replace("D(-0.085782019412973646)", "D(x)")
+        .replace("D(0.4415830236164665242)", "D(-0.085782019412973646)")
+        .replace("D(x)", "D(0.4415830236164665242)");
+    assert_eq!(orders(right).nystrom.nominal, 4);
+    let swapped = orders(&wrong);
+    assert!(swapped.nystrom.nominal < 3, "{}", swapped.nystrom.nominal);
+    shows(&wrong.parse().unwrap(), true, swapped.nystrom.nominal, "swapped");
+}
+
+#[test]
+fn what_is_no_product_of_flows_has_no_order_on_all_problems() {
+    let reason = |text: &str| text.parse::<Word>().unwrap().general_order().unwrap_err();
+    assert_eq!(reason("C(1)"), NoGeneralOrder::Midpoint);
+    assert_eq!(reason("K2[sinc(x)](1/2) R1(1) K2[sinc(x)](1/2)"), NoGeneralOrder::Filter);
+    assert_eq!(reason("K(1/2, 0, 1/100) D(1) K(1/2)"), NoGeneralOrder::Powers);
+}
+
+/// Words of one and of two forces whose coefficients are small rationals, sums 1 or not.
+#[test]
+fn random_words_show_the_order_that_is_computed() {
+    let mut state = 7u64;
+    let mut next = |n: u64| {
+        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (state >> 33) % n
+    };
+    let mut seen = [0; 4];
+    for _ in 0..200 {
+        // Palindromes of kicks and drifts with consistent sums have order 2 at least, others 1.
+        let two = next(2) == 0;
+        let names: &[&str] = if two { &["K1", "K2"] } else { &["K"] };
+        let mut letters = Vec::new();
+        let (mut drift, mut kicks) = (Rational::zero(), vec![Rational::zero(); names.len()]);
+        for _ in 0..2 + next(3) {
+            let c = Rational::new((1 + next(9)).into(), (10 + next(9)).into());
+            drift += &c;
+            letters.push(format!("D({c})"));
+            let which = next(names.len() as u64) as usize;
+            let c = Rational::new((1 + next(9)).into(), (10 + next(9)).into());
+            kicks[which] += &c;
+            letters.push(format!("{}({c})", names[which]));
+        }
+        let half = Rational::new(1.into(), 2.into());
+        let whole = if next(2) == 0 { Rational::one() } else { half };
+        letters.push(format!("D({})", &whole - drift));
+        names.iter().zip(&kicks).for_each(|(name, sum)| letters.push(format!("{name}({})", &whole - sum)));
+        if whole != Rational::one() {
+            let back: Vec<String> = letters.iter().rev().cloned().collect();
+            letters.extend(back);
+        }
+        let word: Word = letters.join(" ").parse().unwrap();
+        let orders = word.general_order().unwrap();
+        shows(&word, true, orders.nystrom.order, &word.to_string());
+        shows(&word, false, orders.general.order, &word.to_string());
+        seen[orders.general.order as usize] += 1;
+    }
+    assert!(seen[1] > 40 && seen[2] > 40, "{seen:?}");
+}
