@@ -41,6 +41,7 @@
 
 mod advise;
 mod again;
+mod anharmonic;
 mod aperture;
 mod bands;
 mod closings;

@@ -3,6 +3,7 @@
 use nalgebra::Matrix2;
 use num_traits::{One, Zero};
 
+use super::anharmonic;
 use super::context::{Checked, Context, Outcome, holds, same};
 use super::kind::Verify;
 use super::side::step;
@@ -11,7 +12,7 @@ use number::error::Result;
 use number::{ExactSign, Radical, Rational, Real, Ring, Sign, rational};
 use words::{Force, Letter, method};
 
-const ROUTE: &str = "letter by letter in exact numbers: a step of each interval, the order by halving a step; exact flows, filters and friction in doubles";
+const ROUTE: &str = "letter by letter in exact numbers: a step of each interval, the orders by halving a step, on an anharmonic problem, too; exact flows, filters and friction in doubles";
 
 /// Traces this near to an edge decide nothing in doubles.
 const NEAR: f64 = 1e-7;
@@ -87,7 +88,20 @@ fn has_order(linted: &Linted) -> Checked {
     let rhos = if linted.word.names_forces() { &rhos[..] } else { &rhos[..1] };
     let order = rhos.iter().map(|rho| order(&linted.word, rho)).min().unwrap_or_default();
     same("order", linted.order.order, order)?;
+    has_general_orders(linted)?;
     holds(linted.word.is_consistent() || order == 0, || "it has an order, so it is consistent".into())
+}
+
+/// The orders on all problems, where steps can show them.
+fn has_general_orders(linted: &Linted) -> Checked {
+    let Ok(orders) = &linted.general else { return Ok(()) };
+    let both = [("general order", &orders.general, false), ("Nystrom order", &orders.nystrom, true)];
+    both.into_iter().try_for_each(|(name, found, quadratic)| {
+        match anharmonic::order(&linted.word, quadratic) {
+            Some(seen) => same(name, found.order, seen),
+            None => Ok(()),
+        }
+    })
 }
 
 /// The order at one ρ: the error of a step of 2^-80, and of half of it, against the series of the flow.
@@ -165,6 +179,7 @@ impl Verify for Methods {
 fn has_edges(Listed { method: listed, linted, two }: &Listed) -> Checked {
     let word = &linted.word;
     holds(method(listed.name)?.word() == *word, || "its word is another one".into())?;
+    has_general_orders(linted)?;
     if let Some((lo, hi)) = two.as_ref().and_then(Linted::edge_omega_h).map(|edge| edge.to_f64_enclosure()) {
         for (x, stable) in [(lo * (1.0 - 1e-4), true), (hi * (1.0 + 1e-4), false)] {
             let margin = 2.0 - step(word, x * x, 1.0 / 16.0, 0.0).0.abs();

@@ -11,6 +11,8 @@
 mod commutator;
 mod series;
 
+use std::fmt;
+
 use num_bigint::BigInt;
 use num_integer::Integer;
 use num_traits::{One, Zero};
@@ -61,10 +63,26 @@ pub enum NoGeneralOrder {
     Filter,
     /// F³ and higher powers stand for several commutators.
     Powers,
+    /// Each letter costs a product of series.
+    Long,
+}
+
+impl fmt::Display for NoGeneralOrder {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            NoGeneralOrder::Midpoint => "the midpoint rule C is no product of drifts and kicks",
+            NoGeneralOrder::Filter => "a filter is a function of the linear fast force",
+            NoGeneralOrder::Powers => "the third power of a force stands for several commutators",
+            NoGeneralOrder::Long => "the word has more than 1,000 letters: write n*(...) where some repeat",
+        })
+    }
 }
 
 /// The largest degree that series are followed to: of one force, and of two, whose monomials are more.
 const MAX_DEGREE: [usize; 2] = [9, 7];
+
+/// The most letters of a word as it is written, repeated ones counted once.
+const MAX_LETTERS: usize = 1000;
 
 /// 1 .. 9 divide it: the logarithm's coefficients are whole with this factor.
 const LOG_MULTIPLE: i64 = 2520;
@@ -78,6 +96,9 @@ impl Word {
     /// # Errors
     /// Letters that are no exponentials of commutators.
     pub fn general_order(&self) -> Result<GeneralOrder, NoGeneralOrder> {
+        if written(self.items()) > MAX_LETTERS {
+            return Err(NoGeneralOrder::Long);
+        }
         let letters = self.letters();
         let mut numbers = letters.iter().flat_map(|letter| letter.coefficients());
         if numbers.all(|number| number.field().is_none()) {
@@ -224,6 +245,15 @@ impl<'a, T: Scalar> Expansion<'a, T> {
         let nominal_error = if nominal == order { error.clone() } else { terms(nominal) };
         FormalOrder { order: order as u64, error, nominal: nominal as u64, nominal_error }
     }
+}
+
+/// The letters that are written, each once.
+fn written(items: &[Item]) -> usize {
+    let count = |item: &Item| match item {
+        Item::Letter(_) => 1,
+        Item::Repeat(_, inside) => written(inside),
+    };
+    items.iter().map(count).sum()
 }
 
 /// seriesᵗⁱᵐᵉˢ by squaring.

@@ -66,6 +66,12 @@ impl Question for Methods {
         let table = Record::new()
             .field(Column::new("name").left(), |listed: Of| listed.method.name.into())
             .field(Column::new("order"), |listed| listed.linted.order.nominal.into())
+            .field(Column::new("general_order").in_words("general"), |listed| {
+                listed.linted.general.as_ref().ok().map(|orders| orders.general.nominal).into()
+            })
+            .field(Column::new("nystrom_order").in_words("Nystrom"), |listed| {
+                listed.linted.general.as_ref().ok().map(|orders| orders.nystrom.nominal).into()
+            })
             .field(Column::new("evaluations").in_words("cost"), |listed| listed.linted.cost.total().into())
             .field(Column::new("palindrome").left(), |listed| listed.linted.word.asymmetry().is_none().into())
             .field(
@@ -92,6 +98,8 @@ impl Question for Methods {
             );
         let lines = [
             format!("{} integrators; kickdrift word --method NAME shows one in full", all.len()),
+            "order on oscillators; general: on all problems; Nystrom: where the kinetic energy is quadratic"
+                .into(),
             "two forces: omega1 h below which they are stable at lambda2/lambda1 = 1/16 (periods 1:4)".into(),
             "free: no unstable step there before the slow force's own limit omega2 h = 2".into(),
         ];
@@ -100,6 +108,8 @@ impl Question for Methods {
             &[
                 "name",
                 "order",
+                "general_order",
+                "nystrom_order",
                 "evaluations",
                 "palindrome",
                 "edge",

@@ -5,7 +5,9 @@ use num_traits::Zero;
 use number::error::{Error, Result};
 use number::rational::from_f64_exact;
 use number::{Ball, Laurent, Radical, Rational, Real, Sign};
-use words::{At, Cost, Edge, Enclosed, Interval, Order, Piece, Shape, Stability};
+use words::{
+    At, Cost, Edge, Enclosed, GeneralOrder, Interval, NoGeneralOrder, Order, Piece, Shape, Stability,
+};
 
 /// The bits of what is enclosed.
 pub(super) const BITS: u32 = 96;
@@ -16,6 +18,8 @@ pub struct Linted {
     pub word: words::Word,
     pub sums: Vec<(&'static str, Radical)>,
     pub order: Order,
+    /// The orders on all problems, or why there is none.
+    pub general: std::result::Result<GeneralOrder, NoGeneralOrder>,
     pub cost: Cost,
     /// Λ2/Λ1; 0 for one force. `None` where the word names forces and the stiffnesses are not given.
     pub rho: Option<Rational>,

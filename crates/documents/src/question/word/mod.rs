@@ -75,9 +75,9 @@ impl Question for Word {
         } else if s.is_some() || range.is_some() {
             return Err(Error::missing("lambda1", "the word names two forces: give both stiffnesses"));
         }
-        let order = word.order();
+        let (order, general) = (word.order(), word.general_order());
         let (sums, cost) = (word.sums(), word.cost());
-        Ok(Linted { word, sums, order, cost, rho, stability, pieces, range, at: found })
+        Ok(Linted { word, sums, order, general, cost, rho, stability, pieces, range, at: found })
     }
 
     fn show(&self, answer: &Linted) -> Document {

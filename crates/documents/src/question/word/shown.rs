@@ -7,7 +7,7 @@ use crate::report::record::Record;
 use crate::report::table::{Cell, Column, Table};
 use num_traits::Zero;
 use number::{Ball, Laurent, Radical, Rational, Real};
-use words::{At, Edge, MOST_ORDER, Order};
+use words::{At, Edge, ErrorTerm, FormalOrder, GeneralOrder, MOST_ORDER, Order};
 
 /// A name, and what is said of it.
 type Line = (&'static str, String);
@@ -77,6 +77,7 @@ impl Linted {
         };
         let order = format!("{least}{order} on oscillators{friction}{rounded}");
         let mut lines = vec![("consistent", consistent), ("palindrome", palindrome), ("order", order)];
+        lines.extend(self.on_all_problems());
         for (name, term) in [("frequency", &self.order.frequency), ("impedance", &self.order.impedance)] {
             let Some((k, c)) = term else { continue };
             let text = shown(c);
@@ -86,6 +87,36 @@ impl Linted {
                 None => format!("+ {text}"),
             };
             lines.push((name, format!("omega (1 {term} (omega h)^{k} + ...)")));
+        }
+        lines
+    }
+
+    /// The orders where forces are not linear, with the leading errors.
+    fn on_all_problems(&self) -> Vec<Line> {
+        let GeneralOrder { general, nystrom, most } = match &self.general {
+            Ok(orders) => orders,
+            Err(reason) => return vec![("general", format!("no order on all problems is known: {reason}"))],
+        };
+        let text = |order: &FormalOrder, on: &str| {
+            let least = if order.order == *most { "at least " } else { "" };
+            let rounded = if order.nominal > order.order {
+                format!(
+                    "; {} but for {}, as rounded coefficients have it",
+                    order.nominal,
+                    commutators(&order.error, 1)
+                )
+            } else {
+                String::new()
+            };
+            format!("{least}{} {on}{rounded}", order.order)
+        };
+        let mut lines = vec![("general", text(general, "on all problems"))];
+        if (nystrom.order, nystrom.nominal) != (general.order, general.nominal) {
+            lines.push(("Nystrom", text(nystrom, "where the kinetic energy is quadratic")));
+        }
+        if !nystrom.nominal_error.is_empty() {
+            let letters = if self.word.names_forces() { "kicks B1, B2" } else { "kicks B" };
+            lines.push(("error", format!("{}; drifts A, {letters}", commutators(&nystrom.nominal_error, 3))));
         }
         lines
     }
@@ -208,6 +239,15 @@ fn shown(x: &Radical) -> String {
     if text.len() <= SHORT { text } else { format!("{:.6e}", x.enclosure(64).mid_f64()) }
 }
 
+/// The first terms of an error, and how many more there are.
+fn commutators(terms: &[ErrorTerm], most: usize) -> String {
+    let term = |term: &ErrorTerm| format!("{} {}", shown(&term.coefficient), term.commutator);
+    let shown: Vec<String> = terms.iter().take(most).map(term).collect();
+    let more = terms.len().saturating_sub(most);
+    let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+    format!("{}{more}", shown.join(" + ").replace("+ -", "- "))
+}
+
 /// A sum that should be 1: what it lacks, where that is little.
 fn beside_one(sum: &Radical) -> String {
     const LITTLE: f64 = 1e-5;
@@ -260,6 +300,23 @@ pub(super) fn record(question: &Word) -> Record<'_, Linted> {
         })
         .json("order", |linted| linted.order.order.into())
         .json("nominal_order", |linted| linted.order.nominal.into());
+    type OfOrder = fn(&GeneralOrder) -> &FormalOrder;
+    let orders: [([&'static str; 4], OfOrder); 2] = [
+        (["general_order", "nominal_general_order", "general_error", "general_rounding"], |all| &all.general),
+        (["nystrom_order", "nominal_nystrom_order", "nystrom_error", "nystrom_rounding"], |all| &all.nystrom),
+    ];
+    for ([order, nominal, error, rounding], which) in orders {
+        let of = move |linted: Of| linted.general.as_ref().ok().map(which).cloned();
+        let terms = |terms: &[ErrorTerm]| Cell::Text(commutators(terms, usize::MAX));
+        record = record
+            .json(order, move |linted| of(linted).map(|found| found.order).into())
+            .json(nominal, move |linted| of(linted).map(|found| found.nominal).into())
+            .json(error, move |linted| of(linted).map_or(Cell::Missing, |found| terms(&found.nominal_error)))
+            .json(rounding, move |linted| {
+                let rounded = of(linted).filter(|found| found.nominal > found.order);
+                rounded.map_or(Cell::Missing, |found| terms(&found.error))
+            });
+    }
     for (i, name) in ["A", "B", "C", "D"].into_iter().enumerate() {
         record = record.json(format!("error.{name}"), move |linted| in_rho(&linted.order.error[i]));
     }
