@@ -106,7 +106,33 @@ impl Outer {
     }
 }
 
+/// Two levels at the ratio of this outer step's to its inner ones.
+#[derive(Clone, Copy, Debug)]
+pub struct AtRatio<'a> {
+    pub(super) kernel: &'a Kernel,
+    outer: Outer,
+}
+
+impl AtRatio<'_> {
+    pub(super) fn inner_steps(&self) -> u64 {
+        self.outer.inner_steps
+    }
+
+    /// That outer step itself, or another one of as many inner ones.
+    ///
+    /// # Errors
+    /// As [`Outer::new`].
+    pub(super) fn outer(&self, step: f64) -> Result<Outer> {
+        if step == self.outer.step { Ok(self.outer) } else { Outer::new(step, self.outer.inner_steps) }
+    }
+}
+
 impl Kernel {
+    /// These levels, searched over all outer steps of as many inner ones as there are in this one.
+    pub fn at(&self, outer: &Outer) -> AtRatio<'_> {
+        AtRatio { kernel: self, outer: *outer }
+    }
+
     /// One eigendecomposition and four products, or as many small ones as the fast stiffness has blocks:
     /// molecules that no bond joins, as long as no rigid motion of all of them was projected out.
     ///
