@@ -9,10 +9,10 @@
 use faer::Mat;
 
 use super::half::Half;
-use super::interval::Interval;
 use super::kernel::{Kernel, Outer};
 use super::method::Method;
 use crate::signs::inertia::is_definite;
+use number::Interval;
 
 /// Room for the roundings of a factor.
 const ROOM: f64 = 1e-12;

@@ -46,7 +46,7 @@ impl Kernel {
         let (halves, factor) = (self.halves(outer), outer.half_kick());
         let (slow, _) = self.filtered(outer, [0.0; 2]);
         let entry = |i: usize, j: usize| {
-            let [b, c, d] = [halves[i].b, halves[i].c, halves[i].d].map(|interval| interval.mid());
+            let [b, c, d] = [halves[i].b, halves[i].c, halves[i].d].map(|interval| interval.middle());
             b * ((if i == j { c } else { 0.0 }) - d * factor * slow[(i, j)])
         };
         let period = Mat::from_fn(self.size(), self.size(), entry);

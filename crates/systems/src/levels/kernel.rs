@@ -8,13 +8,13 @@ use num_traits::ToPrimitive;
 
 use super::basis::Basis;
 use super::half::Half;
-use super::interval::Interval;
 use super::method::Method;
 use super::rigid::{Hessians, halved};
 use crate::half::norm;
 use crate::signs::inertia::{is_definite, spectral_norm};
 use crate::verdict::limits::SIDE_BY_SIDE;
 use crate::verdict::measured::Removed;
+use number::Interval;
 use number::error::{Error, Result};
 use number::parallel::both;
 use number::rational::to_f64;
@@ -221,10 +221,10 @@ impl Kernel {
         let phi = |x: &f64| self.method.filter(Interval::point(outer.inner_square * x), p);
         let phi: Vec<Interval> = self.values.iter().map(phi).collect();
         let [.., slope] = self.method.slopes(p, self.below(outer, fast));
-        let off = phi.iter().map(|interval| interval.radius()).fold(0.0, f64::max)
-            + slope * self.moved(outer, fast);
-        let largest = phi.iter().map(|interval| interval.mid().abs()).fold(0.0, f64::max) + off;
-        let kicks = Mat::from_fn(m, m, |i, j| phi[i].mid() * self.slow[(i, j)] * phi[j].mid());
+        let off =
+            phi.iter().map(|interval| interval.error()).fold(0.0, f64::max) + slope * self.moved(outer, fast);
+        let largest = phi.iter().map(|interval| interval.middle().abs()).fold(0.0, f64::max) + off;
+        let kicks = Mat::from_fn(m, m, |i, j| phi[i].middle() * self.slow[(i, j)] * phi[j].middle());
         // Two roundings an entry.
         let rounding = 3.0 * U * largest * largest * norm::frobenius(&self.slow);
         (Cow::Owned(kicks), 1.01 * (2.0 * off * largest * size + largest * largest * slow + rounding))

@@ -35,7 +35,7 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `half`, `interval` | the fast half period of one mode, in intervals |
+//! | `half` | the fast half period of one mode, in intervals |
 //! | `method` | that of other integrators, as exact flows with filters: the same machinery serves them all |
 //! | `rigid`, `apart` | rigid motions projected out, and which are |
 //! | `basis` | eigenvalues and eigenvectors, block by block |
@@ -68,7 +68,6 @@ mod counts;
 mod damped;
 mod growth;
 mod half;
-mod interval;
 mod intervals;
 mod kernel;
 mod method;
