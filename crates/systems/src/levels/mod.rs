@@ -52,7 +52,7 @@
 //! | `damped` | friction: the spectral radius of the period, proven |
 //! | `paths` | the action itself and the full period: another route, for rechecks |
 //! | `step` | one step of other methods, the same way |
-//! | `search` | edges of what is proven, for both kinds of levels |
+//! | `search` | edges of what is proven: `Search` over the outer step, for both kinds of levels |
 //! | `source` | both kinds of levels behind one face |
 //! | `answer` | the verdict at one outer step |
 //! | `intervals` | the verdicts on a range of outer steps |
