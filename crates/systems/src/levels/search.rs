@@ -76,6 +76,21 @@ pub(super) fn with_first(
     Ok(merged(known.into_iter().chain(rest)))
 }
 
+/// The verdict at one scheme.
+#[derive(Clone, Debug)]
+pub struct Decided {
+    /// The verdict that is proven for all stiffnesses within the accuracy.
+    pub holds: Holds,
+    /// Whether that is stable, and so for all smaller steps.
+    pub is_in_first_region: bool,
+    /// The largest ε for which the verdict on the stiffnesses given stands; `None` where none is proven.
+    pub margin: Option<f64>,
+    /// Growth, rounded; 0 where nothing grows, `None` where that is not decided.
+    pub rate: Option<f64>,
+    /// Real and imaginary part of the fastest growing shape, mass-weighted.
+    pub growing: Option<[Vec<f64>; 2]>,
+}
+
 /// Levels at fixed ratios of their steps, over the outer step: what is proven and found at one, and the
 /// searches that are made of it.
 pub trait Search {

@@ -8,10 +8,10 @@ use faer::Mat;
 use super::growth::Growing;
 use super::kernel::{AtRatio, Kernel, Outer, highest_frequency};
 use super::nested::Nested;
-use super::search::{Search, bracket_below};
+use super::search::{Decided, Search, bracket_below};
 use crate::friction::Damping;
 use crate::verdict::analysis::{Analysis, Instability};
-use crate::verdict::measured::{Holds, Removed};
+use crate::verdict::measured::Removed;
 use number::Rational;
 use number::error::{Error, Result};
 use number::rational::to_f64;
@@ -93,21 +93,6 @@ pub trait Source: Debug + Send + Sync {
     fn kernel(&self) -> Option<&Kernel> {
         None
     }
-}
-
-/// The verdict at one scheme.
-#[derive(Clone, Debug)]
-pub struct Decided {
-    /// The verdict that is proven for all stiffnesses within the accuracy.
-    pub holds: Holds,
-    /// Whether that is stable, and so for all smaller steps.
-    pub is_in_first_region: bool,
-    /// The largest ε for which the verdict on the stiffnesses given stands; `None` where none is proven.
-    pub margin: Option<f64>,
-    /// Growth, rounded; 0 where nothing grows, `None` where that is not decided.
-    pub rate: Option<f64>,
-    /// Real and imaginary part of the fastest growing shape, mass-weighted.
-    pub growing: Option<[Vec<f64>; 2]>,
 }
 
 fn outer_of(steps: &[Rational]) -> Result<Outer> {
@@ -237,16 +222,7 @@ impl Source for Nested {
     }
 
     fn decide(&self, steps: &[Rational], accuracy: f64) -> Result<Decided> {
-        let (at, outer) = (self.at(steps)?, outermost(steps));
-        let at_step = at.decide(outer, accuracy);
-        let margin = (at_step.rate == Some(0.0)).then(|| at.margin(outer)).flatten();
-        Ok(Decided {
-            holds: at_step.holds,
-            is_in_first_region: at_step.is_in_first_region,
-            margin,
-            rate: at_step.rate,
-            growing: at_step.growing,
-        })
+        Ok(self.at(steps)?.decide(outermost(steps), accuracy))
     }
 }
 

@@ -33,27 +33,13 @@ pub use levels::{Nested, Steps};
 
 use faer::Mat;
 
-use super::search::{EDGE, Search, largest, with_first};
+use super::search::{Decided, EDGE, Search, largest, with_first};
 use crate::signs;
 use crate::spectrum::discs::Spectrum;
 use crate::vary::stretches::Stretch;
 use crate::verdict::measured::Holds;
 use number::bisected;
 use number::error::Result;
-
-/// What is proven and found at one outer step, all steps in their ratios.
-#[derive(Clone, Debug)]
-pub struct AtStep {
-    /// What is proven of all stiffnesses within the accuracy.
-    pub holds: Holds,
-    /// Whether that is so of every smaller step, too.
-    pub is_in_first_region: bool,
-    /// max ln |λ|/T, rounded: 0 where the stiffnesses given are proven stable; `None` where these are not
-    /// decided.
-    pub rate: Option<f64>,
-    /// Real and imaginary part of what grows fastest, in the mass-weighted coordinates given.
-    pub growing: Option<[Vec<f64>; 2]>,
-}
 
 /// Room for the roundings of a factor.
 const ROOM: f64 = 1e-12;
@@ -115,17 +101,17 @@ impl Steps<'_> {
     }
 
     /// The verdict, and what grows.
-    pub fn decide(&self, step: f64, accuracy: f64) -> AtStep {
+    pub fn decide(&self, step: f64, accuracy: f64) -> Decided {
         let is_in_first_region = self.is_in_first_region(step, accuracy);
         let holds = if is_in_first_region { Holds::Stable } else { self.verdict_within(step, accuracy) };
         let given = if holds == Holds::Undecided { self.verdict_within(step, 0.0) } else { holds };
-        let found = AtStep { holds, is_in_first_region, rate: None, growing: None };
+        let found = Decided { holds, is_in_first_region, margin: None, rate: None, growing: None };
         match given {
-            Holds::Stable => AtStep { rate: Some(0.0), ..found },
+            Holds::Stable => Decided { margin: self.margin(step), rate: Some(0.0), ..found },
             Holds::Undecided => found,
             Holds::Unstable => {
                 let (rate, growing) = self.fastest(step).unzip();
-                AtStep { rate, growing, ..found }
+                Decided { rate, growing, ..found }
             }
         }
     }
