@@ -33,7 +33,7 @@ struct Turning {
 impl Steps<'_> {
     /// The period with friction γ per unit time, v → exp(−γ t) v in the middle of every drift, and a bound on
     /// its error.
-    pub(super) fn damped_of(&self, step: f64, friction: f64) -> Option<(Mat<f64>, f64)> {
+    pub(super) fn whole_damped_period(&self, step: f64, friction: f64) -> Option<(Mat<f64>, f64)> {
         let ticks = step / self.outer * to_f64(self.schedule.tick());
         let decay = from_f64_exact(friction * ticks).filter(|value| *value >= Rational::default())?;
         let turning = self.turning(step);

@@ -183,6 +183,6 @@ impl Search for Steps<'_> {
     }
 
     fn damped_period(&self, step: f64, friction: f64) -> Option<(Mat<f64>, f64)> {
-        self.damped_of(step, friction)
+        self.whole_damped_period(step, friction)
     }
 }
