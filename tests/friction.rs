@@ -313,7 +313,7 @@ fn rigid_motions_are_set_apart_under_friction() {
 #[test]
 fn measured_stiffnesses_are_masked_from_where_it_is_told() {
     use kickdrift::scene::SystemScene;
-    use kickdrift::system::levels::Outer;
+    use kickdrift::system::levels::{Outer, Search};
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("data/scenes");
     let text = std::fs::read_to_string(folder.join("water4.json")).unwrap().replace("1/250", "9/2000");
     let scene =
@@ -329,7 +329,7 @@ fn measured_stiffnesses_are_masked_from_where_it_is_told() {
     assert!(lo < hi && hi < 1.02 * lo && (lo / (2.0 * growth.0) - 1.0).abs() < 0.2, "{lo} {hi} {growth:?}");
     let levels = scene.model().measured_levels().unwrap();
     let (kernel, outer) = (levels.source.kernel().unwrap(), Outer::new(0.0045, 9).unwrap());
-    let damping = |x: f64| kernel.damping(&outer, x);
+    let damping = |x: f64| kernel.at(&outer).damping(outer.step(), x);
     assert_eq!([damping(0.99 * lo), damping(1.01 * hi)], [Some(Damping::Growing), Some(Damping::Damped)]);
 }
 
@@ -425,7 +425,7 @@ mod levels {
     use kickdrift::system::friction::damped_system;
     use kickdrift::system::friction::{Damping, Mask};
     use kickdrift::system::levels::Hessians;
-    use kickdrift::system::levels::{Kernel, Outer};
+    use kickdrift::system::levels::{Kernel, Outer, Search};
     use kickdrift::system::{ManyClocks, Potential, Symmetric, System};
     use nalgebra::DMatrix;
 
@@ -448,11 +448,11 @@ mod levels {
                 let strengths = vec![exact(fast), exact(slow) * whole(p)];
                 let clocks =
                     ManyClocks::new(&[whole(1), whole(p)], &[ratio(0, 1), ratio(0, 1)], strengths).unwrap();
-                let mask = kernel.masking_friction(&outer).unwrap_or(0.1);
+                let mask = kernel.at(&outer).masking_friction(outer.step()).unwrap_or(0.1);
                 for off in [-0.5, -1e-3, -1e-10, 0.0, 1e-10, 1e-3, 0.5] {
                     let friction = mask * (1.0 + off);
                     let truth = damped(&clocks, &exact(friction)).damping;
-                    let found = kernel.damping(&outer, friction);
+                    let found = kernel.at(&outer).damping(outer.step(), friction);
                     assert!(
                         found.is_none() || truth.is_none() || found == truth,
                         "{p} {turn} {off}: {found:?} {truth:?}"

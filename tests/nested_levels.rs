@@ -4,7 +4,7 @@
 use kickdrift::number::Rational;
 use kickdrift::number::rational::{from_f64_exact, ratio};
 use kickdrift::system::friction::Damping;
-use kickdrift::system::levels::{Hessians, Kernel, Nested, Outer, Source};
+use kickdrift::system::levels::{Hessians, Kernel, Nested, Outer, Search, Source};
 use kickdrift::system::{Holds, Limits, Potential, Symmetric, System, decide_system};
 use nalgebra::DMatrix;
 

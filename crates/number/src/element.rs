@@ -135,7 +135,7 @@ impl<F: NumberField> Element<F> {
     }
 }
 
-ring_operators!([F: NumberField] Element<F>);
+ring_operators!([F: NumberField] Element<F>, |x| Element { field: None, polynomial: Polynomial::constant(x.clone()) });
 
 impl<F: NumberField> PartialEq for Element<F> {
     /// Equality of the real numbers; **panics** on irrational numbers of two different fields.
@@ -158,24 +158,6 @@ impl<F: NumberField> Zero for Element<F> {
 impl<F: NumberField> One for Element<F> {
     fn one() -> Self {
         Element::from_rational(&Rational::one())
-    }
-}
-
-impl<F: NumberField> Ring for Element<F> {
-    fn from_rational(x: &Rational) -> Self {
-        Element { field: None, polynomial: Polynomial::constant(x.clone()) }
-    }
-
-    fn add_product(&mut self, a: &Self, b: &Self) {
-        *self += a * b;
-    }
-
-    fn sub_product(&mut self, a: &Self, b: &Self) {
-        *self -= a * b;
-    }
-
-    fn product(a: &Self, b: &Self) -> Self {
-        a * b
     }
 }
 

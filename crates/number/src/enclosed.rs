@@ -3,7 +3,7 @@
 use num_traits::{One, Zero};
 
 use super::operators::ring_operators;
-use super::{Ball, Rational, Ring, Sign};
+use super::{Ball, Sign};
 
 /// A ball whose operations round outward to `BITS` bits: each contains the exact result.
 #[derive(Clone, Debug)]
@@ -32,7 +32,7 @@ impl<const BITS: u32> Enclosed<BITS> {
     }
 }
 
-ring_operators!([const BITS: u32] Enclosed<BITS>);
+ring_operators!([const BITS: u32] Enclosed<BITS>, |x| Enclosed(Ball::from_rational(x, BITS)));
 
 impl<const BITS: u32> PartialEq for Enclosed<BITS> {
     /// Both are one number, and the same.
@@ -54,23 +54,5 @@ impl<const BITS: u32> Zero for Enclosed<BITS> {
 impl<const BITS: u32> One for Enclosed<BITS> {
     fn one() -> Self {
         Enclosed(Ball::one())
-    }
-}
-
-impl<const BITS: u32> Ring for Enclosed<BITS> {
-    fn from_rational(x: &Rational) -> Self {
-        Enclosed(Ball::from_rational(x, BITS))
-    }
-
-    fn add_product(&mut self, a: &Self, b: &Self) {
-        *self += a.times(b);
-    }
-
-    fn sub_product(&mut self, a: &Self, b: &Self) {
-        *self -= a.times(b);
-    }
-
-    fn product(a: &Self, b: &Self) -> Self {
-        a.times(b)
     }
 }

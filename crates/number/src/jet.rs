@@ -3,7 +3,7 @@
 use num_traits::{One, Zero};
 
 use super::operators::ring_operators;
-use super::{Ball, Rational, Ring, Sign};
+use super::{Ball, Sign};
 
 /// f and f' of one variable, each in a ball of `BITS` bits. Over an interval of the variable both contain
 /// every value there.
@@ -47,7 +47,7 @@ impl<const BITS: u32> Jet<BITS> {
     }
 }
 
-ring_operators!([const BITS: u32] Jet<BITS>);
+ring_operators!([const BITS: u32] Jet<BITS>, |x| Jet::constant(Ball::from_rational(x, BITS)));
 
 impl<const BITS: u32> PartialEq for Jet<BITS> {
     /// Both are one number with one slope, and the same.
@@ -70,23 +70,5 @@ impl<const BITS: u32> Zero for Jet<BITS> {
 impl<const BITS: u32> One for Jet<BITS> {
     fn one() -> Self {
         Jet::constant(Ball::one())
-    }
-}
-
-impl<const BITS: u32> Ring for Jet<BITS> {
-    fn from_rational(x: &Rational) -> Self {
-        Jet::constant(Ball::from_rational(x, BITS))
-    }
-
-    fn add_product(&mut self, a: &Self, b: &Self) {
-        *self += a.times(b);
-    }
-
-    fn sub_product(&mut self, a: &Self, b: &Self) {
-        *self -= a.times(b);
-    }
-
-    fn product(a: &Self, b: &Self) -> Self {
-        a.times(b)
     }
 }

@@ -19,7 +19,7 @@ use std::collections::BTreeMap;
 use num_traits::{One, Zero};
 
 use super::operators::ring_operators;
-use super::{ExactSign, Rational, Ring, Sign};
+use super::{ExactSign, Rational, Sign};
 
 /// An element Σ c_k π^k of ℚ[π, 1/π].
 ///
@@ -162,7 +162,7 @@ impl Laurent {
     }
 }
 
-ring_operators!([] Laurent);
+ring_operators!([] Laurent, |x| Laurent::from_rational(x.clone()));
 
 impl Zero for Laurent {
     fn zero() -> Laurent {
@@ -177,24 +177,6 @@ impl Zero for Laurent {
 impl One for Laurent {
     fn one() -> Laurent {
         Laurent::pi_power(0)
-    }
-}
-
-impl Ring for Laurent {
-    fn from_rational(x: &Rational) -> Laurent {
-        Laurent::from_rational(x.clone())
-    }
-
-    fn add_product(&mut self, a: &Self, b: &Self) {
-        *self += a * b;
-    }
-
-    fn sub_product(&mut self, a: &Self, b: &Self) {
-        *self -= a * b;
-    }
-
-    fn product(a: &Self, b: &Self) -> Self {
-        a * b
     }
 }
 

@@ -1,9 +1,28 @@
-//! The operators of a ring type, from four functions on references.
+//! The operators of a ring type, from five functions on references.
 
 /// Implements `+ - *` on values and references, `+= -= *=` and unary minus for a type that has
-/// `sum`, `difference`, `times` and `negated`, each taking references.
+/// `sum`, `difference`, `times` and `negated`, each taking references; and makes it a [`Ring`](crate::Ring) in
+/// which `$from` is the rational `$x`.
 macro_rules! ring_operators {
-    ([$($generics:tt)*] $type:ty) => {
+    ([$($generics:tt)*] $type:ty, |$x:ident| $from:expr) => {
+        impl<$($generics)*> $crate::Ring for $type {
+            fn from_rational($x: &$crate::Rational) -> Self {
+                $from
+            }
+
+            fn add_product(&mut self, a: &Self, b: &Self) {
+                *self += a.times(b);
+            }
+
+            fn sub_product(&mut self, a: &Self, b: &Self) {
+                *self -= a.times(b);
+            }
+
+            fn product(a: &Self, b: &Self) -> Self {
+                a.times(b)
+            }
+        }
+
         ring_operators!(@binary [$($generics)*] $type, Add, add, sum, AddAssign, add_assign);
         ring_operators!(@binary [$($generics)*] $type, Sub, sub, difference, SubAssign, sub_assign);
         ring_operators!(@binary [$($generics)*] $type, Mul, mul, times, MulAssign, mul_assign);

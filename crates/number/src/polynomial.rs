@@ -156,7 +156,7 @@ impl<R: Ring> Polynomial<R> {
     }
 }
 
-ring_operators!([R: Ring] Polynomial<R>);
+ring_operators!([R: Ring] Polynomial<R>, |x| Polynomial::constant(R::from_rational(x)));
 
 impl<R: Ring> Zero for Polynomial<R> {
     fn zero() -> Self {
@@ -171,23 +171,5 @@ impl<R: Ring> Zero for Polynomial<R> {
 impl<R: Ring> One for Polynomial<R> {
     fn one() -> Self {
         Polynomial::constant(R::one())
-    }
-}
-
-impl<R: Ring> Ring for Polynomial<R> {
-    fn from_rational(x: &Rational) -> Self {
-        Polynomial::constant(R::from_rational(x))
-    }
-
-    fn add_product(&mut self, a: &Self, b: &Self) {
-        *self += a.times(b);
-    }
-
-    fn sub_product(&mut self, a: &Self, b: &Self) {
-        *self -= a.times(b);
-    }
-
-    fn product(a: &Self, b: &Self) -> Self {
-        a.times(b)
     }
 }

@@ -22,18 +22,10 @@ pub trait Ring:
     fn from_rational(x: &Rational) -> Self;
 
     /// `self += a b`.
-    fn add_product(&mut self, a: &Self, b: &Self) {
-        let mut product = a.clone();
-        product *= b.clone();
-        *self += product;
-    }
+    fn add_product(&mut self, a: &Self, b: &Self);
 
     /// `self -= a b`.
-    fn sub_product(&mut self, a: &Self, b: &Self) {
-        let mut product = a.clone();
-        product *= b.clone();
-        *self -= product;
-    }
+    fn sub_product(&mut self, a: &Self, b: &Self);
 
     /// `a b`.
     fn product(a: &Self, b: &Self) -> Self {

@@ -1,8 +1,8 @@
 //! A cone of directions that two return maps take into its interior (proofs/BANDS.md, `band_growth` in
 //! proofs/Returns.v).
 
-use super::UP;
 use super::family::{Family, Matrix};
+use crate::orbit::returns::UP;
 
 /// Two unit vectors between which the directions of the cone lie.
 #[derive(Clone, Copy, Debug)]

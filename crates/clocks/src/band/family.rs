@@ -14,7 +14,7 @@
 use std::ops::Range;
 
 use super::taylor::Taylor;
-use super::{FLOOR, UP};
+use crate::orbit::returns::{FLOOR, UP, norm};
 use number::vector::instructions::{Instructions, Task};
 
 /// [[a, b], [c, d]] in a row.
@@ -56,14 +56,6 @@ pub enum Cut {
     Last,
     /// The part before it: t = −1 + (1 − r) (1 + t').
     Before,
-}
-
-/// The spectral norm: (|(a + d, b − c)| + |(a − d, b + c)|)/2.
-#[inline(always)]
-pub fn norm(m: &Matrix) -> f64 {
-    let [a, b, c, d] = *m;
-    let length = |x: f64, y: f64| (x * x + y * y).sqrt();
-    0.5 * (length(a + d, b - c) + length(a - d, b + c)) * UP
 }
 
 impl Family {

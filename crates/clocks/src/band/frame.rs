@@ -12,9 +12,9 @@
 
 use std::f64::consts::PI;
 
-use super::UP;
 use super::family::Family;
 use super::taylor::Taylor;
+use crate::orbit::returns::UP;
 use number::U;
 
 /// Terms of a sine and a cosine, and what may be left out of them.

@@ -54,9 +54,3 @@ mod walk;
 pub use ratios::unstable_ratios;
 pub use search::{Bands, Window};
 pub use sector::{Line, Ratio, Sector};
-
-/// Some hundreds of roundings of positive numbers.
-const UP: f64 = 1.0 + 1e-12;
-
-/// More than any number of underflows adds.
-const FLOOR: f64 = 1e-150;

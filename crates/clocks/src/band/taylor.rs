@@ -1,7 +1,7 @@
 //! Numbers that depend on the ratio of the steps: Taylor models of the second order (proofs/BANDS.md).
 
 use super::trig::{TRIG, arcsine, sine_cosine};
-use super::{FLOOR, UP};
+use crate::orbit::returns::{FLOOR, UP};
 use number::U;
 
 /// c + d u + q u² + E(u) for |u| ≤ 1, |E| ≤ ε.

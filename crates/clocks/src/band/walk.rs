@@ -1,11 +1,11 @@
 //! Euclid's algorithm on a range of ratios: both return maps of each level, until a common cone proves all of
 //! it unstable.
 
-use super::UP;
 use super::cone::Cone;
 use super::family::{Cut, Family};
 use super::frame::Frame;
 use super::taylor::Taylor;
+use crate::orbit::returns::UP;
 use number::U;
 
 /// The most levels of one path.

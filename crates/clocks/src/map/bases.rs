@@ -6,7 +6,7 @@ use num_bigint::BigInt;
 
 use super::grid::Grid;
 use crate::orbit::floquet::{Base, Pair, ordinary};
-use crate::orbit::kernel::{Constants, InLanes};
+use crate::orbit::lanes::{Constants, InLanes};
 use number::vector::{double_of, each, integer_of};
 use number::{Ball, Laurent, Real, Ring};
 
@@ -200,7 +200,7 @@ impl InLanes for OnBase<'_> {
 mod tests {
     use super::{OnBase, quotient};
     use crate::orbit::floquet::Base;
-    use crate::orbit::kernel::{Constants, InLanes};
+    use crate::orbit::lanes::{Constants, InLanes};
     use num_integer::gcd;
     use number::{Ball, rational::ratio};
     use proptest::prelude::*;

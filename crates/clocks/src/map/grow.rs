@@ -2,7 +2,6 @@
 
 use super::band::Band;
 use super::bases::OnBase;
-use super::enclosure::Enclosure;
 use super::growth::ln_multiplier;
 use super::products::{Growing, Products};
 use super::work::{LANES, MOST_TOGETHER, Work};
@@ -12,6 +11,7 @@ use crate::orbit::{plain, returns};
 use crate::propagator::TwoClocks;
 use crate::schedule::Schedule;
 use crate::verdict::{Kind, Tier, Verdict, growth, label};
+use number::Interval;
 use number::Laurent;
 use number::error::Result;
 use number::vector::instructions::Instructions;
@@ -55,7 +55,7 @@ impl Work<'_> {
                 continue;
             }
             let grown = growth(&clocks, verdict(n), self.limits())?;
-            let ln = grown.ln_multiplier.filter(|_| products.growth).map(|ln| Enclosure::of(&ln));
+            let ln = grown.ln_multiplier.filter(|_| products.growth).map(|ln| Interval::of(&ln));
             let label = grown.label.filter(|_| products.label);
             growing.push(Growing { position: n as u32, label, ln_multiplier: ln });
         }

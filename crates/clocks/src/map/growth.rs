@@ -11,8 +11,8 @@
 //! knows far better than their lengths: (1) is good up to the edge of a tongue. Where growth is strong, ρ is
 //! next to 1 and (2) is better, since d ln μ ≤ dz/z. Both bounds are at hand, and the smaller one is taken.
 
-use super::enclosure::Enclosure;
 use crate::orbit::filter::{End, Ends};
+use number::Interval;
 use number::U;
 
 /// Relative errors of factors are added up as long as their sum R is at most this: then products and
@@ -23,7 +23,7 @@ const LARGEST_ERROR_SUM: f64 = 1.0 / 300.0;
 const SECOND_ORDER: f64 = 1.01;
 
 /// ln μ of a hyperbolic pair, side 1 for Tr > 2 and −1 for Tr < −2; `None` where the bounds say too little.
-pub(super) fn ln_multiplier(ends: &Ends, side: i8) -> Option<Enclosure> {
+pub(super) fn ln_multiplier(ends: &Ends, side: i8) -> Option<Interval> {
     let (even, odd) = (&ends.even, &ends.odd);
     let ([a, c], [b, d]) = (components(even), components(odd));
     let rho =
@@ -48,7 +48,7 @@ fn components(end: &End) -> [f64; 2] {
 
 /// By (1), from ρ computed with three roundings out of components with the relative errors that add up to
 /// `error`.
-fn by_direction(rho: f64, error: f64) -> Option<Enclosure> {
+fn by_direction(rho: f64, error: f64) -> Option<Interval> {
     let r = rho.sqrt();
     // ρ is off by this; 6u for the roundings of ρ and of its root. NaN fails.
     let off = SECOND_ORDER * (error + 6.0 * U) * rho;
@@ -58,11 +58,11 @@ fn by_direction(rho: f64, error: f64) -> Option<Enclosure> {
     // d(2 artanh √ρ) = dρ / (√ρ (1 − ρ)).
     let error = SECOND_ORDER * off / (r * (1.0 - rho));
     let value = if r <= LARGEST { 2.0 * artanh(r) } else { ln((1.0 + r) / (1.0 - r), 0) };
-    Some(Enclosure::around(value, error + EVALUATION * value))
+    Some(Interval::around(value, error + EVALUATION * value))
 }
 
 /// By (2), from z 2^exponent, z rounded once, with the relative error `error`.
-fn by_length(z: f64, exponent: i64, error: f64) -> Option<Enclosure> {
+fn by_length(z: f64, exponent: i64, error: f64) -> Option<Interval> {
     // Below 1, (1) is the better one; a subnormal product has lost digits. NaN fails.
     let ln_z = ln(z, exponent);
     if !(error <= LARGEST_ERROR_SUM && z.is_normal() && ln_z >= 0.0) {
@@ -71,7 +71,7 @@ fn by_length(z: f64, exponent: i64, error: f64) -> Option<Enclosure> {
     // 1/z beside 1; nothing beside 50.
     let inverse = if ln_z > 50.0 { 0.0 } else { scaled(1.0 / z, -exponent) };
     let value = ln_z + 2.0 * ln(1.0 + (1.0 + inverse).sqrt(), 0);
-    Some(Enclosure::around(value, SECOND_ORDER * (error + 2.0 * U) + EVALUATION * value))
+    Some(Interval::around(value, SECOND_ORDER * (error + 2.0 * U) + EVALUATION * value))
 }
 
 /// The relative error of a logarithm, evaluated: [`ln`] is within 16u, its arguments (1 + r)/(1 − r) and

@@ -12,7 +12,6 @@
 mod band;
 mod bases;
 mod cost;
-mod enclosure;
 mod gcd;
 mod grid;
 mod grow;
@@ -27,8 +26,8 @@ mod store;
 mod work;
 
 pub use band::{Band, Counters};
-pub use enclosure::Enclosure;
 pub use grid::Grid;
+pub use number::Interval as Enclosure;
 pub use pairs::Pairs;
 pub use products::{Growing, Products};
 pub use resources::Resources;

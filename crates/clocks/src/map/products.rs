@@ -1,7 +1,7 @@
 //! Further results of a map for the pairs that grow.
 
-use super::enclosure::Enclosure;
 use crate::resonance::dominant_family;
+use number::Interval;
 use number::Ratio;
 
 /// The results that are asked for. Verdicts and tiers come always; nothing else is computed unasked.
@@ -27,7 +27,7 @@ pub struct Growing {
     /// m, where it was asked for.
     pub label: Option<u64>,
     /// ln μ, the growth over one synchronization period, where it was asked for.
-    pub ln_multiplier: Option<Enclosure>,
+    pub ln_multiplier: Option<Interval>,
 }
 
 impl Growing {
@@ -38,12 +38,12 @@ impl Growing {
 
     /// The growth rate per unit time: ln μ / T, T = p h1 the synchronization period, within 4u (u = 2^-53)
     /// relatively.
-    pub fn rate(&self, period: f64) -> Option<Enclosure> {
+    pub fn rate(&self, period: f64) -> Option<Interval> {
         Some(self.ln_multiplier?.over(period))
     }
 
     /// Slow steps until the amplitude has grown tenfold: ln 10 / (h2 · rate) = q ln 10 / ln μ.
-    pub fn steps_until_tenfold(&self, q: u64) -> Option<Enclosure> {
+    pub fn steps_until_tenfold(&self, q: u64) -> Option<Interval> {
         Some(self.ln_multiplier?.under(q as f64 * std::f64::consts::LN_10))
     }
 }

@@ -14,12 +14,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::band::{Band, Counters};
-use super::enclosure::Enclosure;
 use super::grid::Grid;
 use super::products::{Growing, Products};
 use super::shard::columns_of;
 use super::work::{LANES, MOST_TOGETHER};
 use crate::verdict::{Kind, Tier, Verdict};
+use number::Interval;
 use number::error::{Error, Result};
 use number::file;
 
@@ -125,7 +125,7 @@ fn grows_where_it_says(band: &Band, grid: &Grid, products: Products) -> bool {
         // sign.
         products.label && m <= ratio.p() + ratio.q() + 1 && m.is_multiple_of(2) == (verdict(n).side() > 0)
     };
-    let is_growth = |ln: &Enclosure| products.growth && 0.0 <= ln.lo && ln.lo <= ln.hi && ln.hi.is_finite();
+    let is_growth = |ln: &Interval| products.growth && 0.0 <= ln.lo && ln.lo <= ln.hi && ln.hi.is_finite();
     let is_found = |(found, n): (&Growing, usize)| {
         found.position as usize == n
             && found.label.is_none_or(|m| is_label(n, m))
@@ -186,7 +186,7 @@ fn decode(reader: &mut Reader, pairs: u64) -> Option<Band> {
     let mut found = Vec::new();
     for _ in 0..growing {
         let [position, label, lo, hi] = read_four(reader)?;
-        let ln = || Enclosure { lo: f64::from_bits(lo), hi: f64::from_bits(hi) };
+        let ln = || Interval { lo: f64::from_bits(lo), hi: f64::from_bits(hi) };
         let ln_multiplier = (lo != u64::MAX).then(ln);
         let position = u32::try_from(position).ok()?;
         found.push(Growing { position, label: label.checked_sub(1), ln_multiplier });

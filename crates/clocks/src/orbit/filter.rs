@@ -5,7 +5,8 @@
 
 use super::certificate::{Certificate, Certificates, Hardest};
 use super::floquet::{Floquet, Pair};
-use super::kernel::{InLanes, Lanes, Orbits, Watch};
+use super::kernel::Watch;
+use super::lanes::{InLanes, Lanes, Orbits};
 use super::winding;
 use crate::propagator::PartialSigns;
 use number::vector::each;

@@ -13,6 +13,7 @@ mod ends;
 pub mod filter;
 pub mod floquet;
 pub mod kernel;
+pub mod lanes;
 mod leap;
 pub mod plain;
 pub mod refine;

@@ -4,7 +4,7 @@
 //! without a branch, so that they cost a pair less than its updates do.
 
 use super::floquet::{LARGEST_MODULUS, LONGEST_QUICK, NEAR_LIMIT, Phase, TINY, shears, within_range};
-use super::kernel::{Constants, InLanes};
+use super::lanes::{Constants, InLanes};
 use number::Twofold;
 use number::vector::{each, largest};
 

@@ -27,9 +27,6 @@ pub struct Tongues {
     open: Openness,
 }
 
-/// Tongues that [`Tongues::iter`] computes side by side.
-const SIDE_BY_SIDE: u64 = 64;
-
 impl Tongues {
     /// The tongues of h2/h1 = p/q and ρ = L2/L1.
     ///
@@ -47,11 +44,6 @@ impl Tongues {
     /// The numerator of h2/h1.
     pub fn p(&self) -> u64 {
         self.ratio().p()
-    }
-
-    /// The denominator of h2/h1.
-    pub fn q(&self) -> u64 {
-        self.ratio().q()
     }
 
     /// ρ = L2/L1.
@@ -113,16 +105,6 @@ impl Tongues {
     /// As [`Tongues::gaps`].
     pub fn all(&self) -> Result<Vec<Gap>> {
         self.gaps(1, self.last())
-    }
-
-    /// All tongues in order of m, computed as they are asked for.
-    pub fn iter(&self) -> impl Iterator<Item = Result<Gap>> {
-        let last = self.last();
-        (1..=last).step_by(SIDE_BY_SIDE as usize).flat_map(move |from| {
-            let found = self.gaps(from, (from + SIDE_BY_SIDE - 1).min(last));
-            let (gaps, error) = found.map_or_else(|error| (vec![], Some(Err(error))), |gaps| (gaps, None));
-            gaps.into_iter().map(Ok).chain(error)
-        })
     }
 
     /// The tongues selected, in order of m.

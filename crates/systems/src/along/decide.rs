@@ -7,7 +7,7 @@ use nalgebra::DMatrix;
 
 use super::model::{Along, Rigid, beside};
 use super::scaled::{Scaled, frequency, power, scaled, scales};
-use crate::exact::decide::{MuCount, judged_blocks};
+use crate::exact::decide::{MuCount, allow_blocks, judged_blocks};
 use crate::half::float::FloatBlocks;
 use crate::half::norm;
 use crate::half::period::{Drifts, Propagated, Stiff, Stiffness, follow};
@@ -163,13 +163,8 @@ impl Along {
         }
         /// A double's digits over a power of two, and those of a step.
         const BITS: f64 = 192.0;
-        let (n, kicks) = (self.size() as f64, self.hessians.iter().map(Vec::len).sum::<usize>() as f64);
-        let words = 1.0 + kicks * BITS / 64.0;
-        let cost =
-            1.5 * kicks * n.powi(3) * words.powi(2) + n.powi(4) * words * 4.0 + n.powi(3) * words.powi(2);
-        limits.allow(cost.min(1e19) as u64, || {
-            format!("exact arithmetic on {}", degrees_of_freedom(self.size()))
-        })?;
+        let kicks = self.hessians.iter().map(Vec::len).sum::<usize>() as f64;
+        allow_blocks(self.size(), (kicks, BITS), limits)?;
         let exact = |x: f64| from_f64_exact(x).expect("finite, as it was read");
         let half = |starts_moving: bool| {
             let (one, zero) =

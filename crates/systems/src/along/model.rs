@@ -189,11 +189,6 @@ impl Along {
         self.masses.len()
     }
 
-    /// How well the Hessians are known, relative to the largest norm of each clock's; `None`: as they stand.
-    pub fn accuracy(&self) -> Option<f64> {
-        self.accuracy
-    }
-
     /// The columns of the rigid motions where the orbit starts.
     pub(super) fn motions(&self) -> Option<&Mat<f64>> {
         match &self.rigid {

@@ -188,6 +188,19 @@ fn judge(blocks: &IntegerBlocks) -> ExactVerdict {
     ExactVerdict { kind, roots }
 }
 
+/// That [`judged_blocks`] and the half period itself are within the limits, for n degrees of freedom and kicks
+/// whose entries have so many bits: numbers gain those of a kick's with each, and products of n of them.
+///
+/// # Errors
+/// A budget error.
+pub(crate) fn allow_blocks(n: usize, (kicks, bits): (f64, f64), limits: &Limits) -> Result<()> {
+    let (size, words) = (n as f64, 1.0 + kicks * bits / 64.0);
+    let cost = 1.5 * kicks * size.powi(3) * words.powi(2)
+        + size.powi(4) * words * 4.0
+        + size.powi(3) * words.powi(2);
+    limits.allow(cost.min(1e19) as u64, || format!("exact arithmetic on {}", degrees_of_freedom(n)))
+}
+
 /// The kind from S and the blocks A, B, C, D of the half period over ℚ.
 pub(crate) fn judged_blocks(product: &DMatrix<Rational>, blocks: [&DMatrix<Rational>; 4]) -> (Kind, MuCount) {
     let (product, d) = whole(product);

@@ -19,40 +19,40 @@ pub fn times(field: &PrimeField, a: &DMatrix<u64>, b: &DMatrix<u64>) -> DMatrix<
     })
 }
 
-/// The rank, by elimination.
-pub fn rank(field: &PrimeField, mut m: DMatrix<u64>) -> usize {
-    let mut rank = 0;
-    for column in 0..m.ncols() {
-        let Some(pivot) = (rank..m.nrows()).find(|&i| m[(i, column)] != 0) else { continue };
-        m.swap_rows(rank, pivot);
-        let inverse = field.invert(m[(rank, column)]);
-        for i in rank + 1..m.nrows() {
-            let factor = field.mul(m[(i, column)], inverse);
-            for j in column..m.ncols() {
-                m[(i, j)] = field.sub(m[(i, j)], field.mul(factor, m[(rank, j)]));
-            }
+/// Gauss's elimination in the first columns: the columns of the pivots, and their product with the sign of the
+/// exchanges. Pivots are 1 then, with zeros below them; above them, too, where it is `whole` (Jordan).
+fn eliminate(field: &PrimeField, m: &mut DMatrix<u64>, columns: usize, whole: bool) -> (Vec<usize>, u64) {
+    let (mut pivots, mut product) = (Vec::new(), field.of(1));
+    for column in 0..columns {
+        let row = pivots.len();
+        let Some(pivot) = (row..m.nrows()).find(|&i| m[(i, column)] != 0) else { continue };
+        if pivot != row {
+            m.swap_rows(row, pivot);
+            product = field.sub(0, product);
         }
-        rank += 1;
+        product = field.mul(product, m[(row, column)]);
+        let inverse = field.invert(m[(row, column)]);
+        (column..m.ncols()).for_each(|j| m[(row, j)] = field.mul(m[(row, j)], inverse));
+        for i in (if whole { 0 } else { row }..m.nrows()).filter(|&i| i != row) {
+            let factor = m[(i, column)];
+            (column..m.ncols())
+                .for_each(|j| m[(i, j)] = field.sub(m[(i, j)], field.mul(factor, m[(row, j)])));
+        }
+        pivots.push(column);
     }
-    rank
+    (pivots, product)
+}
+
+/// The rank.
+pub fn rank(field: &PrimeField, mut m: DMatrix<u64>) -> usize {
+    let n = m.ncols();
+    eliminate(field, &mut m, n, false).0.len()
 }
 
 /// A basis of the vectors that m takes to 0.
 pub fn kernel(field: &PrimeField, mut m: DMatrix<u64>) -> Vec<Vec<u64>> {
     let n = m.ncols();
-    let mut pivots = Vec::new();
-    for column in 0..n {
-        let row = pivots.len();
-        let Some(pivot) = (row..m.nrows()).find(|&i| m[(i, column)] != 0) else { continue };
-        m.swap_rows(row, pivot);
-        let inverse = field.invert(m[(row, column)]);
-        (0..n).for_each(|j| m[(row, j)] = field.mul(m[(row, j)], inverse));
-        for i in (0..m.nrows()).filter(|&i| i != row) {
-            let factor = m[(i, column)];
-            (0..n).for_each(|j| m[(i, j)] = field.sub(m[(i, j)], field.mul(factor, m[(row, j)])));
-        }
-        pivots.push(column);
-    }
+    let (pivots, _) = eliminate(field, &mut m, n, true);
     let vector = |free: usize| {
         let mut vector = vec![0; n];
         vector[free] = field.of(1);
@@ -60,6 +60,15 @@ pub fn kernel(field: &PrimeField, mut m: DMatrix<u64>) -> Vec<Vec<u64>> {
         vector
     };
     (0..n).filter(|column| !pivots.contains(column)).map(vector).collect()
+}
+
+/// 1/m and det m; `None` where that is 0.
+pub fn inverse(field: &PrimeField, m: DMatrix<u64>) -> Option<(DMatrix<u64>, u64)> {
+    let n = m.nrows();
+    let mut both = m.resize_horizontally(2 * n, 0);
+    (0..n).for_each(|i| both[(i, n + i)] = field.of(1));
+    let (pivots, determinant) = eliminate(field, &mut both, n, true);
+    (pivots.len() == n).then(|| (both.columns(n, n).into_owned(), determinant))
 }
 
 /// The rank modulo a prime of rows of rationals, of n columns, which is no larger than the true one; `None`
@@ -73,35 +82,6 @@ pub(crate) fn rank_of(rows: &[BTreeMap<usize, Rational>], n: usize) -> Option<us
         }
     }
     Some(rank(&field, m))
-}
-
-/// 1/m and det m; `None` where that is 0. Gauss and Jordan.
-pub fn inverse(field: &PrimeField, mut m: DMatrix<u64>) -> Option<(DMatrix<u64>, u64)> {
-    let n = m.nrows();
-    let mut inverse = DMatrix::from_fn(n, n, |i, j| field.of(u64::from(i == j)));
-    let mut determinant = field.of(1);
-    for k in 0..n {
-        let pivot = (k..n).find(|&i| m[(i, k)] != 0)?;
-        if pivot != k {
-            m.swap_rows(k, pivot);
-            inverse.swap_rows(k, pivot);
-            determinant = field.sub(0, determinant);
-        }
-        determinant = field.mul(determinant, m[(k, k)]);
-        let scale = field.invert(m[(k, k)]);
-        for matrix in [&mut m, &mut inverse] {
-            matrix.row_mut(k).iter_mut().for_each(|x| *x = field.mul(*x, scale));
-        }
-        for i in (0..n).filter(|&i| i != k) {
-            let factor = m[(i, k)];
-            for matrix in [&mut m, &mut inverse] {
-                (0..n).for_each(|j| {
-                    matrix[(i, j)] = field.sub(matrix[(i, j)], field.mul(factor, matrix[(k, j)]))
-                });
-            }
-        }
-    }
-    Some((inverse, determinant))
 }
 
 /// The coefficients of det(z − m), lowest first, monic; by reduction to Hessenberg's form.

@@ -7,7 +7,7 @@ use nalgebra::DMatrix;
 use super::friction::MOST_MASKED;
 use super::model::{Clock, Jacobians};
 use super::orbit;
-use crate::exact::decide::{MuCount, judged_blocks};
+use crate::exact::decide::{MuCount, allow_blocks, judged_blocks};
 use crate::half::norm;
 use crate::spectrum::discs::Spectrum;
 use crate::spectrum::explain::explained;
@@ -156,14 +156,7 @@ impl Jacobians {
     /// # Errors
     /// A budget error.
     pub fn exact(&self, limits: &Limits) -> Result<(Kind, MuCount)> {
-        // Numbers gain the bits of a kick's with each, and products of n of them.
-        let (n, kicks) = (self.size() as f64, self.schedule.strikes() as f64);
-        let words = 1.0 + kicks * self.bits() / 64.0;
-        let cost =
-            1.5 * kicks * n.powi(3) * words.powi(2) + n.powi(4) * words * 4.0 + n.powi(3) * words.powi(2);
-        limits.allow(cost.min(1e19) as u64, || {
-            format!("exact arithmetic on {}", degrees_of_freedom(self.size()))
-        })?;
+        allow_blocks(self.size(), (self.schedule.strikes() as f64, self.bits()), limits)?;
         let blocks = orbit::exact(self);
         Ok(judged_blocks(&blocks.product, blocks.blocks.each_ref()))
     }

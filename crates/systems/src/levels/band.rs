@@ -9,11 +9,10 @@
 use faer::Mat;
 
 use super::half::Half;
-use super::interval::Interval;
 use super::kernel::{Kernel, Outer};
 use super::method::Method;
-use super::search::edge_below;
 use crate::signs::inertia::is_definite;
+use number::Interval;
 
 /// Room for the roundings of a factor.
 const ROOM: f64 = 1e-12;
@@ -110,18 +109,13 @@ impl Kernel {
         [factors.least, factors.most].into_iter().all(|s| is_definite(form(s), 1.01 * s * slack))
     }
 
-    /// The outer step, as many inner ones in it, up to which [`Kernel::covers_band`] provably holds, within
-    /// 1e-6 of the longest; `None` where it does for none.
-    pub fn band_edge(&self, inner_steps: u64, band: f64, epsilon: f64) -> Option<f64> {
-        let holds = |step: f64| {
-            Outer::new(step, inner_steps).is_ok_and(|outer| self.covers_band(&outer, band, epsilon))
-        };
-        let hi = match self.method {
+    /// Beyond this outer step no band is covered.
+    pub(super) fn band_end(&self, inner_steps: u64) -> f64 {
+        match self.method {
             // Every inner step is below its own limit, h w < 2.
             Method::Respa => 2.0 * inner_steps as f64 / self.highest_frequency(),
             Method::ImplicitExplicit => 4.0 / self.highest_slow_frequency(),
             Method::Trigonometric(_) => 4.0 / self.highest_frequency(),
-        };
-        edge_below(hi, 1e-6, |step| hi.is_finite() && holds(step)).map(|(edge, _)| edge)
+        }
     }
 }

@@ -11,12 +11,12 @@
 use faer::{Mat, Side, c64};
 
 use super::half::Half;
-use super::interval::Interval;
 use super::kernel::{Kernel, Outer};
 use super::search::largest;
 use crate::half::norm;
 use crate::spectrum::discs::Spectrum;
 use clocks::verdict::Kind;
+use number::Interval;
 use number::U;
 
 /// A matrix that is known but for an error: bounds on the norms of the true and the computed one, and on
@@ -64,8 +64,8 @@ impl Kernel {
         let moved = self.moved(outer, shift);
         let halves = self.halves(outer);
         let near = |pick: fn(&Half) -> Interval, lipschitz: f64| {
-            let radius = halves.iter().map(|half| pick(half).radius()).fold(0.0, f64::max);
-            let largest = halves.iter().map(|half| pick(half).mid().abs()).fold(0.0, f64::max);
+            let radius = halves.iter().map(|half| pick(half).error()).fold(0.0, f64::max);
+            let largest = halves.iter().map(|half| pick(half).middle().abs()).fold(0.0, f64::max);
             let off = radius + lipschitz * moved;
             Near { size: largest + off, off }
         };
@@ -79,7 +79,8 @@ impl Kernel {
         let near = [near(|h| h.a, a), near(|h| h.b, b), near(|h| h.c, c), near(|h| h.d, d)];
         let (kick, [size, off]) = self.half_kick(outer, shifts);
         let near_kick = Near { size, off };
-        let halves = halves.iter().map(|h| [h.a.mid(), h.b.mid(), h.c.mid(), h.d.mid()]).collect();
+        let halves =
+            halves.iter().map(|h| [h.a.middle(), h.b.middle(), h.c.middle(), h.d.middle()]).collect();
         Some(Blocks { halves, near, kick, near_kick })
     }
 

@@ -15,12 +15,12 @@ use faer::{Mat, Side};
 use super::beyond::slopes;
 use super::counts::{Counts, between_signs};
 use super::half::Half;
-use super::interval::Interval;
 use super::kernel::{Kernel, Outer, STEP_ERROR};
 use crate::half::norm;
 use crate::signs::inertia::backward_error;
 use crate::spectrum::discs::Spectrum;
 use crate::verdict::measured::Holds;
+use number::Interval;
 use number::U;
 use number::error::{Error, Result};
 
@@ -125,7 +125,7 @@ impl<'a> Cells<'a> {
 
     fn counts(&self, cell: &Cell) -> Option<Counts> {
         let kernel = self.kernel;
-        let (shift, middle, half) = (self.shifts[0], cell.slow.mid(), cell.slow.radius());
+        let (shift, middle, half) = (self.shifts[0], cell.slow.middle(), cell.slow.error());
         let ends = |x: &f64| {
             let least = Interval::point((x - shift).next_down()) * cell.fast;
             (least.lo, (Interval::point((x + shift).next_up()) * cell.fast).hi)
@@ -134,7 +134,7 @@ impl<'a> Cells<'a> {
         let (less, more): (Vec<_>, Vec<_>) =
             kernel.values.iter().map(around).map(|[less, more]: [Half; 2]| (less, more)).unzip();
         let (m, filter) = (kernel.size(), self.filter(cell));
-        let phi = |i: usize| filter.phi[i].mid();
+        let phi = |i: usize| filter.phi[i].middle();
         let slow = |sign: f64| {
             Mat::from_fn(m, m, |i, j| {
                 let value = middle * kernel.slow[(i, j)] + sign * (half + filter.share) * self.size[(i, j)];
@@ -164,9 +164,9 @@ impl<'a> Cells<'a> {
         }
         let (largest, [_, size], [fast, slow]) =
             (cell.slow.lo.abs().max(cell.slow.hi.abs()), kernel.norms(), self.shifts);
-        let tau = phi.iter().map(|interval| interval.radius()).fold(U, f64::max);
+        let tau = phi.iter().map(|interval| interval.error()).fold(U, f64::max);
         let moved =
-            |interval: &Interval| 1.01 * largest * (1.0 + 1.0 / tau) * size * interval.radius().powi(2);
+            |interval: &Interval| 1.01 * largest * (1.0 + 1.0 / tau) * size * interval.error().powi(2);
         let below = self.below(cell);
         let [.., slope] = kernel.method.slopes(p, below);
         let turned = 1.01 * slope * cell.fast.hi * fast;
@@ -186,7 +186,7 @@ impl<'a> Cells<'a> {
     /// T_p'(ξ)/4 and U_(p−1)'(ξ)/4 times them (`beyond`), p²/4 and p (p² − 1)/12 where all s are in \[0, 4\].
     fn spectrum(&self, cell: &Cell) -> Option<(Spectrum, Mat<f64>)> {
         let (kernel, p, m) = (self.kernel, cell.inner_steps as f64, self.kernel.size());
-        let (shift, middle) = (self.shifts[0], Interval::point(cell.fast.mid()));
+        let (shift, middle) = (self.shifts[0], Interval::point(cell.fast.middle()));
         let (lowest, highest) = (kernel.values.first()?, kernel.values.last()?);
         let ends = Interval { lo: lowest - shift, hi: highest + shift } * cell.fast;
         if !kernel.method.has_inner_steps() {
@@ -199,22 +199,22 @@ impl<'a> Cells<'a> {
         let halves: Vec<Half> = kernel
             .values
             .iter()
-            .map(|x| Half::new((Interval::point(*x) * middle).mid(), cell.inner_steps))
+            .map(|x| Half::new((Interval::point(*x) * middle).middle(), cell.inner_steps))
             .collect();
         let (f, g): (Vec<_>, Vec<_>) = halves.iter().map(|half| (half.b * half.c, half.b * half.d)).unzip();
-        let (mid, radius) = (cell.slow.mid(), cell.slow.radius());
+        let (mid, radius) = (cell.slow.middle(), cell.slow.error());
         let (most, size) = (cell.slow.lo.abs().max(cell.slow.hi.abs()), &kernel.slow);
         let s = Mat::from_fn(m, m, |i, j| {
-            (if i == j { f[i].mid() } else { 0.0 }) - g[i].mid() * (mid * size[(i, j)])
+            (if i == j { f[i].middle() } else { 0.0 }) - g[i].middle() * (mid * size[(i, j)])
         });
         // In s: from the middle, and of its rounding.
-        let moved = |i: usize| 1.01 * kernel.values[i].abs() * (cell.fast.radius() + 4.0 * U * cell.fast.hi);
+        let moved = |i: usize| 1.01 * kernel.values[i].abs() * (cell.fast.error() + 4.0 * U * cell.fast.hi);
         let off = Mat::from_fn(m, m, |i, j| {
-            let (g_off, value) = (g_slope * moved(i), g[i].mid().abs() + g[i].radius());
+            let (g_off, value) = (g_slope * moved(i), g[i].middle().abs() + g[i].error());
             let steep = (p / 2.0 * (value + g_off)).min(f_slope);
-            let own = if i == j { steep * moved(i) + f[i].radius() } else { 0.0 };
+            let own = if i == j { steep * moved(i) + f[i].error() } else { 0.0 };
             let coupled =
-                size[(i, j)].abs() * (value * (radius + 4.0 * U * most) + (g_off + g[i].radius()) * most);
+                size[(i, j)].abs() * (value * (radius + 4.0 * U * most) + (g_off + g[i].error()) * most);
             1.01 * (own + coupled) + 2.0 * U * s[(i, j)].abs()
         });
         let error = 1.01 * cell.fast.hi * shift;
@@ -234,8 +234,8 @@ impl<'a> Cells<'a> {
             let coupled = -(halves[i].b * halves[i].d * kick);
             if i == j { halves[i].b * halves[i].c + coupled } else { coupled }
         };
-        let s = Mat::from_fn(m, m, |i, j| entry(i, j).mid());
-        let off = Mat::from_fn(m, m, |i, j| entry(i, j).radius());
+        let s = Mat::from_fn(m, m, |i, j| entry(i, j).middle());
+        let off = Mat::from_fn(m, m, |i, j| entry(i, j).error());
         let below = self.below(cell);
         let [f_slope, g_slope] = kernel.method.slopes_of_products(p, below);
         let most = cell.slow.lo.abs().max(cell.slow.hi.abs());
@@ -253,16 +253,16 @@ impl<'a> Cells<'a> {
         if spectrum.mu.iter().any(|mu| mu.im != 0.0 || !(-1.0..=0.0).contains(&mu.re)) {
             return None;
         }
-        let half = |x: &f64| kernel.method.half(Interval::point(x * cell.fast.mid()), cell.inner_steps);
+        let half = |x: &f64| kernel.method.half(Interval::point(x * cell.fast.middle()), cell.inner_steps);
         let halves: Vec<Half> = kernel.values.iter().map(half).collect();
         let phi = self.filter(cell).phi;
         let kicked = &kernel.slow
-            * Mat::from_fn(m, m, |i, k| phi[i].mid() * cell.slow.mid() * spectrum.vectors[(i, k)].re);
+            * Mat::from_fn(m, m, |i, k| phi[i].middle() * cell.slow.middle() * spectrum.vectors[(i, k)].re);
         // vᵀ Aᵀ C v, A = a − b M, C = c − d M.
         let sign = |k: usize| {
             let term = |i: usize| {
-                let (v, kick) = (spectrum.vectors[(i, k)].re, phi[i].mid() * kicked[(i, k)]);
-                let [a, b, c, d] = [halves[i].a, halves[i].b, halves[i].c, halves[i].d].map(Interval::mid);
+                let (v, kick) = (spectrum.vectors[(i, k)].re, phi[i].middle() * kicked[(i, k)]);
+                let [a, b, c, d] = [halves[i].a, halves[i].b, halves[i].c, halves[i].d].map(Interval::middle);
                 (a * v - b * kick) * (c * v - d * kick)
             };
             (0..m).map(term).sum::<f64>() > 0.0

@@ -14,9 +14,9 @@
 use faer::Mat;
 
 use super::half::Half;
-use super::interval::Interval;
 use super::kernel::{Kernel, Outer};
 use crate::signs::inertia::negative_bounds;
+use number::Interval;
 
 /// Twists of an index: more of them cost more than discs about the eigenvalues.
 const MOST_TWISTS: usize = 6;
@@ -93,7 +93,7 @@ impl Counts {
 
     /// Values of s between modes p θ/2 of which turned back and others; cos²(p θ/2) alone places them.
     pub fn twists(&self) -> Option<Vec<f64>> {
-        let mode = |half: &Half| Some((half.a.mid() * half.d.mid(), half.turns_back()?));
+        let mode = |half: &Half| Some((half.a.middle() * half.d.middle(), half.turns_back()?));
         let mut twists = between_signs(self.less.iter().map(mode).collect::<Option<_>>()?)?;
         twists.retain(|s| (0.0..1.0).contains(s));
         (twists.len() <= MOST_TWISTS).then_some(twists)

@@ -20,9 +20,9 @@
 //! (Stein).
 
 use faer::Mat;
-use num_complex::Complex64;
 
 use super::kernel::{Kernel, Outer};
+use super::search::Search;
 use crate::friction::{Damping, Friction, Mask, Radius, damping, from_edge, proven_down, shrink_one_form};
 use crate::half::norm;
 use crate::half::period::decayed;
@@ -57,13 +57,6 @@ struct Fast {
 }
 
 impl Kernel {
-    /// Where the spectral radius of a period with friction γ per unit time lies, v → exp(−γ t) v in the
-    /// middle of every drift; `None`: doubles cannot decide.
-    pub fn damping(&self, outer: &Outer, friction: f64) -> Option<Damping> {
-        let (q, error) = self.damped_period(outer, friction)?;
-        damping(&q, error, Radius::of(&q, error))
-    }
-
     /// The effect of friction of the rate γ per unit time, and the friction that masks the growth without it:
     /// both proven.
     pub fn friction(&self, outer: &Outer, rate: &Rational) -> Friction {
@@ -77,14 +70,16 @@ impl Kernel {
     }
 
     fn mask(&self, outer: &Outer) -> Mask {
+        let at = self.at(outer);
+        let damping = |friction: f64| at.damping(outer.step, friction);
         // A friction that is next to none: does anything grow?
-        match self.damping(outer, 1e-6 / outer.step) {
+        match damping(1e-6 / outer.step) {
             Some(Damping::Growing) => {}
             None if !self.is_stable(outer, 0.0) => return Mask::Undecided,
             _ => return Mask::NotNeeded,
         }
-        let Some(least) = self.masking_friction(outer) else { return Mask::Undecided };
-        let grows = |friction: &f64| self.damping(outer, *friction) == Some(Damping::Growing);
+        let Some(least) = at.masking_friction(outer.step) else { return Mask::Undecided };
+        let grows = |friction: &f64| damping(*friction) == Some(Damping::Growing);
         let Some(below) = [0.9995, 0.998, 0.99].map(|part| part * least).into_iter().find(grows) else {
             return Mask::Undecided;
         };
@@ -115,19 +110,6 @@ impl Kernel {
         // Less than that by more than roundings, so that its c is no less than the last cell's.
         let end = from - least.ln() / inner;
         if end.is_finite() { (end * (1.0 - 1e-12)).max(from) } else { end }
-    }
-
-    /// The spectral radius of the computed period, no more than computed.
-    fn rounded_radius(&self, outer: &Outer, friction: f64) -> f64 {
-        let eigenvalues = self.damped_period(outer, friction).and_then(|(q, _)| q.eigenvalues().ok());
-        eigenvalues.map_or(f64::NAN, |all| all.into_iter().map(Complex64::norm).fold(0.0, f64::max))
-    }
-
-    /// A friction that is proven to mask, where the radius is above 1 without one: at most a thirtieth above
-    /// the least that does so in doubles. `None` where none was found.
-    pub fn masking_friction(&self, outer: &Outer) -> Option<f64> {
-        let proven = |friction: f64| self.damping(outer, friction) == Some(Damping::Damped);
-        least_masking(self.growth(outer), outer.step, |friction| self.rounded_radius(outer, friction), proven)
     }
 
     /// Velocities are multiplied by c in an inner step: one between two ends, which are known to
@@ -163,7 +145,7 @@ impl Kernel {
     }
 
     /// The period, and a bound on its error (2-norm).
-    fn damped_period(&self, outer: &Outer, friction: f64) -> Option<(Mat<f64>, f64)> {
+    pub(super) fn damped_period(&self, outer: &Outer, friction: f64) -> Option<(Mat<f64>, f64)> {
         let exponent = from_f64_exact(friction * (outer.step / outer.inner_steps as f64));
         let c = decayed(&exponent.filter(|x| *x >= Default::default())?, 1);
         // The friction and the step are within 4u each, and x exp(−x) < 1/2.
@@ -210,30 +192,6 @@ fn kicked(modes: &Modes, k: &Mat<f64>, bk: &Mat<f64>) -> Mat<f64> {
             (false, false) => diagonal(3) - k[(i, j)] * b,
         }
     })
-}
-
-/// About the least friction that is proven to mask what grows at this rate without one, bisected by the
-/// rounded spectral radius of an outer step.
-pub(super) fn least_masking(
-    growth: f64,
-    step: f64,
-    radius: impl Fn(f64) -> f64,
-    proven: impl Fn(f64) -> bool,
-) -> Option<f64> {
-    let is_damped = |friction: f64| radius(friction) < 1.0;
-    let mut hi = 2.0 * growth;
-    while hi > 0.0 && !is_damped(hi) {
-        hi *= 2.0;
-        if hi * step > 1e3 {
-            return None;
-        }
-    }
-    let mut lo = 0.0;
-    while hi - lo > 1e-4 * hi {
-        let middle = lo + (hi - lo) / 2.0;
-        *(if is_damped(middle) { &mut hi } else { &mut lo }) = middle;
-    }
-    [1.0, 1.0003, 1.001, 1.003, 1.01, 1.03].map(|off| off * hi).into_iter().find(|value| proven(*value))
 }
 
 /// The Frobenius norm.

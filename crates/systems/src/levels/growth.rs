@@ -46,54 +46,26 @@ impl Kernel {
         let (halves, factor) = (self.halves(outer), outer.half_kick());
         let (slow, _) = self.filtered(outer, [0.0; 2]);
         let entry = |i: usize, j: usize| {
-            let [b, c, d] = [halves[i].b, halves[i].c, halves[i].d].map(|interval| interval.mid());
+            let [b, c, d] = [halves[i].b, halves[i].c, halves[i].d].map(|interval| interval.middle());
             b * ((if i == j { c } else { 0.0 }) - d * factor * slow[(i, j)])
         };
         let period = Mat::from_fn(self.size(), self.size(), entry);
         let rate = |mu: Complex64| exponent(mu).re;
         period.eigenvalues().map_or(f64::NAN, |mu| mu.into_iter().map(rate).fold(0.0, f64::max)) / outer.step
     }
-
-    /// Stretches from an unstable outer step `from` on, as many inner ones in it, the first samples `width`
-    /// apart, relative: up to the first one that is not thin, as a thin one shows little of those that
-    /// follow.
-    ///
-    /// # Errors
-    /// As [`Outer::new`].
-    pub fn growing(&self, inner_steps: u64, from: f64, width: f64) -> Result<Vec<Growing>> {
-        AtRatio { kernel: self, inner_steps }.growing(from, width)
-    }
 }
 
-/// Two levels with as many inner steps in every outer one.
-struct AtRatio<'a> {
-    kernel: &'a Kernel,
-    inner_steps: u64,
+/// Growth over the outer step, all steps in their ratios: max ln |λ| per unit time, rounded, and whether a step
+/// is proven stable.
+pub(super) struct Sampled<'a> {
+    pub rate: &'a dyn Fn(f64) -> Result<f64>,
+    pub is_stable: &'a dyn Fn(f64) -> bool,
 }
 
-impl Grows for AtRatio<'_> {
-    fn rate(&self, step: f64) -> Result<f64> {
-        Ok(self.kernel.growth(&Outer::new(step, self.inner_steps)?))
-    }
-
-    fn is_stable(&self, step: f64) -> bool {
-        Outer::new(step, self.inner_steps).is_ok_and(|outer| self.kernel.is_stable(&outer, 0.0))
-    }
-}
-
-/// Growth over the outer step, all steps in their ratios.
-pub(super) trait Grows {
-    /// max ln |λ| per unit time at an outer step, rounded.
-    ///
-    /// # Errors
-    /// A step that is no step.
-    fn rate(&self, step: f64) -> Result<f64>;
-
-    /// Whether it is proven stable there.
-    fn is_stable(&self, step: f64) -> bool;
-
-    /// As [`Kernel::growing`].
-    fn growing(&self, from: f64, width: f64) -> Result<Vec<Growing>> {
+impl Sampled<'_> {
+    /// Stretches from an unstable outer step `from` on, the first samples `width` apart, relative: up to the
+    /// first one that is not thin, as a thin one shows little of those that follow.
+    pub fn growing(&self, from: f64, width: f64) -> Result<Vec<Growing>> {
         let mut found = vec![self.stretch(from, width)?];
         while let Some(Growing { lower, upper: Some(upper), .. }) = found.last().copied() {
             let thin = upper / lower - 1.0;
@@ -109,7 +81,7 @@ pub(super) trait Grows {
         let (mut last, mut width) = (above * (1.0 + 1e-6), (thin / 4.0).max(1e-6));
         while last < above * (1.0 + THIN) {
             let step = last * (1.0 + width);
-            if grows(step, self.rate(step)?) {
+            if grows(step, (self.rate)(step)?) {
                 return Ok(Some(self.end((last, step), false).1));
             }
             (last, width) = (step, 1.3 * width);
@@ -119,14 +91,14 @@ pub(super) trait Grows {
 
     /// Steps to 1e-7 between which what is so at the first, growth or none, ends.
     fn end(&self, ends: (f64, f64), growth: bool) -> (f64, f64) {
-        bisected(ends, 1e-7, |step| Some(grows(step, self.rate(step).ok()?) == growth))
+        bisected(ends, 1e-7, |step| Some(grows(step, (self.rate)(step).ok()?) == growth))
     }
 
     fn stretch(&self, from: f64, width: f64) -> Result<Growing> {
         let (mut last, mut width, mut still) = (from, width, None);
         while last < REACH * from && still.is_none() {
             let step = last * (1.0 + width);
-            if grows(step, self.rate(step)?) {
+            if grows(step, (self.rate)(step)?) {
                 (last, width) = (step, (1.5 * width).min(WIDEST));
             } else {
                 still = Some(step);
@@ -136,16 +108,16 @@ pub(super) trait Grows {
         let worst = self.fastest_between(from, ends.map_or(last, |(upper, _)| upper))?;
         // At the end itself multipliers are double, and doubles cannot decide.
         let proven = |still: f64| (0..12).map(move |k| still * (1.0 + 1e-7 * f64::from(4u32.pow(k))));
-        let stable_again = ends.and_then(|(_, still)| proven(still).find(|step| self.is_stable(*step)));
+        let stable_again = ends.and_then(|(_, still)| proven(still).find(|step| (self.is_stable)(*step)));
         Ok(Growing { lower: from, upper: ends.map(|(upper, _)| upper), stable_again, worst })
     }
 
     /// The fastest of `SAMPLES` steps between, and of some nearer and nearer to it.
     fn fastest_between(&self, lo: f64, hi: f64) -> Result<(f64, f64)> {
-        let mut worst = (lo, self.rate(lo)?);
+        let mut worst = (lo, (self.rate)(lo)?);
         let mut width = (hi - lo) / SAMPLES as f64;
         let see = |step: f64, worst: &mut (f64, f64)| -> Result<()> {
-            let rate = self.rate(step)?;
+            let rate = (self.rate)(step)?;
             if rate > worst.1 {
                 *worst = (step, rate);
             }

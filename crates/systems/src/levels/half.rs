@@ -1,6 +1,6 @@
 //! The fast half period of one mode, enclosed.
 
-use super::interval::Interval;
+use number::Interval;
 
 /// a, b, c, d of p velocity-Verlet steps, over half of them, in the time unit h: for s = h² w² = 4 sin²(θ/2)
 /// and even p a = d = cos(p θ/2), b = sin(p θ/2)/sin θ, c = −sin(p θ/2) sin θ; for odd p the half ends in the
@@ -92,7 +92,7 @@ mod tests {
                 for (got, want) in [(own.a, a), (own.b, b), (own.c, c), (own.d, d)] {
                     // The formulas' own rounding, by the condition of cos and sin of some units.
                     assert!(got.lo - 1e-13 <= want && want <= got.hi + 1e-13, "{p} {turn}: {got:?} {want}");
-                    assert!(got.radius() < 1e-13, "{got:?}");
+                    assert!(got.error() < 1e-13, "{got:?}");
                 }
                 // One step alone has no angle beyond π.
                 assert!(p == 1 || own.rises() == (turn < 1.0), "{p} {turn}");

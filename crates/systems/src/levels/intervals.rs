@@ -2,7 +2,7 @@
 
 use super::cell::Cells;
 use super::kernel::{Kernel, Outer};
-use super::search::{carried_on, with_first};
+use super::search::with_first;
 use crate::spectrum::rate::exponent;
 use crate::vary::stretches::Stretch;
 use crate::verdict::measured::Holds;
@@ -39,22 +39,6 @@ impl Kernel {
         let first = self.first_region_end(inner_steps, accuracy).map_or(lo, |(end, _)| end.clamp(lo, hi));
         let cells = Cells::new(self, accuracy)?;
         with_first((lo, hi), first, width, |lo, hi| cells.verdict(inner_steps, (lo, hi)))
-    }
-
-    /// The step up to which every outer one from `at` on, as many inner ones in it, is proven by counts to
-    /// have a real multiplier off the circle: up to where the step by which a verdict is carried on falls to
-    /// `least`, relative, or 1.5 `at`.
-    ///
-    /// # Errors
-    /// As [`Outer::new`].
-    pub fn unstable_up_to(&self, inner_steps: u64, at: f64, least: f64) -> Result<f64> {
-        carried_on(at, least, |at, epsilon| {
-            // A little inwards, for the roundings of the roots.
-            let inner = 0.999_999 * epsilon;
-            let middle = at / (1.0 - inner).sqrt();
-            let grows = self.has_real_unstable_mode(&Outer::new(middle, inner_steps)?, epsilon);
-            Ok(grows.then(|| middle * (1.0 + inner).sqrt()))
-        })
     }
 
     /// The verdict that is proven for all stiffnesses within `epsilon` of their norms.

@@ -8,13 +8,13 @@ use num_traits::ToPrimitive;
 
 use super::basis::Basis;
 use super::half::Half;
-use super::interval::Interval;
 use super::method::Method;
 use super::rigid::{Hessians, halved};
 use crate::half::norm;
 use crate::signs::inertia::{is_definite, spectral_norm};
 use crate::verdict::limits::SIDE_BY_SIDE;
 use crate::verdict::measured::Removed;
+use number::Interval;
 use number::error::{Error, Result};
 use number::parallel::both;
 use number::rational::to_f64;
@@ -106,7 +106,33 @@ impl Outer {
     }
 }
 
+/// Two levels at the ratio of this outer step's to its inner ones.
+#[derive(Clone, Copy, Debug)]
+pub struct AtRatio<'a> {
+    pub(super) kernel: &'a Kernel,
+    outer: Outer,
+}
+
+impl AtRatio<'_> {
+    pub(super) fn inner_steps(&self) -> u64 {
+        self.outer.inner_steps
+    }
+
+    /// That outer step itself, or another one of as many inner ones.
+    ///
+    /// # Errors
+    /// As [`Outer::new`].
+    pub(super) fn outer(&self, step: f64) -> Result<Outer> {
+        if step == self.outer.step { Ok(self.outer) } else { Outer::new(step, self.outer.inner_steps) }
+    }
+}
+
 impl Kernel {
+    /// These levels, searched over all outer steps of as many inner ones as there are in this one.
+    pub fn at(&self, outer: &Outer) -> AtRatio<'_> {
+        AtRatio { kernel: self, outer: *outer }
+    }
+
     /// One eigendecomposition and four products, or as many small ones as the fast stiffness has blocks:
     /// molecules that no bond joins, as long as no rigid motion of all of them was projected out.
     ///
@@ -195,10 +221,10 @@ impl Kernel {
         let phi = |x: &f64| self.method.filter(Interval::point(outer.inner_square * x), p);
         let phi: Vec<Interval> = self.values.iter().map(phi).collect();
         let [.., slope] = self.method.slopes(p, self.below(outer, fast));
-        let off = phi.iter().map(|interval| interval.radius()).fold(0.0, f64::max)
-            + slope * self.moved(outer, fast);
-        let largest = phi.iter().map(|interval| interval.mid().abs()).fold(0.0, f64::max) + off;
-        let kicks = Mat::from_fn(m, m, |i, j| phi[i].mid() * self.slow[(i, j)] * phi[j].mid());
+        let off =
+            phi.iter().map(|interval| interval.error()).fold(0.0, f64::max) + slope * self.moved(outer, fast);
+        let largest = phi.iter().map(|interval| interval.middle().abs()).fold(0.0, f64::max) + off;
+        let kicks = Mat::from_fn(m, m, |i, j| phi[i].middle() * self.slow[(i, j)] * phi[j].middle());
         // Two roundings an entry.
         let rounding = 3.0 * U * largest * largest * norm::frobenius(&self.slow);
         (Cow::Owned(kicks), 1.01 * (2.0 * off * largest * size + largest * largest * slow + rounding))

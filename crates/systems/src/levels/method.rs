@@ -17,8 +17,8 @@
 //! matrices, and bounds on how they move with F.
 
 use super::half::Half;
-use super::interval::Interval;
 use number::Ball;
+use number::Interval;
 use number::error::{Error, Result};
 use number::rational::from_f64_exact;
 use words::Trigonometric;
@@ -63,7 +63,7 @@ impl Method {
     /// The half period of p inner steps at s = h² w², h the inner step; in the time unit h.
     pub(super) fn half(self, s: Interval, p: u64) -> Half {
         if self.has_inner_steps() {
-            return Half::new(s.mid(), p);
+            return Half::new(s.middle(), p);
         }
         let (p, one) = (Interval::point(p as f64), Interval::point(1.0));
         let square = p * p * s;
@@ -167,10 +167,10 @@ impl Method {
             return [less, more].map(|s| self.half(Interval::point(s), p));
         }
         let all = Interval { lo: less, hi: more };
-        let half = self.half(Interval::point(all.mid()), p);
+        let half = self.half(Interval::point(all.middle()), p);
         let slopes = self.slopes(p, (-less).max(0.0));
         let wider = |x: Interval, slope: f64| {
-            let off = 1.01 * slope * all.radius();
+            let off = 1.01 * slope * all.error();
             Interval { lo: (x.lo - off).next_down(), hi: (x.hi + off).next_up() }
         };
         [Half { a: wider(half.a, slopes[0]), c: wider(half.c, slopes[2]), ..half }; 2]
@@ -271,7 +271,7 @@ mod tests {
                             got.lo - 1e-14 <= want && want <= got.hi + 1e-14,
                             "{method} {x}: {got:?} {want}"
                         );
-                        assert!(got.radius() < 1e-13 * p as f64, "{method} {x}: {got:?}");
+                        assert!(got.error() < 1e-13 * p as f64, "{method} {x}: {got:?}");
                     }
                     let want = match method.name() {
                         "molly-short" | "gautschi" => sinc(y),
@@ -294,9 +294,9 @@ mod tests {
     #[test]
     fn negative_stiffness_gives_hyperbolic_functions() {
         let [cos, sinc] = turn(Interval::point(-4.0 * 0.25));
-        assert!(cos.lo <= 0.5f64.cosh() + 1e-15 && cos.hi >= 0.5f64.cosh() - 1e-15 && cos.radius() < 1e-14);
+        assert!(cos.lo <= 0.5f64.cosh() + 1e-15 && cos.hi >= 0.5f64.cosh() - 1e-15 && cos.error() < 1e-14);
         let want = 0.5f64.sinh() / 0.5;
-        assert!(sinc.lo <= want + 1e-15 && sinc.hi >= want - 1e-15 && sinc.radius() < 1e-14);
+        assert!(sinc.lo <= want + 1e-15 && sinc.hi >= want - 1e-15 && sinc.error() < 1e-14);
         assert!(turn(Interval::point(-100.0))[0].hi.is_infinite());
     }
 
@@ -309,7 +309,8 @@ mod tests {
                 let at = |s: f64| {
                     let (half, phi) =
                         (method.half(Interval::point(s), 1), method.filter(Interval::point(s), 1));
-                    [half.a, half.b, half.c, half.d, phi, half.b * half.c, half.b * half.d].map(Interval::mid)
+                    [half.a, half.b, half.c, half.d, phi, half.b * half.c, half.b * half.d]
+                        .map(Interval::middle)
                 };
                 let products = method.slopes_of_products(1, 0.0);
                 let slopes = [method.slopes(1, 0.0).as_slice(), products.as_slice()].concat();

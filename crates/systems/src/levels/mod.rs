@@ -35,7 +35,7 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `half`, `interval` | the fast half period of one mode, in intervals |
+//! | `half` | the fast half period of one mode, in intervals |
 //! | `method` | that of other integrators, as exact flows with filters: the same machinery serves them all |
 //! | `rigid`, `apart` | rigid motions projected out, and which are |
 //! | `basis` | eigenvalues and eigenvectors, block by block |
@@ -52,7 +52,7 @@
 //! | `damped` | friction: the spectral radius of the period, proven |
 //! | `paths` | the action itself and the full period: another route, for rechecks |
 //! | `step` | one step of other methods, the same way |
-//! | `search` | edges of what is proven, for both kinds of levels |
+//! | `search` | edges of what is proven: `Search` over the outer step, for both kinds of levels |
 //! | `source` | both kinds of levels behind one face |
 //! | `answer` | the verdict at one outer step |
 //! | `intervals` | the verdicts on a range of outer steps |
@@ -68,7 +68,6 @@ mod counts;
 mod damped;
 mod growth;
 mod half;
-mod interval;
 mod intervals;
 mod kernel;
 mod method;
@@ -76,17 +75,18 @@ mod nested;
 mod paths;
 mod region;
 mod rigid;
-mod search;
+pub(crate) mod search;
 mod source;
 pub mod sparse;
 mod step;
 
 pub use cell::Cells;
 pub use growth::Growing;
-pub use kernel::{Kernel, Outer};
+pub use kernel::{AtRatio, Kernel, Outer};
 pub use method::Method;
-pub use nested::{AtStep, Nested, Steps};
+pub use nested::{Nested, Steps};
 pub use paths::Near;
 pub use rigid::{Hessians, rigid_motions, translations};
 pub(crate) use rigid::{Motions, Shares, projected};
-pub use source::{Decided, Source};
+pub use search::{Decided, Search};
+pub use source::Source;

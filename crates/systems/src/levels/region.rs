@@ -6,9 +6,10 @@ use faer::Mat;
 
 use super::half::Half;
 use super::kernel::{Kernel, Outer, STEP_ERROR};
-use super::search::{EDGE, edge_below, largest, unstable_past};
+use super::search::{EDGE, bracket_below, largest};
 use crate::half::norm;
 use crate::signs::inertia::is_definite;
+use number::bisected;
 
 /// The halves of all modes with every stiffness shifted by as much as errors and `epsilon` allow.
 pub(super) struct Shifted<'a> {
@@ -67,17 +68,6 @@ impl Kernel {
         largest(width, |epsilon| stable(self, outer, epsilon))
     }
 
-    /// The first unstable outer step of p inner ones, [lo, hi]: every step in (0, lo] is proven stable, hi is
-    /// proven unstable. `None` where F + S is not proven definite, so that the region does not begin at 0,
-    /// and where no step is unstable as far as the region is known to be one interval
-    /// ([`Method::first_region_ends`](super::method::Method)).
-    pub fn first_unstable(&self, inner_steps: u64) -> Option<(f64, f64)> {
-        let (lo, hi) = self.first_region_end(inner_steps, 0.0)?;
-        unstable_past((lo, hi), |step| {
-            Outer::new(step, inner_steps).is_ok_and(|outer| self.is_unstable(&outer, 0.0))
-        })
-    }
-
     /// Two outer steps, 1e-8 apart, relative: all stiffnesses within `epsilon` of their norms are proven
     /// stable at every step in (0, lo], and not proven to be in the first region at hi. `None` where no such
     /// step is found, or F + S is not proven definite.
@@ -100,6 +90,6 @@ impl Kernel {
             Some(angle) => angle / self.highest_frequency(),
             None => 2.000_002 / self.highest_slow_frequency(),
         };
-        edge_below(hi, EDGE, stable)
+        Some(bisected(bracket_below(hi, stable)?, EDGE, |step| Some(stable(step))))
     }
 }

@@ -5,12 +5,13 @@ use std::fmt::Debug;
 
 use faer::Mat;
 
-use super::growth::{Growing, Grows};
-use super::kernel::{Kernel, Outer, highest_frequency};
+use super::growth::Growing;
+use super::kernel::{AtRatio, Kernel, Outer, highest_frequency};
 use super::nested::Nested;
+use super::search::{Decided, Search, bracket_below};
 use crate::friction::Damping;
 use crate::verdict::analysis::{Analysis, Instability};
-use crate::verdict::measured::{Holds, Removed};
+use crate::verdict::measured::Removed;
 use number::Rational;
 use number::error::{Error, Result};
 use number::rational::to_f64;
@@ -18,11 +19,19 @@ use number::rational::to_f64;
 /// Stiffnesses of levels, steps and rates in their unit of time; `steps` are those of all levels, innermost
 /// first. What is proven of an outer step is so with all others in their ratios to it.
 pub trait Source: Debug + Send + Sync {
-    /// Checks that these steps can be asked about.
+    /// These levels at the ratios of some steps.
     ///
     /// # Errors
     /// Another number of them, ratios that are not answered for.
-    fn check(&self, steps: &[Rational]) -> Result<()>;
+    fn at(&self, steps: &[Rational]) -> Result<Box<dyn Search + '_>>;
+
+    /// Checks that these steps can be asked about.
+    ///
+    /// # Errors
+    /// As [`Source::at`], here and below.
+    fn check(&self, steps: &[Rational]) -> Result<()> {
+        self.at(steps).map(|_| ())
+    }
 
     /// The motions that were projected out.
     fn removed(&self) -> Option<&Removed>;
@@ -42,52 +51,48 @@ pub trait Source: Debug + Send + Sync {
     fn slower_frequencies(&self) -> Vec<f64>;
 
     /// The verdict for all stiffnesses within `accuracy` of their norms, and what grows.
-    ///
-    /// # Errors
-    /// As [`Source::check`], here and below.
     fn decide(&self, steps: &[Rational], accuracy: f64) -> Result<Decided>;
 
     /// \[lo, hi\]: every outer step up to lo is proven stable, hi is proven unstable.
-    fn first_unstable(&self, steps: &[Rational]) -> Result<Option<(f64, f64)>>;
+    fn first_unstable(&self, steps: &[Rational]) -> Result<Option<(f64, f64)>> {
+        Ok(self.at(steps)?.first_unstable())
+    }
 
     /// The step up to which every one from an unstable step on is proven unstable, followed in relative steps
     /// no shorter than `least`.
-    fn unstable_up_to(&self, steps: &[Rational], from: f64, least: f64) -> Result<f64>;
+    fn unstable_up_to(&self, steps: &[Rational], from: f64, least: f64) -> Result<f64> {
+        self.at(steps)?.unstable_up_to(from, least)
+    }
 
     /// Growth from an unstable step on, the first samples `width` apart, relative.
-    fn growing(&self, steps: &[Rational], from: f64, width: f64) -> Result<Vec<Growing>>;
+    fn growing(&self, steps: &[Rational], from: f64, width: f64) -> Result<Vec<Growing>> {
+        self.at(steps)?.growing(from, width)
+    }
 
     /// Whether a band of periods is proven stable, at all smaller steps, too.
-    fn covers_band(&self, steps: &[Rational], band: f64, accuracy: f64) -> Result<bool>;
+    fn covers_band(&self, steps: &[Rational], band: f64, accuracy: f64) -> Result<bool> {
+        Ok(self.at(steps)?.covers_band(outermost(steps), band, accuracy))
+    }
 
     /// The outer step up to which the band is covered.
-    fn band_edge(&self, steps: &[Rational], band: f64, accuracy: f64) -> Result<Option<f64>>;
+    fn band_edge(&self, steps: &[Rational], band: f64, accuracy: f64) -> Result<Option<f64>> {
+        Ok(self.at(steps)?.band_edge(band, accuracy))
+    }
 
     /// Where the spectral radius of a period with friction lies; `None`: doubles cannot decide.
-    fn damping(&self, steps: &[Rational], friction: f64) -> Result<Option<Damping>>;
+    fn damping(&self, steps: &[Rational], friction: f64) -> Result<Option<Damping>> {
+        Ok(self.at(steps)?.damping(outermost(steps), friction))
+    }
 
     /// A friction that is proven to mask what grows, about the least.
-    fn masking_friction(&self, steps: &[Rational]) -> Result<Option<f64>>;
+    fn masking_friction(&self, steps: &[Rational]) -> Result<Option<f64>> {
+        Ok(self.at(steps)?.masking_friction(outermost(steps)))
+    }
 
     /// The eigenbasis that other integrators of two levels are decided in.
     fn kernel(&self) -> Option<&Kernel> {
         None
     }
-}
-
-/// The verdict at one scheme.
-#[derive(Clone, Debug)]
-pub struct Decided {
-    /// The verdict that is proven for all stiffnesses within the accuracy.
-    pub holds: Holds,
-    /// Whether that is stable, and so for all smaller steps.
-    pub is_in_first_region: bool,
-    /// The largest ε for which the verdict on the stiffnesses given stands; `None` where none is proven.
-    pub margin: Option<f64>,
-    /// Growth, rounded; 0 where nothing grows, `None` where that is not decided.
-    pub rate: Option<f64>,
-    /// Real and imaginary part of the fastest growing shape, mass-weighted.
-    pub growing: Option<[Vec<f64>; 2]>,
 }
 
 fn outer_of(steps: &[Rational]) -> Result<Outer> {
@@ -102,10 +107,61 @@ fn outer_of(steps: &[Rational]) -> Result<Outer> {
     })
 }
 
+impl Search for AtRatio<'_> {
+    fn region_end(&self) -> Option<(f64, f64)> {
+        self.kernel.first_region_end(self.inner_steps(), 0.0)
+    }
+
+    fn is_stable(&self, step: f64) -> bool {
+        self.outer(step).is_ok_and(|outer| self.kernel.is_stable(&outer, 0.0))
+    }
+
+    fn is_unstable(&self, step: f64) -> bool {
+        self.outer(step).is_ok_and(|outer| self.kernel.is_unstable(&outer, 0.0))
+    }
+
+    fn unstable_end(&self, at: f64, width: f64) -> Result<Option<f64>> {
+        // A little inwards, for the roundings of the roots.
+        let inner = 0.999_999 * width;
+        let middle = at / (1.0 - inner).sqrt();
+        let grows = self.kernel.has_real_unstable_mode(&self.outer(middle)?, width);
+        Ok(grows.then(|| middle * (1.0 + inner).sqrt()))
+    }
+
+    fn rate(&self, step: f64) -> Result<f64> {
+        Ok(self.kernel.growth(&self.outer(step)?))
+    }
+
+    fn covers_band(&self, step: f64, band: f64, epsilon: f64) -> bool {
+        self.outer(step).is_ok_and(|outer| self.kernel.covers_band(&outer, band, epsilon))
+    }
+
+    fn band_bracket(&self, holds: &dyn Fn(f64) -> bool) -> Option<(f64, f64)> {
+        let end = self.kernel.band_end(self.inner_steps());
+        bracket_below(end, |step| end.is_finite() && holds(step))
+    }
+
+    fn damped_period(&self, step: f64, friction: f64) -> Option<(Mat<f64>, f64)> {
+        self.kernel.damped_period(&self.outer(step).ok()?, friction)
+    }
+}
+
+impl Kernel {
+    /// As [`Search::first_unstable`], of all outer steps of as many inner ones.
+    pub fn first_unstable(&self, inner_steps: u64) -> Option<(f64, f64)> {
+        self.at(&Outer::new(1.0, inner_steps).ok()?).first_unstable()
+    }
+
+    /// As [`Search::band_edge`], of all outer steps of as many inner ones.
+    pub fn band_edge(&self, inner_steps: u64, band: f64, epsilon: f64) -> Option<f64> {
+        self.at(&Outer::new(1.0, inner_steps).ok()?).band_edge(band, epsilon)
+    }
+}
+
 /// Two levels, the outer step a multiple of the inner one.
 impl Source for Kernel {
-    fn check(&self, steps: &[Rational]) -> Result<()> {
-        outer_of(steps).map(|_| ())
+    fn at(&self, steps: &[Rational]) -> Result<Box<dyn Search + '_>> {
+        Ok(Box::new(self.at(&outer_of(steps)?)))
     }
 
     fn removed(&self) -> Option<&Removed> {
@@ -138,34 +194,6 @@ impl Source for Kernel {
         })
     }
 
-    fn first_unstable(&self, steps: &[Rational]) -> Result<Option<(f64, f64)>> {
-        Ok(self.first_unstable(outer_of(steps)?.inner_steps()))
-    }
-
-    fn unstable_up_to(&self, steps: &[Rational], from: f64, least: f64) -> Result<f64> {
-        self.unstable_up_to(outer_of(steps)?.inner_steps(), from, least)
-    }
-
-    fn growing(&self, steps: &[Rational], from: f64, width: f64) -> Result<Vec<Growing>> {
-        self.growing(outer_of(steps)?.inner_steps(), from, width)
-    }
-
-    fn covers_band(&self, steps: &[Rational], band: f64, accuracy: f64) -> Result<bool> {
-        Ok(self.covers_band(&outer_of(steps)?, band, accuracy))
-    }
-
-    fn band_edge(&self, steps: &[Rational], band: f64, accuracy: f64) -> Result<Option<f64>> {
-        Ok(self.band_edge(outer_of(steps)?.inner_steps(), band, accuracy))
-    }
-
-    fn damping(&self, steps: &[Rational], friction: f64) -> Result<Option<Damping>> {
-        Ok(self.damping(&outer_of(steps)?, friction))
-    }
-
-    fn masking_friction(&self, steps: &[Rational]) -> Result<Option<f64>> {
-        Ok(self.masking_friction(&outer_of(steps)?))
-    }
-
     fn kernel(&self) -> Option<&Kernel> {
         Some(self)
     }
@@ -173,8 +201,8 @@ impl Source for Kernel {
 
 /// Any other number of levels, or ratios.
 impl Source for Nested {
-    fn check(&self, steps: &[Rational]) -> Result<()> {
-        self.at(steps).map(|_| ())
+    fn at(&self, steps: &[Rational]) -> Result<Box<dyn Search + '_>> {
+        Ok(Box::new(self.at(steps)?))
     }
 
     fn removed(&self) -> Option<&Removed> {
@@ -194,44 +222,7 @@ impl Source for Nested {
     }
 
     fn decide(&self, steps: &[Rational], accuracy: f64) -> Result<Decided> {
-        let (at, outer) = (self.at(steps)?, outermost(steps));
-        let at_step = at.decide(outer, accuracy);
-        let margin = (at_step.rate == Some(0.0)).then(|| at.margin(outer)).flatten();
-        Ok(Decided {
-            holds: at_step.holds,
-            is_in_first_region: at_step.is_in_first_region,
-            margin,
-            rate: at_step.rate,
-            growing: at_step.growing,
-        })
-    }
-
-    fn first_unstable(&self, steps: &[Rational]) -> Result<Option<(f64, f64)>> {
-        Ok(self.at(steps)?.first_unstable())
-    }
-
-    fn unstable_up_to(&self, steps: &[Rational], from: f64, least: f64) -> Result<f64> {
-        self.at(steps)?.unstable_up_to(from, least)
-    }
-
-    fn growing(&self, steps: &[Rational], from: f64, width: f64) -> Result<Vec<Growing>> {
-        self.at(steps)?.growing(from, width)
-    }
-
-    fn covers_band(&self, steps: &[Rational], band: f64, accuracy: f64) -> Result<bool> {
-        Ok(self.at(steps)?.covers_band(outermost(steps), band, accuracy))
-    }
-
-    fn band_edge(&self, steps: &[Rational], band: f64, accuracy: f64) -> Result<Option<f64>> {
-        Ok(self.at(steps)?.band_edge(band, accuracy))
-    }
-
-    fn damping(&self, steps: &[Rational], friction: f64) -> Result<Option<Damping>> {
-        Ok(self.at(steps)?.damping(outermost(steps), friction))
-    }
-
-    fn masking_friction(&self, steps: &[Rational]) -> Result<Option<f64>> {
-        Ok(self.at(steps)?.masking_friction(outermost(steps)))
+        Ok(self.at(steps)?.decide(outermost(steps), accuracy))
     }
 }
 

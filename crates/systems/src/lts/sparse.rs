@@ -6,6 +6,7 @@ use faer::Mat;
 use super::columns::{Block, Sparse, effective};
 use super::scheme::{Level, LocalSteps, Scheme, SchemeSummary};
 use crate::half::norm;
+use crate::levels::search::first_past;
 use crate::levels::sparse::{Pattern, Triplets, symmetric};
 use crate::linear::sparse::Symmetric;
 use crate::linear::system::{Potential, System};
@@ -125,11 +126,6 @@ impl SparseSteps {
     /// The products of one factorization.
     pub fn products(&self) -> f64 {
         self.pattern.products()
-    }
-
-    /// How often the finest level steps in a step.
-    pub fn substeps(&self) -> u32 {
-        self.levels.iter().map(|level| level.substeps).product()
     }
 
     /// The levels, the coarsest first.
@@ -327,12 +323,11 @@ impl SparseSteps {
             return Some((top, resonance));
         }
         let (lo, beyond) = bisected((start, top), WIDTH, |dt| Some(is_below(dt)));
-        let steps = (0..40).map(|k| beyond * (1.0 + WIDTH / 1.6 * 1.5f64.powi(k)));
-        let is_beyond = |dt: &f64| {
+        let is_beyond = |dt: f64| {
             let (values, off) = self.at(dt * dt);
             self.below(&values, off, 4.0) == Holds::Unstable
         };
-        let told = steps.take_while(|dt| *dt < resonance).find(is_beyond);
+        let told = first_past(beyond, WIDTH / 1.6, resonance, is_beyond);
         Some((lo, told.unwrap_or(resonance)))
     }
 

@@ -135,6 +135,7 @@ impl Coefficient for f64 {
         self * 2f64.powi(k)
     }
 
+    #[inline(always)]
     fn near(&self) -> f64 {
         *self
     }

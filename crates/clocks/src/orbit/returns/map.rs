@@ -31,7 +31,7 @@ use number::vector::instructions::{Instructions, Task};
 pub const UP: f64 = 1.0 + 1e-12;
 
 /// More than any number of underflows, of squares too, adds to a function whose largest entry is near 1.
-const FLOOR: f64 = 1e-150;
+pub const FLOOR: f64 = 1e-150;
 
 /// Room for the terms of a function of doubles, and of any function.
 pub const FEW: usize = 16;
@@ -66,9 +66,9 @@ fn parts<T: Coefficient>(m: &Entries<T>) -> [f64; 4] {
     [a + d, b - c, a - d, b + c]
 }
 
-/// The spectral norm of a matrix.
+/// The spectral norm of a matrix: (|(a + d, b − c)| + |(a − d, b + c)|)/2.
 #[inline(always)]
-fn norm<T: Coefficient>(m: &Entries<T>) -> f64 {
+pub fn norm<T: Coefficient>(m: &Entries<T>) -> f64 {
     let [x, y, u, v] = parts(m);
     0.5 * (length(x, y) + length(u, v)) * UP
 }

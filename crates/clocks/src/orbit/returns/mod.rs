@@ -30,6 +30,8 @@ mod series;
 mod slow;
 mod turn;
 
+pub use map::{FLOOR, UP, norm};
+
 use super::ends::Ends;
 use crate::propagator::{LongClocks, PartialSigns};
 use coefficient::{Coefficient, Long};

@@ -4,12 +4,10 @@ use faer::Mat;
 use num_complex::Complex64;
 
 use super::levels::{ROUNDINGS, Steps};
-use crate::friction::{Damping, Radius, damping};
 use crate::half::float::FloatBlocks;
 use crate::half::norm;
 use crate::half::period::{Drifts, Propagated, Stiff, Stiffness, follow, follow_looking};
 use crate::levels::counts::between_signs;
-use crate::levels::damped::least_masking;
 use crate::spectrum::bauer_fike::{Term, gamma};
 use crate::spectrum::discs::{Spectrum, product};
 use crate::spectrum::rate::exponent;
@@ -35,7 +33,7 @@ struct Turning {
 impl Steps<'_> {
     /// The period with friction γ per unit time, v → exp(−γ t) v in the middle of every drift, and a bound on
     /// its error.
-    fn damped_period(&self, step: f64, friction: f64) -> Option<(Mat<f64>, f64)> {
+    pub(super) fn whole_damped_period(&self, step: f64, friction: f64) -> Option<(Mat<f64>, f64)> {
         let ticks = step / self.outer * to_f64(self.schedule.tick());
         let decay = from_f64_exact(friction * ticks).filter(|value| *value >= Rational::default())?;
         let turning = self.turning(step);
@@ -43,23 +41,6 @@ impl Steps<'_> {
         let drifts = Drifts { inverse_mass: &turning.drifts, decay: &decay, off: turning.off };
         let found = follow(&drifts, self.schedule.symmetric_period(), |_, clock| &kicks[clock]);
         found.error.map(|error| (found.matrix(), error))
-    }
-
-    /// Where the spectral radius of a period with friction γ per unit time lies; `None`: doubles do not tell.
-    pub fn damping(&self, step: f64, friction: f64) -> Option<Damping> {
-        let (q, error) = self.damped_period(step, friction)?;
-        damping(&q, error, Radius::of(&q, error))
-    }
-
-    /// A friction that is proven to mask, where something grows without one: about the least. `None` where
-    /// none was found.
-    pub fn masking_friction(&self, step: f64) -> Option<f64> {
-        let radius = |friction: f64| {
-            let values = self.damped_period(step, friction).and_then(|(q, _)| q.eigenvalues().ok());
-            values.map_or(f64::NAN, |all| all.into_iter().map(Complex64::norm).fold(0.0, f64::max))
-        };
-        let proven = |friction: f64| self.damping(step, friction) == Some(Damping::Damped);
-        least_masking(self.rounded_rate(step), step, radius, proven)
     }
 
     /// The coordinates at a step.
@@ -328,6 +309,7 @@ mod tests {
     use nalgebra::DMatrix;
 
     use super::*;
+    use crate::levels::search::Search;
     use crate::levels::{Hessians, Nested};
     use number::rational::ratio;
 

@@ -31,28 +31,15 @@ mod levels;
 use action::Bounds;
 pub use levels::{Nested, Steps};
 
-use super::growth::Grows;
-use super::search::{EDGE, carried_on, largest, unstable_past, with_first};
+use faer::Mat;
+
+use super::search::{Decided, EDGE, Search, largest, with_first};
 use crate::signs;
 use crate::spectrum::discs::Spectrum;
 use crate::vary::stretches::Stretch;
 use crate::verdict::measured::Holds;
 use number::bisected;
 use number::error::Result;
-
-/// What is proven and found at one outer step, all steps in their ratios.
-#[derive(Clone, Debug)]
-pub struct AtStep {
-    /// What is proven of all stiffnesses within the accuracy.
-    pub holds: Holds,
-    /// Whether that is so of every smaller step, too.
-    pub is_in_first_region: bool,
-    /// max ln |λ|/T, rounded: 0 where the stiffnesses given are proven stable; `None` where these are not
-    /// decided.
-    pub rate: Option<f64>,
-    /// Real and imaginary part of what grows fastest, in the mass-weighted coordinates given.
-    pub growing: Option<[Vec<f64>; 2]>,
-}
 
 /// Room for the roundings of a factor.
 const ROOM: f64 = 1e-12;
@@ -114,17 +101,17 @@ impl Steps<'_> {
     }
 
     /// The verdict, and what grows.
-    pub fn decide(&self, step: f64, accuracy: f64) -> AtStep {
+    pub fn decide(&self, step: f64, accuracy: f64) -> Decided {
         let is_in_first_region = self.is_in_first_region(step, accuracy);
         let holds = if is_in_first_region { Holds::Stable } else { self.verdict_within(step, accuracy) };
         let given = if holds == Holds::Undecided { self.verdict_within(step, 0.0) } else { holds };
-        let found = AtStep { holds, is_in_first_region, rate: None, growing: None };
+        let found = Decided { holds, is_in_first_region, margin: None, rate: None, growing: None };
         match given {
-            Holds::Stable => AtStep { rate: Some(0.0), ..found },
+            Holds::Stable => Decided { margin: self.margin(step), rate: Some(0.0), ..found },
             Holds::Undecided => found,
             Holds::Unstable => {
                 let (rate, growing) = self.fastest(step).unzip();
-                AtStep { rate, growing, ..found }
+                Decided { rate, growing, ..found }
             }
         }
     }
@@ -140,15 +127,6 @@ impl Steps<'_> {
             .then(|| largest(1.1, |epsilon| self.verdict_within(step, epsilon) == holds))?
     }
 
-    /// \[lo, hi\]: every outer step in (0, lo] is proven stable at these ratios, hi is proven unstable.
-    /// `None` where Σ K_k is not proven definite.
-    pub fn first_unstable(&self) -> Option<(f64, f64)> {
-        let stable = |step: f64| self.is_in_first_region(step, 0.0);
-        let (lo, hi) = self.bracket(stable)?;
-        let end = bisected((lo, hi), EDGE, |step| Some(stable(step)));
-        unstable_past(end, |step| self.is_unstable_between([step; 2], 0.0))
-    }
-
     /// Two outer steps, one half the other, at the smaller of which `holds`.
     fn bracket(&self, holds: impl Fn(f64) -> bool) -> Option<(f64, f64)> {
         let at = |k: i32| self.outer * 2f64.powi(k);
@@ -157,24 +135,36 @@ impl Steps<'_> {
         }
         (1..40).find(|&k| holds(at(-k))).map(|k| (at(-k), at(1 - k)))
     }
+}
 
-    /// The step up to which every outer one from `at` on is proven unstable by the signs: up to where the
-    /// step by which a verdict is carried on falls to `least`, relative, or 1.5 `at`.
-    ///
-    /// # Errors
-    /// None: the signature is that of two levels.
-    pub fn unstable_up_to(&self, at: f64, least: f64) -> Result<f64> {
-        carried_on(at, least, |at, width| {
-            let end = at * (1.0 + width);
-            Ok(self.is_unstable_between([at, end], 0.0).then_some(end))
-        })
+impl Search for Steps<'_> {
+    fn region_end(&self) -> Option<(f64, f64)> {
+        let stable = |step: f64| self.is_in_first_region(step, 0.0);
+        Some(bisected(self.bracket(stable)?, EDGE, |step| Some(stable(step))))
+    }
+
+    fn is_stable(&self, step: f64) -> bool {
+        self.verdict_within(step, 0.0) == Holds::Stable
+    }
+
+    fn is_unstable(&self, step: f64) -> bool {
+        self.is_unstable_between([step; 2], 0.0)
+    }
+
+    fn unstable_end(&self, at: f64, width: f64) -> Result<Option<f64>> {
+        let end = at * (1.0 + width);
+        Ok(self.is_unstable_between([at, end], 0.0).then_some(end))
+    }
+
+    fn rate(&self, step: f64) -> Result<f64> {
+        Ok(self.rounded_rate(step))
     }
 
     /// Whether it is proven stable at this outer step, and at every smaller one, with every K_1' and s_k K_k
     /// in place of the stiffnesses for which K_1' ≤ K_1/(1 − b)², (1 + b)⁻² ≤ s_k ≤ (1 − b)⁻² and the sum is
     /// definite, b = `band` in \[0, 1): the periods of the innermost level may be shorter by b each for
     /// itself, or longer, those of each other level by b together. All are known within ε of their sizes.
-    pub fn covers_band(&self, step: f64, band: f64, epsilon: f64) -> bool {
+    fn covers_band(&self, step: f64, band: f64, epsilon: f64) -> bool {
         let nested = self.nested;
         let [least, most] = [(1.0 + band).powi(-2) * (1.0 - ROOM), (1.0 - band).powi(-2) * (1.0 + ROOM)];
         let error = |k: usize| nested.error_within(k, epsilon);
@@ -188,20 +178,11 @@ impl Steps<'_> {
         nested.is_definite_within(0.0) && (0..1 << slower).all(|which| self.is_positive(step, &corner(which)))
     }
 
-    /// The outer step up to which [`Steps::covers_band`] provably holds, within 1e-6 of the longest; `None`
-    /// where it does for none.
-    pub fn band_edge(&self, band: f64, epsilon: f64) -> Option<f64> {
-        let holds = |step: f64| self.covers_band(step, band, epsilon);
-        Some(bisected(self.bracket(holds)?, 1e-6, |step| Some(holds(step))).0)
-    }
-}
-
-impl Grows for Steps<'_> {
-    fn rate(&self, step: f64) -> Result<f64> {
-        Ok(self.rounded_rate(step))
+    fn band_bracket(&self, holds: &dyn Fn(f64) -> bool) -> Option<(f64, f64)> {
+        self.bracket(holds)
     }
 
-    fn is_stable(&self, step: f64) -> bool {
-        self.verdict_within(step, 0.0) == Holds::Stable
+    fn damped_period(&self, step: f64, friction: f64) -> Option<(Mat<f64>, f64)> {
+        self.whole_damped_period(step, friction)
     }
 }

@@ -20,7 +20,7 @@
 //! | `dissect` | in which order their rows are eliminated |
 //! | `fronts` | the pivots of an elimination that keeps no factors |
 //! | `krylov` | one eigenvector of an operator |
-//! | `region` | the verdict, the margin, the first unstable step |
+//! | `region` | the verdict; in `edge` the margin and the first unstable step, in `total` the sum of both |
 
 mod dissect;
 mod fronts;
