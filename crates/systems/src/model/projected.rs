@@ -6,6 +6,7 @@ use std::borrow::Cow;
 use faer::{Mat, MatRef};
 use nalgebra::DMatrix;
 
+use super::Model;
 use super::measured::{Body, MeasuredSystem, rational};
 use crate::friction::{Friction, damped_system};
 use crate::levels::apart::{Given, common_null_space, of_particles};

@@ -11,7 +11,7 @@ use number::rational::to_f64;
 use number::{Laurent, Rational};
 use systems::avi::Run;
 use systems::levels::{Hessians, Near};
-use systems::{Analysis, Holds, Limits, Measured, Model, full_period};
+use systems::{Analysis, Holds, Limits, Measured, full_period};
 
 /// Multipliers are rounded eigenvalues: those of nearly defective propagators are right to half their digits
 /// only, but not the sums of them.
@@ -36,10 +36,7 @@ pub fn traces(scene: &SystemScene, analysis: &Analysis) -> Checked {
             power + power.inv()
         }));
     }
-    let q: DMatrix<f64> = match scene.model() {
-        Model::NoGradient(jacobians) => jacobians.full_period(),
-        other => full_period(other.moving()?.as_ref()),
-    };
+    let q = scene.model().full_period()?;
     let (norm, n) = (q.norm(), q.nrows() as f64 / 2.0);
     let sums = [
         (q.trace(), turns.iter().sum::<Complex64>(), norm),
@@ -83,9 +80,9 @@ pub struct Stands<'a> {
 impl<'a> Stands<'a> {
     pub fn of(scene: &SystemScene, measured: &'a Measured) -> Result<Stands<'a>> {
         let model = scene.model();
-        let source = model.measured_levels().ok().map(|levels| levels.source);
+        let source = model.measured().and_then(|levels| Ok(levels.levels()?.source)).ok();
         let levels = source.as_ref().and_then(|source| source.kernel()).map(|kernel| -> Result<_> {
-            let (hessians, p) = (model.hessians()?, model.inner_steps().unwrap_or(1));
+            let (hessians, p) = (model.measured()?.hessians_of_two()?, model.inner_steps().unwrap_or(1));
             Ok((hessians, kernel.norms(), to_f64(&model.outer_step()), p))
         });
         let levels = levels.transpose()?.filter(|(hessians, _, _, p)| hessians.has_paths(*p));
