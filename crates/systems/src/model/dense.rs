@@ -46,14 +46,23 @@ impl Model for MeasuredSystem {
         (self.size() as u64).saturating_pow(3).saturating_mul(60) / DENSE
     }
 
-    /// Two levels by their kernel, anything else as a rational system of the doubles given.
+    /// Two levels by their kernel, any others as a rational system of the doubles given and by the action.
     fn decide(&self, route: Route, limits: &Limits) -> Result<Analysis> {
         let Some((outer, period)) = self.outer().filter(|_| route == Route::Cheapest) else {
             self.refuse_method("exact arithmetic")?;
-            return self.decide_projected(route, limits);
+            return self.decide_levels(route, limits);
         };
         self.allow(limits)?;
         self.decided(&outer, &period)
+    }
+
+    /// Of levels that are not two without the margin.
+    fn at_point(&self, route: Route, limits: &Limits) -> Result<Analysis> {
+        if self.outer().is_some() {
+            return self.decide(route, limits);
+        }
+        self.refuse_method("exact arithmetic")?;
+        Ok(self.decide_projected(route, limits)?.0)
     }
 
     /// Of two levels in the eigenbasis, where it is known, else at the least cost for this one verdict.
@@ -66,7 +75,7 @@ impl Model for MeasuredSystem {
                 self.hessians()?.verdict(&outer)
             }
             Some((outer, _)) => Ok(self.kernel()?.verdict_within(&outer, accuracy)),
-            None if is_given => Ok(self.decide_projected(Route::Cheapest, limits)?.holds()),
+            None if is_given => Ok(self.decide_projected(Route::Cheapest, limits)?.0.holds()),
             None => self.over_steps(|levels, steps| {
                 let outer = to_f64(steps.last().expect("at least one"));
                 Ok(levels.at(steps)?.verdict_within(outer, accuracy))

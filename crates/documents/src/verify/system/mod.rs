@@ -58,7 +58,9 @@ fn verdict(
         let checked = local::sparse(steps, to_f64(&scene.model().steps()[0]), analysis, local);
         return Ok(seen(steps, Outcome::whole(RUN, checked)?));
     }
-    if let Some(measured) = &analysis.measured {
+    let of_many = scene.model().measured().is_ok() && scene.model().inner_steps().is_none();
+    let of_any = analysis.measured.as_ref().filter(|_| of_many);
+    if let Some(measured) = analysis.measured.as_ref().filter(|_| !of_many) {
         let (limits, route) = (context.work().products(), dense::Stands::of(scene, measured)?);
         let checked = dense::growth(scene, analysis, &limits).and_then(|()| route.check(&limits));
         return match checked {
@@ -81,9 +83,11 @@ fn verdict(
         scene.model().local_steps().map_or(Ok(()), local::steps)?;
         let solved_for = scene.model().plain().filter(|_| scene.model().method() != Method::Respa);
         solved_for.map_or(Ok(()), |plain| implicit::in_doubles(plain, analysis))?;
+        of_any
+            .map_or(Ok(()), |measured| dense::first_unstable(scene, measured, &context.work().products()))?;
         dense::traces(scene, analysis)
     };
-    match exact_kind(scene, analysis.kind, &context.work().products())? {
+    let mut outcome = match exact_kind(scene, analysis.kind, &context.work().products())? {
         Some(truth) => {
             let route = match scene.model().local_steps() {
                 Some(_) => {
@@ -105,7 +109,9 @@ fn verdict(
             };
             Outcome::whole(route, traces())
         }
-    }
+    }?;
+    outcome.not_rechecked.extend(of_any.map(|_| dense::SAME_ROUTE.into()));
+    Ok(outcome)
 }
 
 /// The scheme run, of large ones.
