@@ -88,8 +88,7 @@ impl dyn Model {
         Ok(Some(told.into_iter().filter(|told| *told).count()))
     }
 
-    /// The products that [`stretches`](dyn Model::stretches) takes, as limits count them, where cells are
-    /// narrow throughout.
+    /// The products that these stretches take, as limits count them, where cells are narrow throughout.
     ///
     /// # Errors
     /// As [`Model::cost_between`]; a width outside \[10^-9, 1/10\].

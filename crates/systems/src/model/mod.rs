@@ -45,10 +45,7 @@ use number::rational::{from_f64_exact, to_f64};
 pub use oscillator::Oscillator;
 pub use sparse::SparseSystem;
 
-/// The question that systems without rational stiffnesses refuse.
-const ANOTHER: &str = "varying another number than outer";
-
-/// A kind of system. It answers by its own route what it can; the rest it refuses, and says what to do.
+/// A kind of system. It answers by its own route what it can; the rest is refused, with what to do instead.
 pub trait Model: Debug + Send + Sync {
     /// The rational system that stands for it: itself; with π in the stiffnesses of several degrees of
     /// freedom within 2^-150 of every entry, of one within 2^-60 (where steps are irrational in the unit of
@@ -150,7 +147,8 @@ pub trait Model: Debug + Send + Sync {
     /// Where [`Model::system`] stands for no more than clocks; where measured stiffnesses have another null
     /// space than that of rigid motions.
     fn moving(&self) -> Result<Cow<'_, System>> {
-        if self.has_system() { Ok(Cow::Borrowed(self.system())) } else { Err(self.refused(ANOTHER)) }
+        let what = "varying another number than outer";
+        if self.has_system() { Ok(Cow::Borrowed(self.system())) } else { Err(self.refused(what)) }
     }
 
     /// The system that Algorithm 1 runs.
