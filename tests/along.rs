@@ -212,7 +212,7 @@ fn a_molecule_at_rest_is_decided_along_its_orbit_as_at_its_minimum() {
         let body =
             Body { masses: Some(of_dofs.clone()), positions: Some(positions.clone()), ..Body::default() };
         let given = steps.iter().cloned().zip(pair.iter().cloned()).collect();
-        let model = Model::Measured(MeasuredSystem::new(body, given, 1e-9).unwrap());
+        let model = MeasuredSystem::new(body, given, 1e-9).unwrap();
         let minimum = model.decide(Route::Cheapest, &limits).unwrap();
         assert_eq!(found.rigid_modes.len(), 6);
         let holds = [&found, &minimum].map(|own| own.measured.as_ref().unwrap().holds.is_stable());

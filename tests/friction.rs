@@ -327,7 +327,7 @@ fn measured_stiffnesses_are_masked_from_where_it_is_told() {
     );
     // Friction takes half its rate from growth, to first order.
     assert!(lo < hi && hi < 1.02 * lo && (lo / (2.0 * growth.0) - 1.0).abs() < 0.2, "{lo} {hi} {growth:?}");
-    let levels = scene.model().measured_levels().unwrap();
+    let levels = scene.model().measured().unwrap().levels().unwrap();
     let (kernel, outer) = (levels.source.kernel().unwrap(), Outer::new(0.0045, 9).unwrap());
     let damping = |x: f64| kernel.at(&outer).damping(outer.step(), x);
     assert_eq!([damping(0.99 * lo), damping(1.01 * hi)], [Some(Damping::Growing), Some(Damping::Damped)]);

@@ -131,9 +131,7 @@ fn the_stiffness_of_the_scheme_is_what_its_steps_do_and_decides() {
         // Some thousand roundings of numbers up to the largest power of U.
         let size = (truth.amax() + 1.0) * f64::from(own.substeps()).powi(2);
         assert!((&f - &truth).amax() <= 1e-11 * size, "{own:?}");
-        let found = Model::LocalSteps(own.clone())
-            .decide(kickdrift::system::Route::Cheapest, &Limits::default())
-            .unwrap();
+        let found = own.decide(kickdrift::system::Route::Cheapest, &Limits::default()).unwrap();
         assert!(found.is_proof(), "{own:?}");
         if let Some(stable) = is_stable(&own) {
             assert_eq!(found.is_stable(), stable, "{own:?}");

@@ -5,7 +5,9 @@ use kickdrift::number::Rational;
 use kickdrift::number::rational::{from_f64_exact, ratio};
 use kickdrift::system::friction::Damping;
 use kickdrift::system::levels::{Hessians, Kernel, Nested, Outer, Search, Source};
-use kickdrift::system::{Holds, Limits, Potential, Symmetric, System, decide_system};
+use kickdrift::system::{
+    Body, Holds, Limits, MeasuredSystem, Model, Potential, Route, Symmetric, System, decide_system,
+};
 use nalgebra::DMatrix;
 
 /// Numbers that repeat, in [−1, 1).
@@ -229,4 +231,23 @@ fn steps_of_another_number_are_refused() {
     let own = nested(&Numbers(3).levels(2));
     let error = own.at(&[ratio(1, 4), ratio(1, 1)]).unwrap_err();
     assert!(error.to_string().contains("there are 3 levels: give as many steps"), "{error}");
+}
+
+/// Steps that meet after 6,000 kicks, and exact arithmetic.
+#[test]
+fn a_verdict_that_does_not_use_the_accuracy_says_so() {
+    let step = |k: i64| ratio(1, k);
+    let given = [1, 3000, 2999].map(|k| (step(k), DMatrix::from_element(1, 1, 0.3))).to_vec();
+    let body = Body { masses: Some(vec![1.0]), ..Body::default() };
+    let long = MeasuredSystem::new(body.clone(), given, 1e-2).unwrap();
+    let short = [1, 2, 3].map(|k| (step(k), DMatrix::from_element(1, 1, 0.3))).to_vec();
+    let short = MeasuredSystem::new(body, short, 1e-2).unwrap();
+    for (measured_system, route) in [(&long, Route::Cheapest), (&short, Route::Exact)] {
+        let found = measured_system.decide(route, &Limits::default()).unwrap();
+        assert!(found.is_proof() && found.measured.is_none(), "{route:?}");
+        let is_said = |warning: &String| warning.contains("their accuracy is not used");
+        assert!(found.warnings.iter().any(is_said), "{route:?}: {:?}", found.warnings);
+    }
+    let found = short.decide(Route::Cheapest, &Limits::default()).unwrap();
+    assert!(found.warnings.is_empty() && found.measured.unwrap().holds == Holds::Stable);
 }

@@ -4,6 +4,8 @@
 #[path = "rigid/reference.rs"]
 mod reference;
 
+use std::sync::Arc;
+
 use kickdrift::number::Rational;
 use kickdrift::number::rational::{from_f64_exact, ratio};
 use kickdrift::scene::{Array, Arrays, SystemScene};
@@ -53,7 +55,7 @@ fn a_full_turn_of_a_fine_mode_in_a_step_is_a_drift_and_no_rigid_motion() {
 #[test]
 fn no_range_of_steps_is_stable_through_a_full_turn() {
     let scene = SystemScene::read(&lts("2", "[[8]]", "[0]", 4)).unwrap();
-    let Model::LocalSteps(own) = scene.model() else { panic!("local steps") };
+    let own = scene.model().local_steps().unwrap();
     let found = own.stretches((1.9, 2.1), &Limits::default()).unwrap();
     let holds = |at: f64| {
         found.iter().filter(|own| own.lo <= at && at <= own.hi).any(|own| own.verdict == Holds::Stable)
@@ -110,7 +112,7 @@ fn measured(steps: [&str; 2], stiffnesses: [&[f64]; 2], accuracy: f64) -> Measur
 }
 
 fn decide(own: MeasuredSystem) -> Analysis {
-    Model::Measured(own).decide(Route::Cheapest, &Limits::default()).unwrap()
+    own.decide(Route::Cheapest, &Limits::default()).unwrap()
 }
 
 #[test]
@@ -139,7 +141,7 @@ fn a_fall_within_the_accuracy_of_the_sum_and_beyond_that_of_its_own_stiffness_is
 #[test]
 fn potentials_that_balance_each_other_by_a_small_part_are_neither_rigid_nor_held() {
     let own = measured(["1/2", "1"], [&[1.0, 0.01], &[0.5, -0.01]], 1e-6);
-    let error = Model::Measured(own.clone()).decide(Route::Cheapest, &Limits::default()).unwrap_err();
+    let error = own.decide(Route::Cheapest, &Limits::default()).unwrap_err();
     assert!(error.to_string().contains("neither rigid nor clearly held"), "{error}");
     // The remedy that it names.
     assert!(decide(own.keeping_rigid()).measured.unwrap().removed.is_none());
@@ -150,7 +152,7 @@ fn what_is_soft_beside_the_roundings_of_doubles_is_no_rigid_motion_of_rational_s
     let k = |a: i64| Symmetric::diagonal(&[ratio(a, 1), Rational::zero(), ratio(1, 1_000_000_000_000_000)]);
     let mass = Symmetric::diagonal(&vec![ratio(1, 1); 3]);
     let potentials = vec![Potential::new(k(4), ratio(1, 10)), Potential::new(k(1), ratio(1, 2))];
-    let own = Model::Rational(System::new(mass, potentials).unwrap());
+    let own = Arc::new(System::new(mass, potentials).unwrap());
     let own = own.with_method("impulse".parse::<Method>().unwrap()).unwrap();
     let removed = own.decide(Route::Cheapest, &Limits::default()).unwrap().measured.unwrap().removed.unwrap();
     assert_eq!((removed.count, removed.found_by), (1, "common null space"));
@@ -212,20 +214,19 @@ fn atoms_that_something_holds_have_no_rigid_motions() {
         [(50.0, "a field or tethers hold the atoms"), (0.05, "neither rigid nor clearly held")]
     {
         let own = of_molecule(molecule(100.0, 0.0, 0.0), molecule(5.0, 0.0, tether));
-        let error = Model::Measured(own.clone()).decide(Route::Cheapest, &Limits::default()).unwrap_err();
+        let error = own.decide(Route::Cheapest, &Limits::default()).unwrap_err();
         assert!(error.to_string().contains(expected), "{error}");
-        let error = Model::Measured(own.clone()).measured_levels().err().map(|own| own.to_string());
+        let error = own.levels().err().map(|own| own.to_string());
         assert!(error.is_some_and(|own| own.contains(expected)));
         assert!(decide(own.keeping_rigid()).is_proof());
     }
     // Tethers that a potential on another clock undoes: the total holds nothing.
     let own = of_molecule(molecule(20.0, 0.0, 50.0), molecule(5.0, 0.0, -50.0));
-    let error = Model::Measured(own).decide(Route::Cheapest, &Limits::default()).unwrap_err();
+    let error = own.decide(Route::Cheapest, &Limits::default()).unwrap_err();
     assert!(error.to_string().contains("a field or tethers hold the atoms"), "{error}");
     // An accuracy as it is named is enough.
     let own = of_molecule(molecule(100.0, 0.0, 0.0), molecule(5.0, 0.0, 1e-4));
-    let error =
-        Model::Measured(own.clone()).decide(Route::Cheapest, &Limits::default()).unwrap_err().to_string();
+    let error = own.decide(Route::Cheapest, &Limits::default()).unwrap_err().to_string();
     let named = error.split("\"accuracy\": ").nth(1).unwrap().split(' ').next().unwrap();
     assert_eq!(
         decide(own.at_accuracy(named.parse().unwrap()).unwrap()).measured.unwrap().removed.unwrap().count,
@@ -373,10 +374,10 @@ fn all(seeds: std::ops::Range<u64>) -> Tally {
         let mut numbers = Numbers(seed * 7_919 + 1);
         let given = Given::random(&mut numbers, seed);
         let name = format!("seed {seed}");
-        let model = match &given.step {
-            Step::Clocks => Model::Rational(system(&given)),
+        let model: Arc<dyn Model> = match &given.step {
+            Step::Clocks => Arc::new(system(&given)),
             Step::Midpoint => match ImplicitExplicit::new(system(&given)) {
-                Ok(own) => Model::Implicit(Box::new(own)),
+                Ok(own) => Arc::new(own),
                 Err(_) => {
                     tally.refused += 1;
                     continue;
@@ -387,9 +388,7 @@ fn all(seeds: std::ops::Range<u64>) -> Tally {
                     fine: fine.iter().copied().collect(),
                     substeps: *substeps,
                 };
-                Model::LocalSteps(
-                    LocalSteps::new(system(&given), levels.iter().map(level).collect()).unwrap(),
-                )
+                Arc::new(LocalSteps::new(system(&given), levels.iter().map(level).collect()).unwrap())
             }
             Step::Dense { accuracy, keeps } => {
                 let doubles = |(h, k): &(Rational, DMatrix<Rational>)| {
@@ -402,7 +401,7 @@ fn all(seeds: std::ops::Range<u64>) -> Tally {
                 let own =
                     MeasuredSystem::new(body, given.potentials.iter().map(doubles).collect(), *accuracy)
                         .unwrap();
-                Model::Measured(if *keeps { own.keeping_rigid() } else { own })
+                Arc::new(if *keeps { own.keeping_rigid() } else { own })
             }
         };
         match model.decide(Route::Cheapest, &limits) {

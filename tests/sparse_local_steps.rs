@@ -168,7 +168,7 @@ fn all_together_are_set_apart_only_where_rows_sum_to_0_within_the_rounding_of_th
         let steps = SparseSteps::new(&[1.0; 4], &floating(more), levels.clone()).unwrap();
         let rigid = steps.rigid_motions();
         let model = SparseSystem::with_local_steps(steps, &ratio(1, 1)).unwrap();
-        let found = Model::Sparse(Box::new(model)).decide(Route::Cheapest, &Limits::default()).unwrap();
+        let found = Model::decide(&model, Route::Cheapest, &Limits::default()).unwrap();
         (found, rigid)
     };
     let (free, rigid) = decided(0.0);
@@ -188,7 +188,7 @@ fn all_together_are_set_apart_only_where_rows_sum_to_0_within_the_rounding_of_th
     many.iter_mut().filter(|own| own.0 == own.1).for_each(|own| own.2 += 3e-14);
     let steps = SparseSteps::new(&vec![1.0; n], &many, levels).unwrap();
     assert_eq!((steps.rigid_motions(), steps.verdict(1.0)), (0, Holds::Undecided));
-    let model = Model::Sparse(Box::new(SparseSystem::with_local_steps(steps, &ratio(1, 1)).unwrap()));
+    let model = SparseSystem::with_local_steps(steps, &ratio(1, 1)).unwrap();
     let found = model.decide(Route::Cheapest, &Limits::default()).unwrap();
     assert!(
         found.warnings.iter().any(|own| own.contains("neither clearly free nor clearly held")),
@@ -202,7 +202,7 @@ fn a_full_turn_of_a_fine_motion_is_no_rigid_motion() {
     let levels = vec![Level { fine: [1].into(), substeps: 4 }];
     let steps = SparseSteps::new(&[1.0; 2], &[(0, 0, 0.5), (1, 1, 8.0), (1, 0, 0.1)], levels).unwrap();
     assert_eq!((steps.rigid_motions(), steps.verdict(2.0)), (0, Holds::Undecided));
-    let model = Model::Sparse(Box::new(SparseSystem::with_local_steps(steps, &ratio(2, 1)).unwrap()));
+    let model = SparseSystem::with_local_steps(steps, &ratio(2, 1)).unwrap();
     let found = model.decide(Route::Cheapest, &Limits::default()).unwrap();
     assert!(!found.is_stable() && found.rigid_modes.is_empty(), "{found:?}");
     assert_eq!(found.kind, Some(Kind::Parabolic), "{found:?}");
@@ -236,7 +236,6 @@ fn what_is_proven_of_small_schemes_is_so_in_exact_arithmetic() {
                 Holds::Unstable => assert!(!truth.is_stable(), "{case} {step} {truth:?}"),
                 Holds::Undecided => {
                     let model = SparseSystem::with_local_steps(sparse.clone(), &step).unwrap();
-                    let model = Model::Sparse(Box::new(model));
                     let found = model.decide(Route::Cheapest, &Limits::default()).unwrap();
                     assert!(found.kind.is_none_or(|kind| kind == truth), "{case} {step}");
                 }

@@ -528,6 +528,37 @@ fn long_periods_are_refused_with_their_cost_and_allowed_by_a_budget() {
     assert!(code == Some(2) && text.contains("1000000 periods of"), "{text}");
 }
 
+/// Bonds, angles and the rest of four waters, each on a clock of its own: margin, first unstable step and the
+/// verdict within the accuracy are those that advice has.
+#[test]
+fn a_system_on_three_clocks_stands_as_far_as_the_advice_on_it_says() {
+    let folder = std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/data/scenes"));
+    let text = std::fs::read_to_string(folder.join("water4-levels.json")).unwrap();
+    let scene = SystemScene::read_in(folder, &text).unwrap();
+    let levels = scene.model().measured().unwrap().levels().unwrap();
+    let steps = scene.model().steps();
+    let advised = levels.source.decide(&steps, levels.accuracy).unwrap();
+    let found = scene.model().decide(Route::Cheapest, &Limits::default()).unwrap();
+    let measured = found.measured.as_ref().unwrap();
+    assert!(found.is_stable() && measured.holds == Holds::Stable && !measured.is_above_unstable);
+    assert!(measured.margin.is_some_and(|margin| margin > 1e-5) && measured.margin == advised.margin);
+    assert_eq!((measured.holds, measured.accuracy), (advised.holds, levels.accuracy));
+    assert!(measured.first_unstable.is_some());
+    assert_eq!(measured.first_unstable, levels.source.first_unstable(&steps).unwrap());
+    assert_eq!(measured.removed.as_ref().map(|removed| removed.count), Some(6));
+    // Known to a hundredth only, it is not proven of all.
+    let roughly = scene.clone().asked(Some(1e-2), false, None, None).unwrap();
+    let roughly = roughly.model().decide(Route::Cheapest, &Limits::default()).unwrap();
+    assert_eq!(roughly.measured.as_ref().unwrap().holds, Holds::Undecided);
+    assert_eq!((roughly.within(0.0), roughly.within(1.0)), (Holds::Stable, Holds::Undecided));
+    // Above the first unstable step.
+    let (_, hi) = measured.first_unstable.unwrap();
+    let axis: Axis = format!("outer={}..{}:1", 1.01 * hi, 1.01 * hi).parse().unwrap();
+    let above = Scan::new(scene, axis.clone(), None).unwrap().at(&axis.lo, &axis.lo).unwrap();
+    let above = above.model().decide(Route::Cheapest, &Limits::default()).unwrap();
+    assert!(above.measured.as_ref().unwrap().is_above_unstable);
+}
+
 /// Bonds, angles and the rest on a clock each, at steps where four pairs and more of multipliers are off the
 /// circle and none of them is real.
 #[test]

@@ -11,8 +11,8 @@ use documents::report::system::Colouring;
 use number::Rational;
 use number::error::{Error, Result};
 use number::file;
-use systems::Holds;
 use systems::levels::Method;
+use systems::{Holds, Route};
 
 /// Flags of `system`.
 ///
@@ -84,7 +84,11 @@ impl Args {
         let asked = self.asked(system)?;
         let work = Work { arrays: Some(&arrays), ..common.work() };
         if self.exit_code && common.quiet && common.output.is_none() {
-            return self.code(asked.scene(&work)?.model().verdict(asked.route(), &work.products())?);
+            let (scene, limits) = (asked.scene(&work)?, work.products());
+            return self.code(match asked.route() {
+                Route::Exact => scene.model().decide(Route::Exact, &limits)?.holds(),
+                Route::Cheapest => scene.model().verdict(0.0, &limits)?,
+            });
         }
         let answer = asked.answer(&work)?;
         match drawing {

@@ -85,9 +85,9 @@ fn what_is_missing_is_named_with_a_remedy() {
         ("advise data/scenes/ring24.json", "stiffness = given in place"),
         (
             "advise data/scenes/local-steps.json",
-            "scheme = lts: advice is for molecules: `kickdrift system FILE --intervals",
+            "scheme = lts: advice has no place in a scheme of local steps: `kickdrift system FILE --intervals",
         ),
-        ("advise data/scenes/bar-avi.json", "scheme = avi: advice is for molecules"),
+        ("advise data/scenes/bar-avi.json", "scheme = avi: advice has no place in a scheme of local steps"),
         ("advise data/scenes/water4.json --steps 0.7fs,4fs", "a multiple of the inner one"),
         ("advise data/scenes/water4.json --period 10fs", "cannot be used with"),
         (

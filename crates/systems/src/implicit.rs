@@ -11,10 +11,17 @@
 //! one clock decides it exactly. With h² taken into the stiffness both are linear in h², which is all that
 //! the intervals of a step need.
 
+use std::sync::Arc;
+
 use num_traits::One;
 
+use crate::levels::Method;
 use crate::linear::sparse::Symmetric;
 use crate::linear::system::{Potential, System};
+use crate::model::Model;
+use crate::verdict::analysis::Analysis;
+use crate::verdict::decide::decide_by;
+use crate::verdict::limits::{Limits, Route};
 use number::Rational;
 use number::error::{Error, Result};
 use number::rational::ratio;
@@ -38,33 +45,48 @@ impl ImplicitExplicit {
         let step = slow.step.clone();
         Ok(ImplicitExplicit { effective: of_step(&plain, &step)?, plain })
     }
+}
 
-    /// This system with another outer step.
-    ///
-    /// # Errors
-    /// As [`ImplicitExplicit::new`].
-    pub fn at(&self, step: &Rational) -> Result<System> {
-        of_step(&self.plain, step)
+/// Two rational levels, the force of the shorter step by the midpoint rule over the longer one.
+impl Model for ImplicitExplicit {
+    /// Verlet's: masses M + h² F/4, the stiffness F + S, the step h.
+    fn system(&self) -> &System {
+        &self.effective
     }
 
-    /// This system with the step whose square is given, in a unit of time in which that step is 1.
-    ///
-    /// # Errors
-    /// As [`ImplicitExplicit::new`].
-    pub fn at_square(&self, square: &Rational) -> Result<System> {
+    fn plain(&self) -> Option<&System> {
+        Some(&self.plain)
+    }
+
+    fn refused(&self, what: &str) -> Error {
+        Error::input("method", Method::ImplicitExplicit, format!("{what} is for respa: leave it out"))
+    }
+
+    fn method(&self) -> Method {
+        Method::ImplicitExplicit
+    }
+
+    fn remark(&self) -> Option<&'static str> {
+        Some("by implicit-explicit: Verlet's with masses M + h^2 F/4 and the stiffness F + S, F the fast one")
+    }
+
+    /// In the unit of time in which the step is 1.
+    fn at_square(&self, square: &Rational) -> Result<System> {
         let [fast, slow] = two_clocks(&self.plain)?;
         let (mass, stiffness) = parts(&self.plain, fast, slow, square);
         of_stiffness(&self.plain, mass, stiffness.scaled(square), Rational::one())
     }
 
-    /// The system as it was given.
-    pub fn plain(&self) -> &System {
-        &self.plain
+    fn decide_at(&self, outer: &Rational, limits: &Limits) -> Result<Analysis> {
+        decide_by(Route::Cheapest, &of_step(&self.plain, outer)?, limits)
     }
 
-    /// Verlet's system: masses M + h² F/4, the stiffness F + S, the step h.
-    pub fn system(&self) -> &System {
-        &self.effective
+    fn to_run(&self) -> Result<&System> {
+        Err(self.refused("a run"))
+    }
+
+    fn with_method(self: Arc<Self>, method: Method) -> Result<Arc<dyn Model>> {
+        Arc::new(self.plain.clone()).with_method(method)
     }
 }
 

@@ -12,6 +12,10 @@ use num_traits::{One, Signed, Zero};
 
 use crate::linear::sparse::Symmetric;
 use crate::linear::system::{Potential, System};
+use crate::model::Model;
+use crate::verdict::analysis::Analysis;
+use crate::verdict::decide::decide_around;
+use crate::verdict::limits::{Limits, Route};
 use number::error::{Error, Result};
 use number::rational::scale2;
 use number::{Ball, Laurent, Rational, Real};
@@ -36,6 +40,45 @@ pub struct PiPotential {
 }
 
 /// The system with a rational in the place of π.
+#[derive(Clone, Debug)]
+pub struct BesidePi(System);
+
+/// Several degrees of freedom with π in the stiffnesses, by the rational system beside it.
+impl Model for BesidePi {
+    fn system(&self) -> &System {
+        &self.0
+    }
+
+    fn is_exact(&self) -> bool {
+        false
+    }
+
+    fn refused(&self, what: &str) -> Error {
+        let remedy =
+            format!("{what} on several degrees of freedom needs rational numbers: write them without pi");
+        Error::input("stiffness", "with pi", remedy)
+    }
+
+    fn no_intervals(&self) -> Option<(&'static str, &'static str)> {
+        Some((
+            "with pi in the stiffnesses of several degrees of freedom",
+            "are for rational numbers: write them without pi, or decide steps one by one, as --scan outer=LO..HI:BY does",
+        ))
+    }
+
+    fn decide(&self, route: Route, limits: &Limits) -> Result<Analysis> {
+        match route {
+            Route::Exact => Err(self.refused("exact arithmetic")),
+            Route::Cheapest => decide_around(&self.0, limits),
+        }
+    }
+
+    fn decide_at(&self, outer: &Rational, limits: &Limits) -> Result<Analysis> {
+        decide_around(&self.0.with(&Rational::one(), &(outer / self.outer_step()))?, limits)
+    }
+}
+
+/// The system with a rational in the place of π.
 ///
 /// ```
 /// use std::collections::BTreeMap;
@@ -47,7 +90,7 @@ pub struct PiPotential {
 /// let stiffness = BTreeMap::from([((0, 0), diagonal.clone()), ((1, 0), other), ((1, 1), diagonal)]);
 /// let potential = PiPotential { size: 2, stiffness, step: ratio(6, 10), phase: ratio(0, 1) };
 /// let system = beside_pi(Symmetric::diagonal(&[ratio(1, 1), ratio(1, 1)]), &[potential])?;
-/// let analysis = Model::Pi(system).decide(Route::Cheapest, &Limits::default())?;
+/// let analysis = system.decide(Route::Cheapest, &Limits::default())?;
 /// // h² (π² + 7/5) = 4.06 > 4.
 /// assert!(analysis.is_proof() && analysis.kind.unwrap() == Kind::Hyperbolic);
 /// # Ok::<(), kickdrift_systems::number::error::Error>(())
@@ -56,7 +99,7 @@ pub struct PiPotential {
 /// # Errors
 /// As [`System::new`]; a power of π beyond ±64; a common null vector of all potentials at ϖ that none is of
 /// the true ones.
-pub fn beside_pi(mass: Symmetric, potentials: &[PiPotential]) -> Result<System> {
+pub fn beside_pi(mass: Symmetric, potentials: &[PiPotential]) -> Result<BesidePi> {
     for (k, pi_potential) in potentials.iter().enumerate() {
         let powers = pi_potential.stiffness.values().flat_map(|x| x.terms()).map(|(power, _)| *power);
         if let Some(power) = powers.into_iter().find(|power| power.unsigned_abs() > HIGHEST) {
@@ -83,7 +126,7 @@ pub fn beside_pi(mass: Symmetric, potentials: &[PiPotential]) -> Result<System> 
         let remedy = "choose coordinates in which the vector that no potential sees is rational";
         return Err(Error::input("stiffness", "all potentials have a null vector that involves pi", remedy));
     }
-    Ok(system)
+    Ok(BesidePi(system))
 }
 
 type Entries = BTreeMap<(usize, usize), Laurent>;

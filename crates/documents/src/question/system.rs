@@ -16,7 +16,7 @@ use systems::levels::Method;
 use systems::nearest::Nearest;
 use systems::scan::scan;
 use systems::vary::Intervals;
-use systems::{Analysis, Jacobians, Limits, NoGradient, OwnOrbit, Route, SchemeSummary};
+use systems::{Analysis, Jacobians, Limits, NoGradient, OwnOrbit, Route, SchemeSummary, seconds};
 
 question! {
     /// The verdict on a system; the verdicts over one of its numbers, or two; or the unstable intervals of
@@ -138,7 +138,7 @@ impl System {
     fn verdict(&self, scene: &SystemScene, work: &Work) -> Result<Verdict> {
         let (model, limits) = (scene.model(), work.products());
         let what = format!("a verdict on {} degrees of freedom", model.size());
-        work.announce(&what, model.seconds());
+        work.announce(&what, seconds(model.cost() as f64));
         let analysis = model.decide(self.route(), &limits)?;
         let (orbit, is_orbit_missing) = match scene.own_orbit(&limits) {
             Err(error) if error.kind() == Kind::Input => (None, true),
@@ -147,8 +147,8 @@ impl System {
         let width = self.width().filter(|_| self.nearest);
         let nearest = |width| {
             let cost = scene.cost_of_nearest(width, &limits)?;
-            limits.allow(model.counted(cost) as u64, || NEAREST.into())?;
-            work.announce(NEAREST, model.seconds_of(cost));
+            limits.allow(cost as u64, || NEAREST.into())?;
+            work.announce(NEAREST, seconds(cost));
             scene.nearest_unstable(width, &limits)
         };
         let nearest = width.map(nearest).transpose()?;
@@ -160,8 +160,8 @@ impl System {
     fn intervals(span: &Span, width: f64, scene: &SystemScene, work: &Work) -> Result<Intervals> {
         let limits = work.products();
         let cost = scene.cost_of_intervals(span, width, &limits)?;
-        limits.allow(scene.model().counted(cost) as u64, || format!("intervals of {span}"))?;
-        work.announce(&format!("intervals of {span}"), scene.model().seconds_of(cost));
+        limits.allow(cost as u64, || format!("intervals of {span}"))?;
+        work.announce(&format!("intervals of {span}"), seconds(cost));
         scene.intervals(span, width, &limits)
     }
 
@@ -170,9 +170,9 @@ impl System {
         let points = xs.len() * ys.len();
         let cost = System::cost_of_map(axes, &xs, &ys)?;
         limits
-            .allow(scene.model().counted(cost) as u64, || format!("a map of {points} points"))
+            .allow(cost as u64, || format!("a map of {points} points"))
             .map_err(|error| error.or("choose larger spacings"))?;
-        let seconds = scene.model().seconds_of(cost);
+        let seconds = seconds(cost);
         work.announce(&format!("{points} points, each {:.2} s on average", seconds / points as f64), seconds);
         let bar = work.count(points as u64, "points");
         let decide = |x: &_, y: &_| axes.at(x, y)?.model().at_point(self.route(), &limits);

@@ -15,14 +15,18 @@ pub struct ElementSteps {
 }
 
 impl ElementSteps {
-    /// Those of `size` elements. `clocks` is the system in which the elements of each level kick with their
-    /// own step.
+    /// Those of `size` elements, with [`ElementSteps::clocks`].
     ///
     /// # Errors
     /// As [`ElementSteps::substeps`].
     pub fn new(clocks: System, size: usize, levels: Vec<Level>) -> Result<ElementSteps> {
         Level::check(&levels, size)?;
         Ok(ElementSteps { clocks, size, levels })
+    }
+
+    /// The system in which the elements of each level kick with their own step.
+    pub fn clocks(&self) -> &System {
+        &self.clocks
     }
 
     /// The substeps of each element of `size` in a step.

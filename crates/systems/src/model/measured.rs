@@ -6,14 +6,10 @@ use std::sync::{Arc, OnceLock};
 use nalgebra::DMatrix;
 use num_traits::{One, Zero};
 
-use crate::friction::Friction;
-use crate::levels::{Cells, Hessians, Kernel, Method, Nested, Outer, Source};
+use crate::levels::{Hessians, Kernel, Method, Nested, Outer, Source};
 use crate::linear::sparse::Symmetric;
 use crate::linear::system::{Potential, System};
-use crate::vary::stretches::{Stretch, cover};
-use crate::verdict::analysis::Analysis;
-use crate::verdict::limits::{Limits, Route};
-use crate::verdict::measured::{Holds, check_accuracy};
+use crate::verdict::measured::check_accuracy;
 use number::Rational;
 use number::error::{Error, Result};
 use number::rational::{from_f64_exact, to_f64};
@@ -41,15 +37,15 @@ pub struct Body {
 #[derive(Clone, Debug)]
 pub struct MeasuredSystem {
     /// The sums of the stiffnesses of each step, by increasing step.
-    potentials: Vec<(Rational, DMatrix<f64>)>,
+    pub(super) potentials: Vec<(Rational, DMatrix<f64>)>,
     /// The stiffnesses of steps that several potentials have: each is known to its own norm.
     shares: Vec<(Rational, Vec<DMatrix<f64>>)>,
     pub(super) body: Body,
     pub(super) accuracy: f64,
     pub(super) keeps_rigid: bool,
     method: Method,
-    system: OnceLock<System>,
-    kernel: Arc<OnceLock<Kernel>>,
+    pub(super) system: OnceLock<System>,
+    pub(super) kernel: Arc<OnceLock<Kernel>>,
 }
 
 /// Levels of measured stiffnesses, to be asked at any steps.
@@ -65,11 +61,6 @@ pub struct MeasuredLevels<'a> {
 /// 4096 rows, from half a unit in the last place of each entry and each mass, and enough for rigid motions to
 /// be found.
 const ROUNDED: f64 = 1e-12;
-
-/// A cell of a range of n degrees of freedom takes n² (n + this) products, as measured for 81 to 1,080 of
-/// them: eigenvalues, factorizations and norms in wide cells that decide much, and in narrow ones; what goes
-/// by entries is slower than products of matrices.
-const CELL: f64 = 1100.0;
 
 impl MeasuredSystem {
     /// From the step and the stiffness of each potential, at least one, all n x n finite doubles; masses and
@@ -160,14 +151,11 @@ impl MeasuredSystem {
     /// Where there are not two levels.
     pub fn with_method(mut self, method: Method) -> Result<MeasuredSystem> {
         (self.method, self.kernel) = (method, Arc::default());
-        match (method, self.potentials.len(), self.is_of_two_levels()) {
-            (Method::Respa, ..) | (_, 2, true) => Ok(self),
-            _ => Err(Error::input(
-                "method",
-                method,
-                "is for two levels: give two potentials with different steps, the shorter one's force is the fast one",
-            )),
+        if method == Method::Respa || self.is_of_two() {
+            return Ok(self);
         }
+        let remedy = "is for two levels: give two potentials with different steps, the shorter one's force is the fast one";
+        Err(Error::input("method", method, remedy))
     }
 
     pub fn method(&self) -> Method {
@@ -191,22 +179,9 @@ impl MeasuredSystem {
         }
     }
 
-    /// The steps, increasing.
-    pub(super) fn steps(&self) -> Vec<Rational> {
-        self.potentials.iter().map(|(step, _)| step.clone()).collect()
-    }
-
     /// The number of degrees of freedom.
     pub fn size(&self) -> usize {
         self.potentials[0].1.nrows()
-    }
-
-    /// These doubles as a rational system: in mass-weighted coordinates with unit masses where they are.
-    pub(super) fn system(&self) -> &System {
-        self.system.get_or_init(|| {
-            let masses = self.body.masses.as_ref().filter(|_| !self.body.is_weighted);
-            rational(masses.map_or(&vec![1.0; self.size()], |values| values), &self.potentials)
-        })
     }
 
     /// The two levels, with their period; `None` where the steps are of another kind.
@@ -221,163 +196,50 @@ impl MeasuredSystem {
         }
     }
 
-    /// Whether the kernel of two levels decides it.
-    pub(super) fn is_of_two_levels(&self) -> bool {
-        self.outer().is_some()
-    }
-
-    pub(super) fn inner_steps(&self) -> u64 {
-        self.outer().map_or(1, |(outer, _)| outer.inner_steps())
-    }
-
-    /// The verdict: two levels by their kernel, anything else as a rational system of the doubles given.
-    pub(super) fn decide(&self, route: Route, limits: &Limits) -> Result<Analysis> {
-        let Some((outer, period)) = self.outer().filter(|_| route == Route::Cheapest) else {
-            self.refuse_method("exact arithmetic")?;
-            return self.decide_projected(route, limits);
-        };
-        self.allow(limits)?;
-        self.decided(&outer, &period)
-    }
-
-    /// Of one potential, too, which is one clock.
-    fn decided(&self, outer: &Outer, period: &Rational) -> Result<Analysis> {
-        let analysis = self.kernel()?.decide(outer, period, self.accuracy);
-        Ok(Analysis { clocks: self.potentials.len(), ..analysis })
-    }
-
-    /// The verdict that is proven for the doubles given: of two levels in the eigenbasis, where it is known,
-    /// else at the least cost for this one verdict.
-    pub(super) fn verdict(&self, limits: &Limits) -> Result<Holds> {
-        let Some((outer, _)) = self.outer() else {
-            return Ok(self.decide_projected(Route::Cheapest, limits)?.holds());
-        };
-        self.allow(limits)?;
-        match self.kernel.get() {
-            Some(kernel) => Ok(kernel.verdict_within(&outer, 0.0)),
-            None if self.method == Method::Respa => self.hessians()?.verdict(&outer),
-            None => Ok(self.kernel()?.verdict_within(&outer, 0.0)),
-        }
-    }
-
-    /// What is proven of all stiffnesses within the accuracy.
-    pub(super) fn holds(&self, limits: &Limits) -> Result<Holds> {
-        self.allow(limits)?;
-        match self.outer() {
-            Some((outer, _)) => Ok(self.kernel()?.verdict_within(&outer, self.accuracy)),
-            None => self.over_steps(|levels, steps| {
-                let outer = to_f64(steps.last().expect("at least one"));
-                Ok(levels.at(steps)?.verdict_within(outer, self.accuracy))
-            }),
-        }
-    }
-
-    /// The verdict at an outer step, as many inner ones in it as in its own.
-    pub(super) fn decide_at(&self, outer: &Rational, limits: &Limits) -> Result<Analysis> {
-        self.allow(limits)?;
-        let at = Outer::new(to_f64(outer), self.inner_steps())?;
-        self.decided(&at, outer)
-    }
-
-    /// The effect of friction of this rate per unit time.
-    pub(super) fn friction(&self, rate: &Rational, limits: &Limits) -> Result<Friction> {
-        self.refuse_method("friction")?;
-        let Some((outer, _)) = self.outer() else { return self.friction_projected(rate, limits) };
-        // Some 20 eigenvalue problems of 2n rows, each 25 (2n)³.
-        let cost = (self.size() as u64).saturating_pow(3).saturating_mul(4_000);
-        limits.allow_dense(cost, || format!("the eigenvalues of a period of {} rows", 2 * self.size()))?;
-        Ok(self.kernel()?.friction(&outer, rate))
-    }
-
-    fn other_steps(&self, remedy: &str) -> Error {
-        Error::input("potentials", format!("{} steps", self.potentials.len()), remedy)
-    }
-
-    fn allow(&self, limits: &Limits) -> Result<()> {
-        limits.allow_dense(self.cost(), || format!("eigenvalues and factorizations of {} rows", self.size()))
-    }
-
-    /// The products that a verdict costs, roughly: two eigenvalue problems, changes of basis, some fifty
-    /// factorizations.
-    pub(super) fn cost(&self) -> u64 {
-        (self.size() as u64).saturating_pow(3).saturating_mul(60)
-    }
-
-    /// What is proven of all stiffnesses within an accuracy on a range of outer steps, all steps in their
-    /// ratios.
-    pub(super) fn stretches(&self, range: (f64, f64), width: f64, accuracy: f64) -> Result<Vec<Stretch>> {
-        if self.is_of_two_levels() {
-            return self.kernel()?.stretches(self.inner_steps(), range, width, accuracy);
-        }
-        self.over_steps(|levels, steps| levels.at(steps)?.stretches(range, width, accuracy))
-    }
-
-    /// The products that these cost, roughly, where cells are narrow throughout.
-    pub(super) fn cost_of_cells(&self, cells: f64) -> Result<f64> {
-        if self.is_of_two_levels() {
-            let n = self.size() as f64;
-            return Ok(self.cost() as f64 + cells * n * n * (n + CELL));
-        }
-        self.over_steps(|levels, steps| Ok(levels.at(steps)?.cost_of_cells(cells)))
-    }
-
     /// What `ask` finds of levels that are not two of an inner and an outer step, and of their steps.
     pub(super) fn over_steps<T>(&self, ask: impl FnOnce(&Nested, &[Rational]) -> Result<T>) -> Result<T> {
         self.refuse_method("advice")?;
         ask(&self.nested()?, &self.steps())
     }
 
-    /// The verdicts on a range of factors of one level, 0 the fast one, of the present value `factor`, all
-    /// else as it is.
-    pub(super) fn stretches_of_scale(
-        &self,
-        level: usize,
-        (lo, hi): (f64, f64),
-        factor: f64,
-        (width, accuracy): (f64, f64),
-    ) -> Result<Vec<Stretch>> {
-        let Some((outer, _)) = self.outer() else {
-            return Ok(vec![Stretch { lo, hi, verdict: Holds::Undecided }]);
-        };
-        let cells = Cells::new(self.kernel()?, accuracy)?;
-        cover((lo, hi), width, |lo, hi| {
-            let (a, b) = (lo / factor, hi / factor);
-            Ok(cells.verdict_scaled(&outer, level, (a.min(b), a.max(b))))
-        })
+    /// The steps, increasing.
+    pub(super) fn steps(&self) -> Vec<Rational> {
+        self.potentials.iter().map(|(step, _)| step.clone()).collect()
     }
 
-    /// The growth rate at each outer step, as many inner ones in it; `None` where none is known.
-    pub(super) fn growth_rates(&self, steps: &[f64]) -> Result<Vec<Option<f64>>> {
-        let (inner_steps, kernel) = (self.inner_steps(), self.kernel()?);
-        steps.iter().map(|&step| Ok(kernel.growth_rate(&Outer::new(step, inner_steps)?))).collect()
+    /// The steps, increasing, of kicks and drifts.
+    ///
+    /// # Errors
+    /// Another integrator.
+    pub fn steps_of_kicks(&self) -> Result<Vec<Rational>> {
+        self.refuse_method("advice").map(|()| self.steps())
     }
 
-    /// The largest ln |λ|/T over the eigenvalues of the dense full period, rounded; `None` where it is not of
-    /// two levels.
-    pub(super) fn growth_of_period(&self, limits: &Limits) -> Result<Option<f64>> {
-        let Some((outer, _)) = self.outer() else { return Ok(None) };
-        let (hessians, inner_steps) = (self.hessians()?, outer.inner_steps());
-        let cost = hessians.cost_of_period(inner_steps);
-        limits.allow_dense(cost, || "the full period, kick by kick,".into())?;
-        Ok(Some(hessians.growth_of_step(self.method, outer.step(), inner_steps)))
-    }
-
-    /// That the steps are an inner and an outer one.
-    pub(super) fn check_two_steps(&self) -> Result<()> {
+    /// The matrices of an inner and an outer step, rigid motions projected out.
+    ///
+    /// # Errors
+    /// Other steps; another integrator.
+    pub fn hessians_of_two(&self) -> Result<Hessians> {
         self.refuse_method("advice")?;
-        let is_two = self.potentials.len() == 2 && self.is_of_two_levels();
-        if is_two { Ok(()) } else { Err(self.not_two()) }
+        if self.is_of_two() {
+            return self.hessians();
+        }
+        let remedy = "give two potentials, the step of one a multiple of the other's; `kickdrift system FILE` decides any number of steps";
+        Err(Error::input("potentials", format!("{} steps", self.potentials.len()), remedy))
+    }
+
+    fn is_of_two(&self) -> bool {
+        self.potentials.len() == 2 && self.outer().is_some()
     }
 
     /// The levels, behind the face that both kinds have.
     ///
     /// # Errors
     /// As [`MeasuredSystem::kernel`]; another integrator.
-    pub(super) fn levels(&self) -> Result<MeasuredLevels<'_>> {
+    pub fn levels(&self) -> Result<MeasuredLevels<'_>> {
         self.refuse_method("advice")?;
-        let is_two = self.potentials.len() == 2 && self.is_of_two_levels();
         let source: Arc<dyn Source> =
-            if is_two { Arc::new(self.kernel()?.clone()) } else { Arc::new(self.nested()?) };
+            if self.is_of_two() { Arc::new(self.kernel()?.clone()) } else { Arc::new(self.nested()?) };
         Ok(MeasuredLevels { source, body: &self.body, accuracy: self.accuracy })
     }
 
@@ -395,10 +257,6 @@ impl MeasuredSystem {
                 self.shares.iter().find(|(other, _)| other == step).map(|(_, matrixes)| &matrixes[..]);
             (step, shares.unwrap_or(std::slice::from_ref(matrix)))
         })
-    }
-
-    fn not_two(&self) -> Error {
-        self.other_steps("give two potentials, the step of one a multiple of the other's; `kickdrift system FILE` decides any number of steps")
     }
 
     /// The eigenbasis, computed when it is first asked for.

@@ -1,16 +1,19 @@
 //! One oscillator whose mass, stiffnesses or steps involve π: K clocks over ℚ\[π\].
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use num_traits::Zero;
 
+use super::Model;
 use crate::friction::{Friction, damped_oscillator};
+use crate::levels::Method;
 use crate::linear::sparse::Symmetric;
 use crate::linear::system::{Potential, System};
 use crate::single::clocks::ManyClocks;
 use crate::single::decide::{allow_signs, decide_oscillator, with_pi};
 use crate::verdict::analysis::Analysis;
-use crate::verdict::limits::Limits;
+use crate::verdict::limits::{Limits, Route};
 use clocks::propagator;
 use clocks::verdict::Kind;
 use number::error::{Error, Result};
@@ -67,14 +70,30 @@ impl Oscillator {
         let rounded = System::new(Symmetric::diagonal(&[one()]), potentials)?;
         Ok(Oscillator { clocks, unit: base, rounded, has_rational_steps, mass, all })
     }
+}
 
-    /// The verdict: by the ladder, doubles, balls or exact signs.
-    pub(super) fn decide(&self, limits: &Limits) -> Result<Analysis> {
+/// One oscillator over ℚ\[π, 1/π\].
+impl Model for Oscillator {
+    fn system(&self) -> &System {
+        &self.rounded
+    }
+
+    fn no_intervals(&self) -> Option<(&'static str, &'static str)> {
+        Some(("of this file", "are for linear systems of rational numbers"))
+    }
+
+    /// By the ladder, doubles, balls or exact signs.
+    fn decide(&self, _: Route, limits: &Limits) -> Result<Analysis> {
         decide_oscillator(&self.clocks, &self.rounded, &self.unit, limits)
     }
 
-    /// The effect of friction of a rate per unit time.
-    pub(super) fn friction(&self, rate: &Rational, limits: &Limits) -> Result<Friction> {
+    /// By the four signs.
+    fn exact_kind(&self, limits: &Limits) -> Result<Kind> {
+        allow_signs(&self.clocks, with_pi, limits)?;
+        Ok(self.clocks.half_signs().verdict().kind())
+    }
+
+    fn friction(&self, rate: &Rational, limits: &Limits) -> Result<Friction> {
         limits.allow(self.clocks.schedule().strikes().saturating_mul(1000), || {
             "friction on one oscillator".into()
         })?;
@@ -82,14 +101,19 @@ impl Oscillator {
         damped_oscillator(&clocks, &unit, rate)
     }
 
-    /// The kind by the four signs.
-    pub(super) fn exact_kind(&self, limits: &Limits) -> Result<Kind> {
-        allow_signs(&self.clocks, with_pi, limits)?;
-        Ok(self.clocks.half_signs().verdict().kind())
+    fn to_run(&self) -> Result<&System> {
+        let remedy = "a run needs rational steps: choose a unit of time in which they are";
+        let is_rational = self.has_rational_steps.then_some(&self.rounded);
+        is_rational.ok_or_else(|| Error::input("step", &self.unit, remedy))
     }
 
-    /// The oscillator under two clocks, where it has two, without phases.
-    pub(super) fn as_two_clocks(&self) -> Option<propagator::Oscillator> {
+    fn with_method(self: Arc<Self>, method: Method) -> Result<Arc<dyn Model>> {
+        let remedy =
+            "is for rational numbers: of one mass with pi ask kickdrift word --method, or compare --methods";
+        Err(Error::input("method", method, remedy))
+    }
+
+    fn two_clocks(&self) -> Option<propagator::Oscillator> {
         let (two, h1) = (self.clocks.as_two_clocks()?, &self.unit);
         let h2 = h1 * &Laurent::from_rational(two.ratio().into());
         let lambda = |strength: &Laurent, step: &Laurent| strength.checked_div(&(h1 * step));

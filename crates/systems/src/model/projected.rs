@@ -1,11 +1,12 @@
 //! What moves of measured stiffnesses: rigid motions and held distances projected out. On any clocks the
-//! doubles that are left decide.
+//! doubles that are left decide, and the action says how far that stands.
 
 use std::borrow::Cow;
 
 use faer::{Mat, MatRef};
 use nalgebra::DMatrix;
 
+use super::Model;
 use super::measured::{Body, MeasuredSystem, rational};
 use crate::friction::{Friction, damped_system};
 use crate::levels::apart::{Given, common_null_space, of_particles};
@@ -14,13 +15,16 @@ use crate::linear::system::System;
 use crate::verdict::analysis::Analysis;
 use crate::verdict::decide::decide_by;
 use crate::verdict::limits::{Limits, Route};
-use crate::verdict::measured::Holds;
+use crate::verdict::measured::{Holds, Measured};
 use number::Rational;
-use number::error::Result;
+use number::error::{Kind as Reason, Result};
 use number::rational::{from_f64_exact, to_f64};
 
 /// The note where a verdict does not outlast the rounding of what was projected.
 const ON_AN_EDGE: &str = "the doubles decided are rounded, and the verdict does not stand that: it is not decided, as on an edge or of rigid motions that are kept; choose another step";
+
+/// A margin and the first unstable step cost about as much as so many cells of a range: some hundred signs.
+const MARGIN_CELLS: f64 = 40.0;
 
 /// By which motions without positions are found.
 const COMMON: &str = "common null space";
@@ -95,8 +99,8 @@ impl MeasuredSystem {
         of_particles(motions, particles, &self.given(), self.accuracy)
     }
 
-    /// The verdict on these doubles as a rational system, without margins.
-    pub(super) fn decide_projected(&self, route: Route, limits: &Limits) -> Result<Analysis> {
+    /// The verdict on these doubles as a rational system, and what they are.
+    pub(super) fn decide_projected(&self, route: Route, limits: &Limits) -> Result<(Analysis, String)> {
         let hessians = self.hessians()?;
         let (Some(basis), Some(removed)) = (hessians.basis(), hessians.removed()) else {
             self.refuse_constraints()?;
@@ -105,16 +109,54 @@ impl MeasuredSystem {
             if self.keeps_rigid {
                 self.outlast_rounding(&mut analysis)?;
             }
-            analysis.warnings.push(warning("as they are"));
-            return Ok(analysis);
+            return Ok((analysis, "as they are".into()));
         };
         let mut analysis = decide_by(route, &self.projected(basis), limits)?;
         lift(&mut analysis, basis);
         self.outlast_rounding(&mut analysis)?;
-        let what = format!("with {} motions projected out ({}) and rounded", removed.count, removed.found_by);
         analysis.warnings.extend(removed.warning(self.accuracy));
-        analysis.warnings.push(warning(&what));
+        let how = format!("with {} motions projected out ({}) and rounded", removed.count, removed.found_by);
+        Ok((analysis, how))
+    }
+
+    /// The verdict on levels that are not two of an inner and an outer step: of these doubles, and how far it
+    /// stands, as advice on them has it.
+    pub(super) fn decide_levels(&self, route: Route, limits: &Limits) -> Result<Analysis> {
+        let (mut analysis, how) = self.decide_projected(route, limits)?;
+        let why = match route {
+            Route::Exact => "exact arithmetic knows none; leave --exact out".into(),
+            Route::Cheapest => match self.how_far(limits) {
+                Ok(found) => {
+                    let margin = found.margin.filter(|_| analysis.is_proof());
+                    return Ok(Analysis { measured: Some(Measured { margin, ..found }), ..analysis });
+                }
+                Err(error) if error.kind() == Reason::Budget => error.to_string(),
+                Err(error) => return Err(error),
+            },
+        };
+        analysis
+            .warnings
+            .push(format!("this verdict is on the doubles given, {how}; their accuracy is not used: {why}"));
         Ok(analysis)
+    }
+
+    /// How far the verdict stands, proven by the action, as two levels have it by their eigenbasis.
+    fn how_far(&self, limits: &Limits) -> Result<Measured> {
+        self.over_steps(|levels, steps| {
+            let (at, outer) = (levels.at(steps)?, to_f64(steps.last().expect("at least one")));
+            limits
+                .allow_dense(at.cost_of_cells(MARGIN_CELLS) as u64, || "how far the verdict stands".into())?;
+            let first_unstable = at.first_unstable();
+            Ok(Measured {
+                method: self.method().name(),
+                accuracy: self.accuracy,
+                holds: at.verdict_within(outer, self.accuracy),
+                margin: at.margin(outer),
+                first_unstable,
+                is_above_unstable: first_unstable.is_some_and(|(_, hi)| outer > hi),
+                removed: levels.removed.clone(),
+            })
+        })
     }
 
     /// Takes a verdict back that not all stiffnesses share which round to those decided.
@@ -163,12 +205,6 @@ impl MeasuredSystem {
         let potentials: Vec<_> = self.all_weighted().map(project).collect();
         rational(&vec![1.0; basis.ncols()], &potentials)
     }
-}
-
-fn warning(how: &str) -> String {
-    format!(
-        "margins are computed for two levels, the outer step a multiple of the inner one: this verdict is on the doubles given, {how}"
-    )
 }
 
 /// Degrees of freedom and shapes in the mass-weighted coordinates given, of an analysis in those of the

@@ -10,7 +10,7 @@ use crate::levels::sparse::SparseLevels;
 use crate::levels::{Method, Outer};
 use crate::linear::sparse::Symmetric;
 use crate::linear::system::{Potential, System};
-use crate::lts::{Growth, SchemeSummary, SparseSteps};
+use crate::lts::{Growth, SparseSteps};
 use crate::spectrum::modes::Origin;
 use crate::spectrum::rate::{Multiplier, per_time};
 use crate::verdict::analysis::{Analysis, Evidence, Instability, Part};
@@ -25,14 +25,14 @@ use number::{Laurent, Rational};
 /// Sparse stiffnesses with their steps.
 #[derive(Clone, Debug)]
 pub struct SparseSystem {
-    kind: SparseKind,
-    step: Rational,
+    pub(super) kind: SparseKind,
+    pub(super) step: Rational,
     /// With the size and the clocks alone.
-    clocks: System,
+    pub(super) clocks: System,
 }
 
 #[derive(Clone, Debug)]
-enum SparseKind {
+pub(super) enum SparseKind {
     /// Two levels, and how well they are known.
     Levels { levels: Arc<SparseLevels>, outer: Outer, accuracy: f64, removed: Option<Removed> },
     /// One stiffness, with local time steps.
@@ -116,7 +116,7 @@ impl SparseSystem {
         SparseSystem::of_one(steps.size(), SparseKind::Steps(Box::new(steps)), step)
     }
 
-    fn of_one(n: usize, kind: SparseKind, step: &Rational) -> Result<SparseSystem> {
+    pub(super) fn of_one(n: usize, kind: SparseKind, step: &Rational) -> Result<SparseSystem> {
         let clock = Potential::new(Symmetric::zero(n), step.clone());
         let clocks = System::new(Symmetric::diagonal(&vec![Rational::one(); n]), vec![clock])?;
         Ok(SparseSystem { kind, step: step.clone(), clocks })
@@ -136,23 +136,6 @@ impl SparseSystem {
             SparseKind::Steps(sparse_steps) => Some(sparse_steps),
             _ => None,
         }
-    }
-
-    /// The summary of its scheme in answers, where it has one.
-    pub(super) fn summary(&self) -> Option<SchemeSummary> {
-        match &self.kind {
-            SparseKind::Levels { .. } => None,
-            SparseKind::Steps(sparse_steps) => Some(sparse_steps.summary()),
-        }
-    }
-
-    /// Local time steps in another step; `None` for two levels.
-    pub(super) fn at_step(&self, step: &Rational) -> Option<Result<SparseSystem>> {
-        let kind = match &self.kind {
-            SparseKind::Levels { .. } => return None,
-            kind => kind.clone(),
-        };
-        Some(SparseSystem::of_one(self.clocks.size(), kind, step))
     }
 
     /// This system with another accuracy.
@@ -190,13 +173,8 @@ impl SparseSystem {
         Some(SparseSystem::of_levels(Arc::clone(levels), steps, *accuracy, removed.clone()))
     }
 
-    /// Its size and its clocks, without stiffnesses.
-    pub(super) fn system(&self) -> &System {
-        &self.clocks
-    }
-
     /// Products, at the pace of eigenvalue iterations.
-    pub(super) fn cost(&self) -> u64 {
+    pub(super) fn products(&self) -> u64 {
         let products = match &self.kind {
             SparseKind::Levels { levels, .. } => OF_LEVELS * levels.products(),
             SparseKind::Steps(sparse_steps) => FACTORIZATIONS * sparse_steps.products(),
@@ -204,12 +182,14 @@ impl SparseSystem {
         (products / FASTER).min(1e19) as u64
     }
 
-    fn allow(&self, limits: &Limits) -> Result<()> {
-        limits.allow(self.cost(), || format!("factorizations of {}", degrees_of_freedom(self.clocks.size())))
+    pub(super) fn allow(&self, limits: &Limits) -> Result<()> {
+        limits.allow(self.products(), || {
+            format!("factorizations of {}", degrees_of_freedom(self.clocks.size()))
+        })
     }
 
     /// The verdict, how far it stands, and where the first region ends.
-    pub(super) fn decide(&self, limits: &Limits) -> Result<Analysis> {
+    pub(super) fn decided(&self, limits: &Limits) -> Result<Analysis> {
         self.allow(limits)?;
         let (levels, outer, accuracy, removed) = match &self.kind {
             SparseKind::Levels { levels, outer, accuracy, removed } => (levels, outer, *accuracy, removed),
@@ -240,31 +220,14 @@ impl SparseSystem {
         Ok(Analysis { measured, ..Analysis::of_part(part, 2, notes) })
     }
 
-    /// The verdict and no more: what a scan shows of each point.
-    pub(super) fn at_point(&self, limits: &Limits) -> Result<Analysis> {
-        let SparseKind::Levels { levels, outer, .. } = &self.kind else { return self.decide(limits) };
-        self.allow(limits)?;
-        levels.look(outer.inner_steps());
-        Ok(Analysis::of_part(self.of_levels_part(levels.verdict(outer, 0.0)), 2, Vec::new()))
-    }
-
     /// A verdict on two levels, without modes.
-    fn of_levels_part(&self, verdict: Holds) -> Part {
+    pub(super) fn of_levels_part(&self, verdict: Holds) -> Part {
         let period = Laurent::from_rational(self.step.clone());
         Part::new(self.clocks.size(), period, decided(verdict), Default::default())
     }
 
-    /// The proven verdict and nothing else.
-    pub(super) fn verdict(&self, limits: &Limits) -> Result<Holds> {
-        self.allow(limits)?;
-        Ok(match &self.kind {
-            SparseKind::Levels { levels, outer, .. } => levels.verdict(outer, 0.0),
-            SparseKind::Steps(sparse_steps) => sparse_steps.verdict(to_f64(&self.step)),
-        })
-    }
-
     /// The verdict on local time steps, and what grows fastest.
-    fn of_steps(&self, sparse_steps: &SparseSteps, limits: &Limits) -> Result<Analysis> {
+    pub(super) fn of_steps(&self, sparse_steps: &SparseSteps, limits: &Limits) -> Result<Analysis> {
         let (dt, period) = (to_f64(&self.step), Laurent::from_rational(self.step.clone()));
         let verdict = sparse_steps.verdict(dt);
         if verdict == Holds::Undecided

@@ -216,6 +216,14 @@ impl Analysis {
         self.kind.into()
     }
 
+    /// The verdict that is proven of all stiffnesses within `times` their accuracy, 0 of those given.
+    pub fn within(&self, times: f64) -> Holds {
+        let reaches = |measured: &Measured| {
+            times == 0.0 || measured.margin.is_some_and(|margin| times * measured.accuracy <= margin)
+        };
+        if self.measured.as_ref().is_none_or(reaches) { self.holds() } else { Holds::Undecided }
+    }
+
     /// The name of the kind in documents.
     pub fn kind_name(&self) -> &'static str {
         name(self.kind)
@@ -226,6 +234,13 @@ impl Analysis {
     pub fn growth_rate(&self) -> Option<(f64, f64)> {
         let rates = self.parts.iter().map(Part::growth_rate).collect::<Option<Vec<_>>>()?;
         Some(rate::largest(rates.into_iter()))
+    }
+
+    /// That rate at a step, rounded; `None` where it is not known to a quarter, nor to be less than 10^-3 a
+    /// step.
+    pub fn rounded_rate(&self, step: f64) -> Option<f64> {
+        let known = |(lo, hi): &(f64, f64)| hi - lo <= 0.25 * lo || hi * step <= 1e-3;
+        self.growth_rate().filter(known).map(rate::middle)
     }
 }
 

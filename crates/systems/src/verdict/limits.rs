@@ -20,7 +20,12 @@ pub(crate) const DENSE: u64 = 10;
 const A_KICK: u64 = 1000;
 
 /// Products a second, of rational systems with what goes on around them.
-pub(crate) const PACE: f64 = 1e9;
+const PACE: f64 = 1e9;
+
+/// The seconds of one core that so many products take, as limits count them: as measured on two machines.
+pub fn seconds(products: f64) -> f64 {
+    products / PACE
+}
 
 /// The most work that one verdict may cost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,7 +56,7 @@ impl Limits {
             return Ok(());
         }
         let (cost_told, most) = (cost as f64, self.products as f64);
-        let time = match cost_told / PACE {
+        let time = match seconds(cost_told) {
             seconds if seconds < 100.0 => format!("{:.0} s", seconds.ceil()),
             seconds if seconds < 6000.0 => format!("{:.0} min", seconds / 60.0),
             seconds => format!("{:.0} h", seconds / 3600.0),

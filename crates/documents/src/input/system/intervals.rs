@@ -21,7 +21,7 @@ use number::rational::{from_f64_exact, to_f64};
 use systems::nearest::Nearest;
 use systems::stretches::{Stretch, merged};
 use systems::vary::Intervals;
-use systems::{Limits, Model, Number, Route, middle};
+use systems::{Limits, Number, Route, middle};
 
 /// One number of a file and its range.
 #[derive(Clone, Debug, PartialEq)]
@@ -117,7 +117,7 @@ impl SystemScene {
     ///
     /// # Errors
     /// A number that is none of these, nonlinear bonds, irrational quantities, friction; a budget error,
-    /// before the work; as [`Model::stretches`].
+    /// before the work; as [`Model::between`](systems::Model::between).
     pub fn intervals(&self, span: &Span, width: f64, limits: &Limits) -> Result<Intervals> {
         self.cost_of_intervals(span, width, limits)?;
         let (role, inner_steps) = (span.role()?, self.model.inner_steps());
@@ -125,7 +125,7 @@ impl SystemScene {
             Role::Step => (self.multiples(span, limits)?, None),
             _ => self.over(span, limits, |number| {
                 let stretches = self.model.stretches(number, span.ends(), width, limits)?;
-                let open = self.model.open_by_accuracy(number, &stretches)?;
+                let open = self.model.open_by_accuracy(number, &stretches, limits)?;
                 Ok((stretches, open))
             })?,
         };
@@ -155,8 +155,7 @@ impl SystemScene {
     /// A cost that the limits allow.
     fn allowed(&self, cost: f64, limits: &Limits, what: impl FnOnce() -> String) -> Result<f64> {
         let remedy = "choose a shorter range or a larger resolution";
-        let counted = self.model.counted(cost).min(1e19) as u64;
-        limits.allow(counted, what).map_err(|error| error.or(remedy)).map(|()| cost)
+        limits.allow(cost.min(1e19) as u64, what).map_err(|error| error.or(remedy)).map(|()| cost)
     }
 
     /// What `ask` finds of a number that is no step.
@@ -166,14 +165,14 @@ impl SystemScene {
         if role == Role::Outer && span.lo <= Rational::default() {
             return Err(Error::input("intervals", span, "steps are positive"));
         }
-        let at = |x: &Rational| Ok(self.with("intervals", &[(&span.path, x)])?.model);
+        let at = |x: &Rational| Ok(self.with("intervals", &[(&span.path, x)])?.model.moving()?.into_owned());
         match role {
             Role::Outer => ask(&Number::Outer),
             Role::Linear if self.model.inner_steps().is_some() && span.path.ends_with(".scale") => {
                 let (level, factor) = self.scale(&span.path)?;
                 ask(&Number::Scale(level, factor))
             }
-            Role::Linear if matches!(self.model, Model::Measured(_)) => {
+            Role::Linear if self.model.measured().is_ok() => {
                 let remedy = "of measured stiffnesses name outer, a step, or the scale of one of two levels; --scan decides single values of other scales";
                 Err(Error::input("intervals", &span.path, remedy))
             }
@@ -208,7 +207,7 @@ impl SystemScene {
     /// known.
     ///
     /// # Errors
-    /// As [`SystemScene::intervals`] and [`Model::decide`].
+    /// As [`SystemScene::intervals`] and [`Model::decide`](systems::Model::decide).
     pub fn growth_rates(&self, span: &Span, values: &[f64], limits: &Limits) -> Result<Vec<Option<f64>>> {
         // Some milliseconds a rate, whose last digits nobody sees, and a second at most for one that doubles
         // leave open.
@@ -249,41 +248,14 @@ impl SystemScene {
         if self.friction.is_some() {
             return refused("with friction", "take the friction out of the file");
         }
-        match &self.model {
-            Model::Sparse(_) => {
-                return refused(
-                    "of this file",
-                    "are for dense stiffnesses: give these, or --scan the steps of these",
-                );
-            }
-            Model::Rational(_)
-            | Model::Measured(_)
-            | Model::LocalSteps(_)
-            | Model::Implicit(_)
-            | Model::Elements(..)
-                if self.is_linear() => {}
-            Model::NoGradient(_) => {
-                return refused(
-                    "of kicks that are no gradients",
-                    "are not told: decide steps one by one, as --scan outer=LO..HI:BY does",
-                );
-            }
-            Model::Pi(_) => {
-                return refused(
-                    "with pi in the stiffnesses of several degrees of freedom",
-                    "are for rational numbers: write them without pi, or decide steps one by one, as --scan outer=LO..HI:BY does",
-                );
-            }
-            Model::Along(_) => {
-                return refused(
-                    "along an orbit",
-                    "are for Hessians at one place: another step has another orbit",
-                );
-            }
-            _ => return refused("of this file", "are for linear systems of rational numbers"),
+        if let Some((what, remedy)) = self.model.no_intervals() {
+            return refused(what, remedy);
+        }
+        if !self.is_linear() {
+            return refused("of this file", "are for linear systems of rational numbers");
         }
         let work = || format!("a verdict on {} degrees of freedom", self.model.size());
-        limits.allow(self.model.counted(self.model.cost() as f64) as u64, work)
+        limits.allow(self.model.cost(), work)
     }
 
     /// The multiples of the shortest of the other steps.
@@ -309,12 +281,12 @@ impl SystemScene {
     fn multiples(&self, span: &Span, limits: &Limits) -> Result<Vec<Stretch>> {
         let values = self.multiples_of(span)?;
         // One eigenbasis serves them all.
-        if let (Model::Measured(measured_system), Some(_)) = (&self.model, self.model.inner_steps()) {
-            measured_system.kernel()?;
+        if self.model.inner_steps().is_some() {
+            self.model.measured()?.kernel()?;
         }
         let stretch = |step: &Rational| {
             let model = self.with("intervals", &[(&span.path, step)])?.model;
-            let verdict = model.holds(limits)?;
+            let verdict = model.verdict(1.0, limits)?;
             Ok(Stretch { lo: to_f64(step), hi: to_f64(step), verdict })
         };
         Ok(merged(number::parallel::try_map(&values, stretch)?.into_iter()))

@@ -13,6 +13,7 @@
 //!   one above.
 
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 use super::document::{Document, LevelDocument, MeshDocument, Number};
 use number::error::{Error, Result};
@@ -35,22 +36,23 @@ impl Document {
         }
     }
 
+    /// That the file names no scheme, whose numbers must be rational.
+    pub fn refuse_scheme(&self) -> Result<()> {
+        let Some((scheme, _)) = self.named_scheme()? else { return Ok(()) };
+        Err(Error::input("scheme", scheme.name(), "is for rational numbers in the file, without pi"))
+    }
+
     /// The model with the scheme of the file, where it names one; `moving` are node and axis of each degree
     /// of freedom of a mesh.
-    pub fn with_scheme(&self, model: Model, moving: &[(usize, usize)]) -> Result<Model> {
-        let Some((scheme, levels)) = self.named_scheme()? else { return Ok(model) };
-        let Model::Rational(plain) = model else {
-            let remedy = "is for rational numbers in the file, without pi";
-            return Err(Error::input("scheme", scheme.name(), remedy));
-        };
+    pub fn with_scheme(&self, plain: System, moving: &[(usize, usize)]) -> Result<Arc<dyn Model>> {
+        let Some((scheme, levels)) = self.named_scheme()? else { return Ok(Arc::new(plain)) };
         if scheme == Scheme::Avi {
             // Its clocks are those of the elements already.
             let Some(mesh) = &self.mesh else {
                 let remedy = "needs a mesh, whose elements take the steps; without one give each potential its own step and leave out scheme";
                 return Err(Error::input("scheme", "avi", remedy));
             };
-            let elements = ElementSteps::new(plain.clone(), mesh.elements.len(), mesh.levels(levels)?)?;
-            return Ok(Model::Elements(plain, elements));
+            return Ok(Arc::new(ElementSteps::new(plain, mesh.elements.len(), mesh.levels(levels)?)?));
         }
         if self.friction.is_some() {
             let remedy = "has no place in a scheme of local steps: leave it out";
@@ -58,7 +60,7 @@ impl Document {
         }
         let level = |(l, level_document)| self.level(l, level_document, &plain, moving);
         let levels = levels.iter().enumerate().map(level).collect::<Result<_>>()?;
-        Ok(Model::LocalSteps(LocalSteps::new(plain, levels)?))
+        Ok(Arc::new(LocalSteps::new(plain, levels)?))
     }
 
     fn level(

@@ -39,6 +39,8 @@
 //! both ends. `"keep_rigid": true` projects no rigid motions out: there are none, as of atoms among others
 //! that stand still.
 
+use std::sync::Arc;
+
 use nalgebra::DMatrix;
 use serde::Deserialize;
 use serde_json::Value;
@@ -180,7 +182,7 @@ pub(super) fn parse(source: &Value) -> Result<Document> {
 }
 
 /// From a file of dense stiffnesses.
-pub(super) fn read(document: &Document, arrays: &Arrays) -> Result<Model> {
+pub(super) fn read(document: &Document, arrays: &Arrays) -> Result<Arc<dyn Model>> {
     if document.scheme.is_some() || document.levels.is_some() {
         let remedy = "a dense stiffness by reference takes none: name its compressed rows (csr), or write its numbers in the file";
         return Err(Error::input("scheme", "local time steps", remedy));
@@ -218,25 +220,18 @@ pub(super) fn read(document: &Document, arrays: &Arrays) -> Result<Model> {
     document.transform(&mut body, &mut read, arrays)?;
     let accuracy = document.accuracy()?;
     let potentials: Vec<_> = read.into_iter().map(|read| (read.step, read.stiffness)).collect();
-    let model = if document.symmetric {
-        let own = MeasuredSystem::new(body, potentials, accuracy)?;
-        let measured_system = if document.keep_rigid { own.keeping_rigid() } else { own };
-        Model::Measured(match &document.method {
-            Some(method) => measured_system.with_method(method.parse()?)?,
-            None => measured_system,
-        })
+    let model: Arc<dyn Model> = if document.symmetric {
+        let measured_system = MeasuredSystem::new(body, potentials, accuracy)?;
+        Arc::new(if document.keep_rigid { measured_system.keeping_rigid() } else { measured_system })
     } else {
-        if let Some(method) = &document.method {
-            return Err(Error::input("method", method, "is for forces that are gradients: leave it out"));
-        }
-        Model::NoGradient(Box::new(Jacobians::measured(&body, &potentials, accuracy, document.keep_rigid)?))
+        Arc::new(Jacobians::measured(&body, &potentials, accuracy, document.keep_rigid)?)
     };
-    Ok(model)
+    document.method.as_ref().map_or(Ok(Arc::clone(&model)), |method| model.with_method(method.parse()?))
 }
 
 impl Document {
     /// Hessians along an orbit.
-    fn along(&self, arrays: &Arrays) -> Result<Model> {
+    fn along(&self, arrays: &Arrays) -> Result<Arc<dyn Model>> {
         let refused = [
             ("mass_weighted", self.mass_weighted),
             ("constraints", self.constraints.is_some()),
@@ -271,11 +266,11 @@ impl Document {
                 let remedy = "stands in place of positions, turned, periodic and keep_rigid: leave these out";
                 return Err(Error::input("rigid", "given", remedy));
             }
-            return Ok(Model::Along(Box::new(along.free_of(&ends)?)));
+            return Ok(Arc::new(along.free_of(&ends)?));
         }
         let turned = self.turned.as_ref().map(|at| at.read("turned", arrays)).transpose()?;
         let turned = turned.map(|turned| triples(&turned.into_values(), n)).transpose()?;
-        Ok(Model::Along(Box::new(match (self.positions(n, arrays)?, turned) {
+        Ok(Arc::new(match (self.positions(n, arrays)?, turned) {
             _ if self.keep_rigid => along,
             _ if self.periodic => along.in_box()?,
             (Some(start), Some(turned)) => along.turning([&start, &turned])?,
@@ -286,7 +281,7 @@ impl Document {
                     "give where the atoms are at both ends of the half period, or say \"keep_rigid\": true";
                 return Err(Error::missing(missing, remedy));
             }
-        })))
+        }))
     }
 }
 

@@ -72,6 +72,8 @@ mod pi;
 mod scan;
 mod sparse;
 
+use std::sync::Arc;
+
 use serde::Deserialize;
 use serde_json::Value;
 
@@ -176,7 +178,7 @@ pub struct SystemScene {
     source: Value,
     /// Where the arrays are that it refers to.
     arrays: Arrays,
-    model: Model,
+    model: Arc<dyn Model>,
     /// The bonds at whose equilibrium the model is.
     bonds: Option<Nonlinear>,
     /// One for each degree of freedom.
@@ -215,8 +217,8 @@ impl SystemScene {
         if measured::is_by_reference(&source) {
             check_schema(source["schema"].as_str().unwrap_or_default())?;
             let document = measured::parse(&source)?;
-            let model = if document.is_sparse() {
-                Model::Sparse(Box::new(sparse::read(&document, &arrays)?))
+            let model: Arc<dyn Model> = if document.is_sparse() {
+                Arc::new(sparse::read(&document, &arrays)?)
             } else {
                 measured::read(&document, &arrays)?
             };
@@ -256,25 +258,11 @@ impl SystemScene {
         friction: Option<&Rational>,
         method: Option<Method>,
     ) -> Result<SystemScene> {
-        let exact = "is for stiffnesses by reference: these are exact";
         if let Some(accuracy) = accuracy {
-            self.model = match self.model {
-                Model::Measured(measured_system) => Model::Measured(measured_system.at_accuracy(accuracy)?),
-                Model::NoGradient(jacobians) => Model::NoGradient(Box::new(jacobians.at_accuracy(accuracy)?)),
-                Model::Along(along) => Model::Along(Box::new(along.at_accuracy(accuracy)?)),
-                Model::Sparse(sparse_system) => Model::Sparse(Box::new(sparse_system.at_accuracy(accuracy)?)),
-                _ => return Err(Error::input("accuracy", accuracy, exact)),
-            };
+            self.model = self.model.at_accuracy(accuracy)?;
         }
         if keeps_rigid {
-            let Model::Measured(measured_system) = self.model else {
-                let no_gradient = "say \"keep_rigid\": true in the file";
-                let is_by_reference =
-                    matches!(self.model, Model::NoGradient(_) | Model::Along(_) | Model::Sparse(_));
-                let remedy = if is_by_reference { no_gradient } else { exact };
-                return Err(Error::input("rigid motions", "kept", remedy));
-            };
-            self.model = Model::Measured(measured_system.keeping_rigid());
+            self.model = self.model.keeping_rigid()?;
         }
         if let Some(method) = method {
             self.model = with_method(self.model, self.bonds.as_ref(), method)?;
@@ -289,8 +277,8 @@ impl SystemScene {
     }
 
     /// What decides: the linear system at the equilibrium, where there are nonlinear bonds.
-    pub fn model(&self) -> &Model {
-        &self.model
+    pub fn model(&self) -> &dyn Model {
+        &*self.model
     }
 
     /// What the friction of the file does; `None` where it has none.
@@ -347,20 +335,13 @@ impl SystemScene {
     /// # Errors
     /// A mass matrix that is not diagonal, steps that are irrational, and as [`Simulation::new`].
     pub fn linear_simulation(&self, x: Vec<f64>, p: Vec<f64>) -> Result<Simulation<f64, avi::Linear<f64>>> {
-        match &self.model {
-            Model::Oscillator(oscillator) if !oscillator.has_rational_steps => {
-                let remedy = "a run needs rational steps: choose a unit of time in which they are";
-                return Err(Error::input("step", &oscillator.unit, remedy));
-            }
-            _ => {}
-        }
+        let clocks = self.model.to_run()?.clocks();
         let force = |clock: &Potential| {
             let particles = clock.stiffness.support();
             let row = |&i: &usize| particles.iter().map(|&j| to_f64(&clock.stiffness.get(i, j))).collect();
             let rows = particles.iter().map(row).collect();
             avi::Linear::new(particles, rows)
         };
-        let clocks = self.model.system().clocks();
         let forces = clocks.iter().map(force).collect::<Result<Vec<_>>>()?;
         let steps: Vec<_> = clocks.iter().map(|c| c.step.clone()).collect();
         let phases: Vec<_> = clocks.iter().map(|c| c.phase.clone()).collect();
@@ -378,29 +359,7 @@ impl SystemScene {
     }
 
     fn masses(&self) -> Result<Vec<Rational>> {
-        match &self.model {
-            Model::Measured(measured_system) => {
-                measured_system.refuse_constraints().and(measured_system.refuse_method("a run"))?
-            }
-            Model::NoGradient(_) => {
-                return Err(Error::input("symmetric", "false", "a run is for forces that are gradients"));
-            }
-            Model::Along(_) => {
-                return Err(Error::input("along_orbit", "true", "a run is for Hessians at one place"));
-            }
-            Model::Sparse(_) => {
-                return Err(Error::input("stiffness", "sparse", "a run is for dense stiffnesses"));
-            }
-            Model::Implicit(_) => {
-                return Err(Error::input(
-                    "method",
-                    Method::ImplicitExplicit,
-                    "a run is for respa: leave it out",
-                ));
-            }
-            _ => {}
-        }
-        let mass = self.model.system().mass();
+        let mass = self.model.to_run()?.mass();
         if !mass.is_diagonal() {
             let remedy = "Algorithm 1 moves particle by particle: give masses in place of mass_matrix";
             return Err(Error::input("mass_matrix", "not diagonal", remedy));
@@ -410,13 +369,11 @@ impl SystemScene {
 }
 
 /// The model under another integrator, unless bonds are there whose forces are not linear.
-fn with_method(model: Model, bonds: Option<&Nonlinear>, method: Method) -> Result<Model> {
-    match bonds.filter(|bonds| !bonds.is_harmonic) {
-        Some(_) => {
-            Err(Error::input("method", method, "is for linear systems: give springs in place of bonds"))
-        }
-        None => model.with_method(method),
+fn with_method(model: Arc<dyn Model>, bonds: Option<&Nonlinear>, method: Method) -> Result<Arc<dyn Model>> {
+    if bonds.is_some_and(|bonds| !bonds.is_harmonic) {
+        return Err(Error::input("method", method, "is for linear systems: give springs in place of bonds"));
     }
+    if method == model.method() { Ok(model) } else { model.with_method(method) }
 }
 
 fn check_schema(schema: &str) -> Result<()> {
@@ -429,7 +386,7 @@ fn check_schema(schema: &str) -> Result<()> {
 /// A model, the bonds at whose equilibrium it is, and labels of its degrees of freedom, where the file
 /// implies some.
 struct Described {
-    model: Model,
+    model: Arc<dyn Model>,
     bonds: Option<Nonlinear>,
     labels: Option<Vec<String>>,
 }
@@ -439,7 +396,7 @@ impl Document {
         let is_explicit = self.masses.is_some() || self.potentials.is_some();
         match (&self.build, &self.mesh) {
             (Some(build), None) if !is_explicit => {
-                let model = self.with_scheme(Model::Rational(build.system()?), &[])?;
+                let model = self.with_scheme(build.system()?, &[])?;
                 Ok(Described { model, bonds: None, labels: None })
             }
             (None, Some(mesh)) if !is_explicit => {
@@ -450,19 +407,11 @@ impl Document {
                     _ => None,
                 };
                 let (system, moving) = mesh.system(substeps.as_deref())?;
-                let model = self.with_scheme(Model::Rational(system), &moving)?;
+                let model = self.with_scheme(system, &moving)?;
                 Ok(Described { model, bonds: None, labels: Some(mesh::labels(&moving)) })
             }
             (None, None) => {
                 let (model, bonds) = self.explicit()?;
-                if let (Some(scheme), Some(_)) = (&self.scheme, &bonds) {
-                    return Err(Error::input(
-                        "scheme",
-                        scheme,
-                        "is for linear systems: give springs in place of bonds",
-                    ));
-                }
-                let model = self.with_scheme(model, &[])?;
                 Ok(Described { model, bonds, labels: None })
             }
             _ => {
@@ -473,12 +422,14 @@ impl Document {
         }
     }
 
-    fn explicit(&self) -> Result<(Model, Option<Nonlinear>)> {
+    fn explicit(&self) -> Result<(Arc<dyn Model>, Option<Nonlinear>)> {
         if self.symmetric == Some(false) {
-            return Ok((Model::NoGradient(Box::new(self.jacobians()?)), None));
+            self.refuse_scheme()?;
+            return Ok((Arc::new(self.jacobians()?), None));
         }
         if let Some(oscillator) = self.oscillator()? {
-            return Ok((Model::Oscillator(oscillator), None));
+            self.refuse_scheme()?;
+            return Ok((Arc::new(oscillator), None));
         }
         let (mass, potentials) = (self.mass()?, self.potentials()?);
         let n = mass.size();
@@ -488,11 +439,20 @@ impl Document {
         match linear.collect::<Result<Vec<_>>>() {
             Ok(linear) if has_bonds => {
                 let (system, bonds) = self.at_equilibrium(mass, potentials, linear)?;
-                Ok((Model::Rational(system), Some(bonds)))
+                if let Some(scheme) = &self.scheme {
+                    let remedy = "is for linear systems: give springs in place of bonds";
+                    return Err(Error::input("scheme", scheme, remedy));
+                }
+                self.refuse_scheme()?;
+                Ok((Arc::new(system), Some(bonds)))
             }
-            Ok(linear) => Ok((Model::Rational(System::new(mass, linear)?), None)),
+            Ok(linear) => Ok((self.with_scheme(System::new(mass, linear)?, &[])?, None)),
             Err(error) if has_bonds => Err(error),
-            Err(error) => Ok((Model::Pi(self.beside_pi(mass)?.ok_or(error)?), None)),
+            Err(error) => {
+                let beside_pi = self.beside_pi(mass)?.ok_or(error)?;
+                self.refuse_scheme()?;
+                Ok((Arc::new(beside_pi), None))
+            }
         }
     }
 }

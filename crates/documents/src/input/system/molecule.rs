@@ -29,7 +29,7 @@ impl SystemScene {
     /// As [`SystemScene::scheme`].
     pub fn molecule(&self) -> Result<(Molecule, Scheme)> {
         let (scheme, unit) = (self.scheme()?, self.femtoseconds()?);
-        let levels = self.model.measured_levels()?;
+        let levels = self.model.measured()?.levels()?;
         Ok((Molecule::new(levels.source, unit, self.names(levels.body)?, levels.accuracy), scheme))
     }
 
@@ -78,11 +78,11 @@ impl SystemScene {
     ///
     /// # Errors
     /// A file without `time_unit`, or with another than fs, ps, ns or s; as
-    /// [`Model::measured_steps`](systems::Model::measured_steps).
+    /// [`Model::measured`](systems::Model::measured).
     pub fn scheme(&self) -> Result<Scheme> {
         let steps = match self.model.jacobians() {
             Some(jacobians) => jacobians.steps(),
-            None => self.model.measured_steps()?,
+            None => self.model.measured()?.steps_of_kicks()?,
         };
         let unit = self.femtoseconds()?;
         Scheme::new(steps.into_iter().map(|step| step * &unit).collect())

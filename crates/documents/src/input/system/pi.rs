@@ -5,12 +5,12 @@ use std::collections::BTreeMap;
 use super::document::{Document, Number, PotentialDocument, ends};
 use number::Laurent;
 use number::error::Result;
-use systems::{PiPotential, Symmetric, System, beside_pi};
+use systems::{BesidePi, PiPotential, Symmetric, beside_pi};
 
 impl Document {
     /// The system with a rational in the place of π, where stiffnesses involve it; `None` where all numbers
     /// are rational.
-    pub fn beside_pi(&self, mass: Symmetric) -> Result<Option<System>> {
+    pub fn beside_pi(&self, mass: Symmetric) -> Result<Option<BesidePi>> {
         let n = mass.size();
         let potentials = self
             .potentials()?

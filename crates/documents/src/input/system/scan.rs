@@ -7,6 +7,7 @@
 
 use std::fmt::{Display, Formatter};
 use std::str::FromStr;
+use std::sync::Arc;
 
 use serde_json::Value;
 
@@ -15,7 +16,6 @@ use super::{SystemScene, sparse, with_method};
 use number::Rational;
 use number::error::{Error, Result};
 use number::parse::parse_rational;
-use systems::Model;
 
 /// The most values of an axis, and the most points of a map.
 pub(super) const MOST_POINTS: usize = 100_000;
@@ -93,7 +93,7 @@ impl Scan {
     /// # Errors
     /// As [`SystemScene::read`] at the first point; a path that leads nowhere; too many points.
     pub fn new(scene: SystemScene, x: Axis, y: Option<Axis>) -> Result<Scan> {
-        if scene.model().along().is_some() {
+        if !scene.model().is_at_one_place() {
             let remedy = "varies no number of Hessians along an orbit: another step has another orbit";
             return Err(Error::input("scan", &x.path, remedy));
         }
@@ -198,27 +198,18 @@ impl SystemScene {
         let is_step = |(path, _): &(&str, &Rational)| {
             *path == OUTER || path.starts_with("potentials.") && path.ends_with(".step")
         };
-        if let Model::Sparse(sparse_system) = &self.model
+        if let Some(sparse_system) = self.model.sparse()
             && numbers.iter().all(is_step)
             && let Some(sparse_system) = sparse::with_steps(sparse_system, [&self.source, &file])?
         {
-            return Ok(SystemScene {
-                source: file,
-                model: Model::Sparse(Box::new(sparse_system)),
-                ..self.clone()
-            });
+            return Ok(SystemScene { source: file, model: Arc::new(sparse_system), ..self.clone() });
         }
         let mut scene = SystemScene::from_json_in(self.arrays.clone(), file)?;
         let method = self.model.method();
         if scene.model.method() != method {
             scene.model = with_method(scene.model, scene.bonds.as_ref(), method)?;
         }
-        if let (Model::Measured(measured_system), Model::Measured(old)) = (&mut scene.model, &self.model) {
-            measured_system.copy_settings_from(old);
-        }
-        if let (Model::Sparse(sparse_system), Model::Sparse(old)) = (&mut scene.model, &self.model) {
-            sparse_system.copy_settings_from(old);
-        }
+        Arc::get_mut(&mut scene.model).expect("just read").copy_settings_from(self.model());
         Ok(scene)
     }
 }

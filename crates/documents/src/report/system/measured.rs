@@ -77,6 +77,7 @@ pub(super) fn lines(measured: &Measured, (clocks, is_stable): (usize, bool), uni
         let step = match (clocks, has_other_method(measured)) {
             (1, _) => "step",
             (_, true) => "outer step",
+            (3.., _) => "outer step, all others in their ratios to it",
             _ => "outer step with as many inner ones",
         };
         lines.push(format!(

@@ -25,7 +25,7 @@ trait Route {
 
 /// The route that does not share a step with how this system is advised on.
 fn route<'a>(scene: &'a SystemScene, band: f64, limits: &'a Limits) -> Result<Box<dyn Route + 'a>> {
-    let levels = scene.model().measured_levels()?;
+    let levels = scene.model().measured()?.levels()?;
     Ok(match levels.source.kernel() {
         Some(kernel) => Box::new(Other::new(scene, kernel.norms().map(|norm| levels.accuracy * norm), band)?),
         None => Box::new(Many { system: scene.model().moving()?, scene, band, limits }),
@@ -139,7 +139,7 @@ const GROWTH: f64 = 1e-5;
 impl Other {
     fn new(scene: &SystemScene, off: [f64; 2], band: f64) -> Result<Other> {
         let unit = to_f64(&scene.femtoseconds()?);
-        Ok(Other { hessians: scene.model().hessians()?, off, band, unit })
+        Ok(Other { hessians: scene.model().measured()?.hessians_of_two()?, off, band, unit })
     }
 
     fn inner_steps(finding: &Finding) -> u64 {

@@ -5,7 +5,7 @@ use num_traits::Zero;
 use crate::input::SystemScene;
 use crate::verify::context::{Checked, holds};
 use number::Rational;
-use systems::{Analysis, Model, System};
+use systems::{Analysis, System};
 
 /// Ranks are taken of no more degrees of freedom: n⁴ products of rationals.
 const MOST: usize = 24;
@@ -13,12 +13,7 @@ const MOST: usize = 24;
 /// No potential holds a rigid mode, and there are as many of these as potentials leave free: of effective
 /// stiffnesses those that they come from.
 pub fn exactly(scene: &SystemScene, analysis: &Analysis) -> Checked {
-    let plain = match scene.model() {
-        Model::Rational(system) | Model::Elements(system, _) => system,
-        Model::LocalSteps(local_steps) => local_steps.plain(),
-        Model::Implicit(implicit_explicit) => implicit_explicit.plain(),
-        _ => return Ok(()),
-    };
+    let Some(plain) = scene.model().plain() else { return Ok(()) };
     let modes = &analysis.rigid_modes;
     for (k, potential) in plain.potentials().iter().enumerate() {
         let is_free = |mode: &Vec<Rational>| potential.stiffness.times(mode).iter().all(Zero::is_zero);

@@ -7,11 +7,11 @@ use crate::input::SystemScene;
 use crate::question::Displacement;
 use crate::verify::context::{Checked, Fault, ROOM, holds};
 use number::error::Result;
-use number::rational::to_f64;
+use number::rational::{from_f64_exact, to_f64};
 use number::{Laurent, Rational};
 use systems::avi::Run;
 use systems::levels::{Hessians, Near};
-use systems::{Analysis, Holds, Limits, Measured, Model, full_period};
+use systems::{Analysis, Holds, Limits, Measured, full_period};
 
 /// Multipliers are rounded eigenvalues: those of nearly defective propagators are right to half their digits
 /// only, but not the sums of them.
@@ -36,10 +36,7 @@ pub fn traces(scene: &SystemScene, analysis: &Analysis) -> Checked {
             power + power.inv()
         }));
     }
-    let q: DMatrix<f64> = match scene.model() {
-        Model::NoGradient(jacobians) => jacobians.full_period(),
-        other => full_period(other.moving()?.as_ref()),
-    };
+    let q = scene.model().full_period()?;
     let (norm, n) = (q.norm(), q.nrows() as f64 / 2.0);
     let sums = [
         (q.trace(), turns.iter().sum::<Complex64>(), norm),
@@ -70,6 +67,22 @@ pub fn growth(scene: &SystemScene, analysis: &Analysis, limits: &Limits) -> Chec
     holds(right, || format!("the growth rate is {lo} to {hi}, that of the dense full period {found}"))
 }
 
+/// The claims on levels of any number that no other route sees.
+pub const SAME_ROUTE: &str = "that the verdict holds for all stiffnesses within their accuracy, the margin: computed again by the same route alone";
+
+/// Both sides of the first unstable step of levels of any number, by half periods of a rational system of the
+/// doubles given.
+pub fn first_unstable(scene: &SystemScene, measured: &Measured, limits: &Limits) -> Checked {
+    let Some((lo, hi)) = measured.first_unstable else { return Ok(()) };
+    [(lo * (1.0 - ROOM), Holds::Stable), (hi * (1.0 + ROOM), Holds::Unstable)].into_iter().try_for_each(
+        |(step, said)| {
+            let Some(outer) = from_f64_exact(step) else { return Ok(()) };
+            let found = scene.model().decide_at(&outer, limits)?.holds();
+            holds(found == said, || format!("at a step of {step} it is {} by half periods", found.name()))
+        },
+    )
+}
+
 /// How far a verdict on measured stiffnesses stands, by the action of paths, which shares no step with the
 /// forms and counts that found it: it is definite for all stiffnesses near those given where all are stable
 /// at this step and at every smaller one.
@@ -83,9 +96,9 @@ pub struct Stands<'a> {
 impl<'a> Stands<'a> {
     pub fn of(scene: &SystemScene, measured: &'a Measured) -> Result<Stands<'a>> {
         let model = scene.model();
-        let source = model.measured_levels().ok().map(|levels| levels.source);
+        let source = model.measured().and_then(|levels| Ok(levels.levels()?.source)).ok();
         let levels = source.as_ref().and_then(|source| source.kernel()).map(|kernel| -> Result<_> {
-            let (hessians, p) = (model.hessians()?, model.inner_steps().unwrap_or(1));
+            let (hessians, p) = (model.measured()?.hessians_of_two()?, model.inner_steps().unwrap_or(1));
             Ok((hessians, kernel.norms(), to_f64(&model.outer_step()), p))
         });
         let levels = levels.transpose()?.filter(|(hessians, _, _, p)| hessians.has_paths(*p));
@@ -174,6 +187,22 @@ mod tests {
                     multiplier.growth.map(|(lo, hi)| (1.01 * lo.max(0.01), 1.01 * hi.max(0.01)));
             }
             assert!(matches!(growth(&scene, &analysis, &Limits::default()), Err(Fault::Wrong(_))), "{step}");
+        }
+    }
+
+    #[test]
+    fn half_periods_find_a_first_unstable_step_of_three_clocks_that_is_wrong_from_the_start() {
+        let folder = std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/scenes"));
+        let text = std::fs::read_to_string(folder.join("water4-levels.json")).unwrap();
+        let scene = SystemScene::from_json_in(folder, serde_json::from_str(&text).unwrap()).unwrap();
+        let limits = Limits::default();
+        let found = scene.model().decide(Route::Cheapest, &limits).unwrap().measured.unwrap();
+        assert!(first_unstable(&scene, &found, &limits).is_ok(), "{found:?}");
+        let (lo, hi) = found.first_unstable.unwrap();
+        // The unstable interval above it is two thousandths wide.
+        for wrong in [(lo * 1.001, hi * 1.001), (lo, hi * 0.999)] {
+            let moved = Measured { first_unstable: Some(wrong), ..found.clone() };
+            assert!(matches!(first_unstable(&scene, &moved, &limits), Err(Fault::Wrong(_))), "{wrong:?}");
         }
     }
 

@@ -52,7 +52,7 @@ pub fn check(
         return Ok(Outcome { failures, ..Outcome::holding(route, count) });
     }
     // Other systems are looked at by their steps alone.
-    if !matches!(scene.model(), Model::Measured(_)) || found.is_discrete {
+    if scene.model().measured().is_err() || found.is_discrete {
         return Ok(Outcome::holding(ALONE, count));
     }
     let all = (1..).zip(&found.stretches).filter(|(_, stretch)| stretch.verdict != Holds::Undecided);
@@ -261,7 +261,7 @@ impl<'a> Places<'a> {
     }
 }
 
-fn is_proven_stable(model: &Model) -> Result<bool> {
+fn is_proven_stable(model: &dyn Model) -> Result<bool> {
     let found = model.decide(Route::Cheapest, &Limits::default())?;
     Ok(found.is_proof() && found.is_stable())
 }

@@ -21,7 +21,8 @@ use clocks::verdict::Kind;
 use number::error::{Kind as Reason, Result};
 use number::rational::to_f64;
 use systems::avi::Ends;
-use systems::{Analysis, Limits, Model, SchemeSummary, SparseSteps};
+use systems::levels::Method;
+use systems::{Analysis, Limits, SchemeSummary, SparseSteps};
 
 /// Points of a map whose kind is decided by the other route (where it costs no more than is allowed), unless
 /// all are.
@@ -48,7 +49,7 @@ fn verdict(
     local: Option<&SchemeSummary>,
     context: &Context,
 ) -> Result<Outcome> {
-    if let Model::Sparse(sparse_system) = scene.model() {
+    if let Some(sparse_system) = scene.model().sparse() {
         if let Some((sparse_levels, outer)) = sparse_system.levels() {
             let (checked, unseen) = levels::run(sparse_levels, outer, analysis);
             return Ok(Outcome { not_rechecked: unseen, ..Outcome::whole(levels::ROUTE, checked)? });
@@ -57,7 +58,9 @@ fn verdict(
         let checked = local::sparse(steps, to_f64(&scene.model().steps()[0]), analysis, local);
         return Ok(seen(steps, Outcome::whole(RUN, checked)?));
     }
-    if let Some(measured) = &analysis.measured {
+    let of_many = scene.model().measured().is_ok() && scene.model().inner_steps().is_none();
+    let of_any = analysis.measured.as_ref().filter(|_| of_many);
+    if let Some(measured) = analysis.measured.as_ref().filter(|_| !of_many) {
         let (limits, route) = (context.work().products(), dense::Stands::of(scene, measured)?);
         let checked = dense::growth(scene, analysis, &limits).and_then(|()| route.check(&limits));
         return match checked {
@@ -78,16 +81,16 @@ fn verdict(
     let traces = || {
         apart::exactly(scene, analysis)?;
         scene.model().local_steps().map_or(Ok(()), local::steps)?;
-        scene
-            .model()
-            .implicit()
-            .map_or(Ok(()), |implicit_explicit| implicit::in_doubles(implicit_explicit, analysis))?;
+        let solved_for = scene.model().plain().filter(|_| scene.model().method() != Method::Respa);
+        solved_for.map_or(Ok(()), |plain| implicit::in_doubles(plain, analysis))?;
+        of_any
+            .map_or(Ok(()), |measured| dense::first_unstable(scene, measured, &context.work().products()))?;
         dense::traces(scene, analysis)
     };
-    match exact_kind(scene, analysis.kind, &context.work().products())? {
+    let mut outcome = match exact_kind(scene, analysis.kind, &context.work().products())? {
         Some(truth) => {
-            let route = match scene.model() {
-                Model::LocalSteps(_) => {
+            let route = match scene.model().local_steps() {
+                Some(_) => {
                     "the scheme substep by substep, the kind in exact arithmetic, multipliers by the traces of the full period"
                 }
                 _ => {
@@ -97,8 +100,8 @@ fn verdict(
             Outcome::whole(route, same_kind(analysis.kind, truth).and_then(|()| traces()))
         }
         None => {
-            let route = match scene.model() {
-                Model::Pi(_) => "multipliers by the traces of the dense full period and of its square",
+            let route = match scene.model().is_exact() {
+                false => "multipliers by the traces of the dense full period and of its square",
                 _ => {
                     "multipliers by the traces of the dense full period and of its square (exact arithmetic would cost \
                      more than is allowed)"
@@ -106,7 +109,9 @@ fn verdict(
             };
             Outcome::whole(route, traces())
         }
-    }
+    }?;
+    outcome.not_rechecked.extend(of_any.map(|_| dense::SAME_ROUTE.into()));
+    Ok(outcome)
 }
 
 /// The scheme run, of large ones.
@@ -124,7 +129,7 @@ fn seen(steps: &SparseSteps, mut outcome: Outcome) -> Outcome {
 /// `None` where the work exceeds the limits, and where stiffnesses are known within a bound only and no kind
 /// is claimed.
 fn exact_kind(scene: &SystemScene, claimed: Option<Kind>, limits: &Limits) -> Result<Option<Kind>> {
-    if matches!(scene.model(), Model::Pi(_)) && claimed.is_none() {
+    if !scene.model().is_exact() && claimed.is_none() {
         return Ok(None);
     }
     match scene.model().exact_kind(limits) {
@@ -136,7 +141,7 @@ fn exact_kind(scene: &SystemScene, claimed: Option<Kind>, limits: &Limits) -> Re
 
 fn points(question: &System, scene: &SystemScene, map: &SystemMap, context: &Context) -> Result<Outcome> {
     let (count, limits) = (map.points.len() as u64, context.work().products());
-    if matches!(scene.model(), Model::Sparse(_)) {
+    if scene.model().sparse().is_some() {
         return Outcome::whole(ALONE, Ok(()));
     }
     let mut outcome = Outcome::whole("the kind of a random sample of points in exact arithmetic", Ok(()))?;
