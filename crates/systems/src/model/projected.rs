@@ -10,7 +10,7 @@ use super::Model;
 use super::measured::{Body, MeasuredSystem, rational};
 use crate::friction::{Friction, damped_system};
 use crate::levels::apart::{Given, common_null_space, of_particles};
-use crate::levels::{Hessians, Motions, Shares};
+use crate::levels::{Hessians, Motions, Search, Shares};
 use crate::linear::system::System;
 use crate::verdict::analysis::Analysis;
 use crate::verdict::decide::decide_by;
