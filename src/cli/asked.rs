@@ -1,51 +1,92 @@
-//! Commands whose arguments are a question and whose answer is its document.
+//! Questions whose fields are flags.
 
-use clap::{ArgMatches, Args, Command, FromArgMatches};
+use std::marker::PhantomData;
+
+use clap::parser::ValueSource;
+use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
+use serde_json::{Map, Value};
 
 use super::args::{Columns, Common};
-use super::help::below;
 use super::progress::{Shown, announce, progress};
 use clocks::tongue::Progress;
 use documents::format::Format;
-use documents::question::{Question, Watch, Work};
-use number::error::Error;
+use documents::question::{Fields, Question, Watch, Work};
+use number::error::Result;
 
 /// The flags of a question, and of its table.
-#[derive(Debug)]
-pub struct Asked<Q> {
+#[derive(Debug, clap::Args)]
+pub struct Asked<Q: Question + Args> {
+    #[command(flatten)]
     question: Q,
+    #[command(flatten)]
     columns: Columns,
 }
 
-impl<Q: Question + Args> Args for Asked<Q> {
-    fn augment_args(command: Command) -> Command {
-        Columns::augment_args(Q::augment_args(command)).after_help(below(Q::NAME, Q::EXAMPLES))
-    }
-
-    fn augment_args_for_update(command: Command) -> Command {
-        Columns::augment_args_for_update(Q::augment_args_for_update(command))
-    }
-}
-
-impl<Q: FromArgMatches> FromArgMatches for Asked<Q> {
-    fn from_arg_matches(given: &ArgMatches) -> Result<Self, clap::Error> {
-        Ok(Asked { question: Q::from_arg_matches(given)?, columns: Columns::from_arg_matches(given)? })
-    }
-
-    fn update_from_arg_matches(&mut self, given: &ArgMatches) -> Result<(), clap::Error> {
-        self.question.update_from_arg_matches(given)?;
-        self.columns.update_from_arg_matches(given)
-    }
-}
-
-impl<Q: Question> Asked<Q> {
+impl<Q: Question + Args> Asked<Q> {
     /// Writes the document, in `default` form unless another one is asked for.
-    pub fn run(&self, common: &Common, default: Default) -> Result<(), Error> {
+    pub fn run(&self, common: &Common, default: Default) -> Result<()> {
         let format = match default {
             Default::Text => Format::Text,
             Default::Table => common.format_of_table(&Format::DOCUMENT)?,
         };
         common.write(&self.columns.of(self.question.ask(&common.work())?)?, format)
+    }
+}
+
+/// The flags of a question whose fields may be given by other names too, or by those of another question: a
+/// document's `input`, read as such.
+#[derive(Clone, Debug)]
+pub struct Flags<Q> {
+    given: Map<String, Value>,
+    question: PhantomData<Q>,
+}
+
+impl<Q: Fields> Flags<Q> {
+    /// Whether a field is given.
+    pub fn has(&self, field: &str) -> bool {
+        self.given.contains_key(field)
+    }
+
+    /// The question that is asked by them.
+    pub fn question(&self) -> Result<Q> {
+        Q::read(&self.given).map_err(|error| {
+            let flag = error.field().replace('_', "-");
+            error.at(&flag)
+        })
+    }
+}
+
+impl<Q: Fields + Args> Args for Flags<Q> {
+    /// Those that the command does not have yet.
+    fn augment_args(command: Command) -> Command {
+        let all = Q::augment_args(Command::new(""));
+        let is_new = |flag: &&Arg| command.get_arguments().all(|known| known.get_id() != flag.get_id());
+        let new: Vec<Arg> = all.get_arguments().filter(is_new).cloned().collect();
+        command.args(new)
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        Self::augment_args(command)
+    }
+}
+
+impl<Q: Fields> FromArgMatches for Flags<Q> {
+    fn from_arg_matches(matches: &ArgMatches) -> clap::error::Result<Self> {
+        let names = Q::FIELDS.iter().chain(Q::OTHER_NAMES.iter().copied().flatten());
+        let names: Vec<&str> = names.copied().collect();
+        let is_given =
+            |id: &&str| names.contains(id) && matches.value_source(id) == Some(ValueSource::CommandLine);
+        let text = |id: &str| {
+            let mut texts = matches.get_raw(id).into_iter().flatten();
+            (id.to_string(), texts.next().unwrap_or_default().to_string_lossy().into())
+        };
+        let given = matches.ids().map(clap::Id::as_str).filter(is_given).map(text).collect();
+        Ok(Flags { given, question: PhantomData })
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> clap::error::Result<()> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
     }
 }
 

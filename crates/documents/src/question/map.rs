@@ -1,7 +1,7 @@
 //! The verdicts of a grid of step pairs.
 
 use super::asking::{Question, Work, question};
-use super::field::StepRange;
+use super::field::{StepRange, flag};
 use crate::report::document::Document;
 use crate::report::map::{MapTally, document};
 use clocks::map::{self, Band, Grid, Products, Resources, Shard};
@@ -11,24 +11,33 @@ use number::error::{Error, Result};
 question! {
     /// The verdicts of all pairs of multiples of two spacings in closed ranges.
     #[derive(Default)]
-    struct Map {
-        /// The stiffness of the fast force, 1/time².
+    args struct Map {
+        /// The stiffness of the fast force, as 10 or pi^2.
+        #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
         lambda1: Laurent,
-        /// The stiffness of the slow force.
+        /// The stiffness of the slow force, as 2/5 or pi^2/25; may be negative.
+        #[arg(long, value_name = "Y", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
         lambda2: Laurent,
-        /// The spacing of h1.
-        step1: Laurent,
-        /// The spacing of h2.
-        step2: Laurent,
-        /// The closed range of h1.
+        /// The spacing of h1, where it differs.
+        #[arg(long, value_name = "D1", required = false, required_unless_present = "step", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
+        step1: Laurent | step,
+        /// The spacing of h2, where it differs.
+        #[arg(long, value_name = "D2", required = false, required_unless_present = "step", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
+        step2: Laurent | step,
+        /// The closed range of h1, as 1/100..2/pi.
+        #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<StepRange>)]
         h1_range: StepRange,
         /// The closed range of h2.
+        #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<StepRange>)]
         h2_range: StepRange,
-        /// Labels and dominant families of growing pairs.
+        /// Give the tongue's label m of each growing pair, and its dominant family (a, b).
+        #[arg(long)]
         label: bool,
-        /// Growth rates of growing pairs.
+        /// Give the growth rate of each growing pair, and the slow steps until its amplitude is tenfold.
+        #[arg(long)]
         growth: bool,
-        /// The K-th of N parts, where the map is not whole.
+        /// Compute the K-th of N parts only, into the directory of --resume; `kickdrift merge` joins the parts.
+        #[arg(long, value_name = "K/N", allow_hyphen_values = true, value_parser = flag::<Shard>)]
         shard: Option<Shard>,
     }
 }
@@ -94,6 +103,12 @@ impl Map {
 
 impl Question for Map {
     const NAME: &'static str = "map";
+    const EXAMPLES: &'static [&'static str] = &[
+        "map --lambda1 pi^2 --lambda2 1/3 --step 1/20 --h1-range 1/20..2/pi --h2-range 1/20..7/2",
+        "map --lambda1 1 --lambda2 1/9 --step 1/9 --h1-range 1..2 --h2-range 1..9 --output map.pdf",
+    ];
+    const USAGE: Option<&'static str> =
+        Some("--lambda1 <X> --lambda2 <Y> --step <D> --h1-range <LO..HI> --h2-range <LO..HI>");
     type Answer = MapTally;
 
     fn answer(&self, work: &Work) -> Result<MapTally> {

@@ -260,6 +260,14 @@ impl Tongues {
 
 impl Question for Tongues {
     const NAME: &'static str = "tongues";
+    const EXAMPLES: &'static [&'static str] = &[
+        "tongues --ratio 7/3 --rho 1/25 --m 3..5 --digits 30",
+        "tongues --ratio 5/3,7/2 --rho 5/2 --figure diagram --output tongues.svg",
+        "tongues --ratio 5/3 --rho 1/25 --m 3 --figure trace --output trace.pdf --width 174mm",
+        "tongues --survey --max-sum 12 --rho 1/25 --format latex",
+    ];
+    const USAGE: Option<&'static str> =
+        Some("(--ratio <P/Q> | --max-sum <N>) (--rho <R> | --lambda1 <X> --lambda2 <Y>)");
     type Answer = FoundTongues;
 
     fn answer(&self, work: &Work) -> Result<FoundTongues> {
