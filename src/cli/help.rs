@@ -3,7 +3,7 @@
 use clap::Command;
 
 use documents::question::{
-    Advise, Aperture, Bands, Closings, Compare, Curves, Half, Map, Polynomial, Proposition, Question,
+    Advise, Aperture, Bands, Closings, Compare, Curves, Half, Map, Polynomial, Proposition, Question, Scene,
     Simulate, System, Tongues, Verdict, Word,
 };
 
@@ -34,6 +34,7 @@ const PAGES: [Page; 21] = [
     of::<Advise>(),
     of::<Aperture>(),
     of::<Simulate>(),
+    of::<Scene>(),
     ("merge", &["merge part-1 part-2 --output map.png"], None),
     (
         "explore",
@@ -45,7 +46,6 @@ const PAGES: [Page; 21] = [
         ],
         None,
     ),
-    ("run", &["run data/scenes/small.json --output small"], None),
     ("verify", &["verify data/published/map-100.json"], None),
     ("cite", &["cite", "cite cff --output CITATION.cff"], None),
     ("generate", &["generate man --output man", "generate completions --output completions"], None),

@@ -113,6 +113,13 @@ pub struct FoundTongues {
     tally: TongueTally,
 }
 
+impl FoundTongues {
+    /// Counts and extremes in words.
+    pub fn lines(&self) -> Vec<String> {
+        self.tally.lines(&self.asked.words().expect("it was answered"))
+    }
+}
+
 impl Tongues {
     /// All tongues of these ratios.
     pub fn of(ratios: Ratios, Stiffness { rho, lambda1, lambda2 }: Stiffness) -> Tongues {
@@ -244,17 +251,16 @@ impl Tongues {
     }
 
     /// The tables and the summary, without rows in JSON; what people see has these columns.
-    fn tables(&self, answer: &FoundTongues, seen: &Request) -> Document {
-        let FoundTongues { asked, request, tongues, tally } = answer;
+    fn tables(&self, answer: &FoundTongues, tongues: &[Tongue], seen: &Request) -> Document {
+        let request = &answer.request;
         let table = |request, short| {
             record(request, short).table("tongues", CAPTION, tongues).captioned(CAPTION_LATEX)
         };
-        let words = asked.words().expect("it was answered");
         // Places come with their digits already; what is left are widths and rounded numbers, which doubles hold.
         let layout = Layout { columns: self.named(), digits: request.digits };
         let document =
             Document::new(Self::NAME).long_rows(table(request, false)).for_people(table(seen, true));
-        document.summary(&tally.lines(&words)).laid_out(&layout).expect("it was answered")
+        document.summary(&answer.lines()).laid_out(&layout).expect("it was answered")
     }
 }
 
@@ -279,7 +285,7 @@ impl Question for Tongues {
         // A table for paper has edges alone unless it is asked for more.
         let wanted = self.columns.as_ref().map_or_else(Wanted::default, |_| answer.request.wanted);
         let seen = Request { wanted, ..answer.request.clone() };
-        self.tables(answer, &seen).entry("tongues", rows).entries(answer.tally.entries())
+        self.tables(answer, &answer.tongues, &seen).entry("tongues", rows).entries(answer.tally.entries())
     }
 
     fn document(&self, answer: &FoundTongues) -> Document {
