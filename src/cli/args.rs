@@ -5,7 +5,6 @@ use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 use clocks::map::Products;
-use clocks::verdict::Limits;
 use documents::format::Format;
 use documents::question::flag;
 use documents::report::document::{Document, Layout};
@@ -135,11 +134,6 @@ impl Common {
             return Ok(());
         }
         Err(Error::input(field, path.display(), "is the file of --output too: name another one"))
-    }
-
-    /// The work one verdict may cost.
-    pub fn limits(&self) -> Limits {
-        self.budget.map_or_else(Limits::default, |kicks| Limits { kicks })
     }
 
     /// The number of threads asked for; 0 means one a core.

@@ -7,6 +7,7 @@ use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
 use serde_json::{Map, Value};
 
 use super::args::{Columns, Common};
+use super::paper::Paper;
 use super::progress::{Shown, announce, progress};
 use clocks::tongue::Progress;
 use documents::format::Format;
@@ -25,11 +26,34 @@ pub struct Asked<Q: Question + Args> {
 impl<Q: Question + Args> Asked<Q> {
     /// Writes the document, in `default` form unless another one is asked for.
     pub fn run(&self, common: &Common, default: Default) -> Result<()> {
-        let format = match default {
-            Default::Text => Format::Text,
-            Default::Table => common.format_of_table(&Format::DOCUMENT)?,
-        };
+        let format = default.of(&Format::DOCUMENT, common)?;
         common.write(&self.columns.of(self.question.ask(&common.work())?)?, format)
+    }
+}
+
+/// The flags of a question, of its table and of its figure.
+#[derive(Debug, clap::Args)]
+pub struct Drawn<Q: Question + Args> {
+    #[command(flatten)]
+    question: Q,
+    #[command(flatten)]
+    columns: Columns,
+    #[command(flatten)]
+    paper: Paper,
+}
+
+impl<Q: Question + Args> Drawn<Q> {
+    /// Writes the document or the figure, in `default` form unless another one is asked for.
+    pub fn run(&self, common: &Common, default: Default) -> Result<()> {
+        let format = default.of(&Format::DOCUMENT_OR_FIGURE, common)?;
+        self.paper.check(format.is_figure())?;
+        let work = common.work();
+        let answer = self.question.answer(&work)?;
+        let drawn = if format.is_figure() { self.question.figure(&answer, &work)? } else { None };
+        match drawn {
+            Some(figure) => self.paper.write(figure, format, common.output.as_deref(), common),
+            None => common.write(&self.columns.of(self.question.document(&answer))?, format),
+        }
     }
 }
 
@@ -96,6 +120,16 @@ pub enum Default {
     Text,
     /// Text at a terminal, JSON elsewhere.
     Table,
+}
+
+impl Default {
+    /// The form that is asked for, one of these, or this one.
+    fn of(self, forms: &[Format], common: &Common) -> Result<Format> {
+        match self {
+            Default::Text => common.format(forms, Format::Text),
+            Default::Table => common.format_of_table(forms),
+        }
+    }
 }
 
 impl Common {

@@ -3,7 +3,6 @@
 mod drawing;
 mod output;
 mod part;
-mod source;
 
 use std::path::PathBuf;
 
@@ -14,9 +13,8 @@ use documents::format::Format;
 use documents::question::Map;
 pub use drawing::Drawing;
 use number::error::{Error, Result};
-pub use output::Output;
+pub use output::{Output, Source};
 pub use part::Part;
-pub use source::Source;
 
 /// Flags of `map`.
 #[derive(Debug, clap::Args)]
@@ -38,7 +36,7 @@ impl Args {
     pub fn run(&self, common: &Common) -> Result<()> {
         let format = common.format_of_table(&Format::MAP)?;
         let asked = self.asked.question()?;
-        let shard = self.shard(asked.shard, format)?;
+        self.check(asked.shard, format)?;
         let coloured = self.drawing.products(format)?;
         let shown = self.columns.products(format)?;
         let any = |of: fn(&Products) -> bool| of(&coloured) || of(&shown);
@@ -49,14 +47,14 @@ impl Args {
         let map = Map { label: products.label, growth: products.growth, ..asked };
         let (grid, whole) = (map.grid()?, Map { shard: None, ..map.clone() });
         let store = self.resume.as_ref().map(|directory| Part::create(directory, &whole)).transpose()?;
-        let source = Source::compute(common, shard, store.map(Part::into_store));
+        let source = Source::Computed(store.map(Part::into_store));
         let Args { columns, drawing, .. } = self;
         Output { map: &map, grid: &grid, format, columns, drawing, common }.write(&source)
     }
 
-    /// The part of the map to compute.
-    fn shard(&self, asked: Option<Shard>, format: Format) -> Result<Shard> {
-        let Some(shard) = asked else { return Ok(Shard::WHOLE) };
+    /// That a part of the map can be kept, and has this form.
+    fn check(&self, shard: Option<Shard>, format: Format) -> Result<()> {
+        let Some(shard) = shard else { return Ok(()) };
         if self.resume.is_none() {
             let remedy = "needs --resume DIR, where the part is kept for kickdrift merge";
             return Err(Error::input("--shard", shard, remedy));
@@ -66,6 +64,6 @@ impl Args {
                 "a part has only a summary (json, text): kickdrift merge makes the rest of all parts";
             return Err(Error::input("--shard", shard, remedy));
         }
-        Ok(shard)
+        Ok(())
     }
 }

@@ -1,5 +1,5 @@
-//! The typed question of advice, its answer, and its fields that have parts of their own: modes, schemes of steps,
-//! beads.
+//! The typed question of advice, its answer, and its fields that have parts of their own: modes, schemes of
+//! steps, beads.
 
 use num_traits::Zero;
 use serde_json::{Map, Value, json};

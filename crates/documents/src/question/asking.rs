@@ -9,8 +9,8 @@ use clocks::verdict::Limits;
 use number::error::Result;
 
 /// The fields of a `Question`, each declared once: a struct that is read from the `input` of a document and
-/// written there, and, as `args struct`, read from arguments too (`arg` as clap has it). After `|` stand other
-/// names that a field is read from where its own is not given.
+/// written there, and, as `args struct`, read from arguments too (`arg` as clap has it). After `|` stand
+/// other names that a field is read from where its own is not given.
 macro_rules! question {
     (
         $(#[$meta:meta])*
@@ -65,7 +65,10 @@ macro_rules! question {
         }
 
         impl<'de> serde::Deserialize<'de> for $Name {
-            fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
+            fn deserialize<D>(deserializer: D) -> std::result::Result<Self, D::Error>
+            where
+                D: serde::Deserializer<'de>,
+            {
                 let input = serde_json::Map::deserialize(deserializer)?;
                 $crate::question::Fields::read(&input).map_err(serde::de::Error::custom)
             }
@@ -78,8 +81,8 @@ pub(crate) use question;
 pub trait Fields: Sized {
     /// Their names, as documents have them.
     const FIELDS: &'static [&'static str];
-    /// Names that each is read from where its own is not given: one may stand for several fields, as `step` for
-    /// the spacings of both steps.
+    /// Names that each is read from where its own is not given: one may stand for several fields, as `step`
+    /// for the spacings of both steps.
     const OTHER_NAMES: &'static [&'static [&'static str]];
 
     /// Reads the `input` of a document.

@@ -17,11 +17,11 @@ question! {
     /// The verdicts of several integrators at all multiples of two spacings: of the step h and of ρ = Λ2/Λ1,
     /// or of the steps h1 and h2 of each force, h² Λ1 being h1² Λ1 and h² Λ2 being h2² Λ2.
     args struct CompareMethods {
-        /// Integrators side by side instead: names of the catalogue (word --list), or words, with commas between
-        /// them.
+        /// Integrators side by side instead: names of the catalogue (word --list), or words, with commas
+        /// between them.
         ///
-        /// Over (h, lambda2/lambda1), or over (h1, h2) with a grid: each force in units of its own step, so that
-        /// a step h of the word has
+        /// Over (h, lambda2/lambda1), or over (h1, h2) with a grid: each force in units of its own step, so
+        /// that a step h of the word has
         ///
         /// h^2 times the stiffnesses h1^2 lambda1 and h2^2 lambda2. lambda1 is 1 unless given, lambda2 as
         /// lambda1.

@@ -30,11 +30,12 @@ question! {
         /// Synchronization periods to run.
         #[arg(long, value_name = "N", value_parser = flag::<u32>)]
         periods: u32 = "200",
-        /// The starting displacement of each degree of freedom, as 1/10,0,0; one number moves the first alone.
+        /// The starting displacement of each degree of freedom, as 1/10,0,0; one number moves the first
+        /// alone.
         #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = flag::<Displacement>)]
         displace: Displacement = "1/10",
-        /// Algorithm 1 as printed: whole kicks at the start of a period, none at its end [default: half a kick at
-        /// both]
+        /// Algorithm 1 as printed: whole kicks at the start of a period, none at its end [default: half a
+        /// kick at both]
         #[arg(long = "staggered", action = clap::ArgAction::SetTrue, hide_default_value = true, value_parser = staggered)]
         form: Ends = "symmetric",
     }

@@ -31,23 +31,23 @@ question! {
         /// The contents of the file.
         #[arg(skip)]
         system: SystemFile,
-        /// Decide in exact arithmetic; where it exceeds --budget (products of machine words) the error states its
-        /// cost.
+        /// Decide in exact arithmetic; where it exceeds --budget (products of machine words) the error states
+        /// its cost.
         #[arg(long)]
         exact: bool,
         /// Leave the rigid motions of measured stiffnesses in.
         #[arg(long)]
         keep_rigid: bool,
-        /// Friction per unit time, as BAOAB has it: halfway through a drift over t, v becomes v exp(-G t). Does
-        /// it stop the growth?
+        /// Friction per unit time, as BAOAB has it: halfway through a drift over t, v becomes v exp(-G t).
+        /// Does it stop the growth?
         #[arg(long, value_name = "G", value_parser = flag::<Rational>)]
         friction: Option<Rational>,
         /// How well measured stiffnesses (by reference to NumPy's files) are known, relative to their norms
         /// [default: 1e-6].
         #[arg(long, value_name = "X", value_parser = flag::<f64>)]
         accuracy: Option<f64>,
-        /// The integrator of two measured levels: respa, implicit-explicit, impulse, molly-short, ... [default:
-        /// the file's].
+        /// The integrator of two measured levels: respa, implicit-explicit, impulse, molly-short, ...
+        /// [default: the file's].
         #[arg(long, value_name = "NAME", value_parser = flag::<Method>)]
         method: Option<Method>,
         /// The number that is varied in a map,
@@ -56,15 +56,16 @@ question! {
         /// and another one.
         #[arg(skip)]
         scan_y: Option<Axis>,
-        /// Unstable intervals of a number of the file: outer (all steps, or one of them), a scale, a stiffness, a
-        /// spring, a mass
+        /// Unstable intervals of a number of the file: outer (all steps, or one of them), a scale, a
+        /// stiffness, a spring, a mass
         #[arg(long, value_name = "PATH=LO..HI", conflicts_with_all = ["exact", "friction"], value_parser = flag::<Span>)]
         intervals: Option<Span>,
-        /// With the verdict: the unstable intervals of the outer step next to this one, from half of it to twice
-        /// it
+        /// With the verdict: the unstable intervals of the outer step next to this one, from half of it to
+        /// twice it
         #[arg(long, conflicts_with_all = ["intervals", "friction"])]
         nearest: bool,
-        /// The relative width above which no interval is missed, of --intervals and --nearest [default: 1e-4].
+        /// The relative width above which no interval is missed, of --intervals and --nearest [default:
+        /// 1e-4].
         #[arg(id = "resolution", long = "resolution", value_name = "W", value_parser = flag::<f64>)]
         width: Option<f64>,
     }

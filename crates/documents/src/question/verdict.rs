@@ -32,8 +32,8 @@ question! {
         /// The slow step; h2/h1 must be rational.
         #[arg(long, value_name = "B", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
         h2: Laurent,
-        /// Friction per unit time, as BAOAB has it: halfway through a drift over t, v becomes v exp(-G t). Does
-        /// it stop the growth?
+        /// Friction per unit time, as BAOAB has it: halfway through a drift over t, v becomes v exp(-G t).
+        /// Does it stop the growth?
         #[arg(long, value_name = "G", value_parser = flag::<Rational>)]
         friction: Option<Rational>,
         /// Decide in exact arithmetic alone, and show the exact trace where it is rational.

@@ -1,5 +1,5 @@
-//! The products of a scene: each is the answer of one question, which is asked once in however many forms it is
-//! wanted.
+//! The products of a scene: each is the answer of one question, which is asked once in however many forms it
+//! is wanted.
 
 use std::cell::{OnceCell, RefCell};
 use std::collections::BTreeMap;
@@ -103,7 +103,7 @@ impl Shared<'_> {
             let (grid, mut tally, mut all) = (map.grid()?, MapTally::default(), Vec::new());
             let arrays = self.archive.map(|path| MapArrays::new(path, &grid, Columns::default()));
             let mut arrays = arrays.transpose()?;
-            map.each(&grid, work, |band| {
+            map.each(&grid, None, work, |band| {
                 tally.add(&grid, &band);
                 all.extend(marked(&grid, &band));
                 arrays.as_mut().map_or(Ok(()), |arrays| arrays.add(&grid, &band))

@@ -53,8 +53,8 @@ question! {
         /// Give the edges to so many significant digits, more or fewer than doubles have.
         #[arg(long, value_name = "N", value_parser = flag::<u32>)]
         digits: Option<u32>,
-        /// Columns by the names that csv has, or groups [default: all; with --max-sum all but growth; in LaTeX
-        /// edges].
+        /// Columns by the names that csv has, or groups [default: all; with --max-sum all but growth; in
+        /// LaTeX edges].
         ///
         /// Groups: edges, exact, growth (takes longest), predicted, first-order.
         #[arg(long, value_name = "LIST", value_parser = flag::<Columns>)]
@@ -94,7 +94,9 @@ impl Columns {
 }
 
 notation! {
-    Columns: |_, text: &str| Ok::<_, Error>(Columns(text.split(',').map(|name| name.trim().into()).collect())),
+    Columns: |_, text: &str| {
+            Ok::<_, Error>(Columns(text.split(',').map(|name| name.trim().into()).collect()))
+        },
         |columns: &Columns| columns.0.join(",");
 }
 
@@ -256,7 +258,8 @@ impl Tongues {
         let table = |request, short| {
             record(request, short).table("tongues", CAPTION, tongues).captioned(CAPTION_LATEX)
         };
-        // Places come with their digits already; what is left are widths and rounded numbers, which doubles hold.
+        // Places come with their digits already; what is left are widths and rounded numbers, which doubles
+        // hold.
         let layout = Layout { columns: self.named(), digits: request.digits };
         let document =
             Document::new(Self::NAME).long_rows(table(request, false)).for_people(table(seen, true));

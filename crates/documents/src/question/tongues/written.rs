@@ -44,8 +44,8 @@ enum Source<'a> {
 const TOGETHER: usize = 4096;
 
 impl Tongues {
-    /// Finds the tongues and writes the document of [`Question::ask`], row by row where they may be many: what
-    /// stands out in them.
+    /// Finds the tongues and writes the document of [`Question::ask`], row by row where they may be many:
+    /// what stands out in them.
     ///
     /// # Errors
     /// As [`Question::answer`], and those of the sink.
