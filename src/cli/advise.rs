@@ -63,7 +63,7 @@ impl Args {
         if let Some(path) = &self.path {
             asked.file = Some(path.file_name().unwrap_or_default().to_string_lossy().into());
             let archive = path.extension().is_some_and(|extension| extension == "npz");
-            asked.system = if archive { None } else { Some(source(path)?) };
+            asked.system = if archive { None } else { Some(source(path)?.1) };
         }
         Ok(asked)
     }

@@ -3,12 +3,10 @@
 use std::fmt::Display;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
-use std::str::FromStr;
 
 use clocks::map::Products;
-use clocks::verdict::Limits;
 use documents::format::Format;
-use documents::question::{Map, StepRange, flag};
+use documents::question::flag;
 use documents::report::document::{Document, Layout};
 use documents::report::file::write_output;
 use documents::report::latex::Float;
@@ -43,11 +41,6 @@ pub struct Common {
     /// The command as figures carry it.
     #[arg(skip)]
     pub command: String,
-}
-
-/// A parser of values whose errors name the field already.
-pub fn from_str<T: FromStr<Err = Error>>(text: &str) -> std::result::Result<T, String> {
-    text.parse().map_err(|error: Error| error.remedy().to_string())
 }
 
 /// That none of these flags is given, which are of no use here.
@@ -143,11 +136,6 @@ impl Common {
         Err(Error::input(field, path.display(), "is the file of --output too: name another one"))
     }
 
-    /// The work one verdict may cost.
-    pub fn limits(&self) -> Limits {
-        self.budget.map_or_else(Limits::default, |kicks| Limits { kicks })
-    }
-
     /// The number of threads asked for; 0 means one a core.
     pub fn threads(&self) -> usize {
         self.threads.unwrap_or(0)
@@ -203,63 +191,10 @@ impl Columns {
     }
 }
 
-/// The two stiffnesses.
-#[derive(Clone, Debug, clap::Args)]
-pub struct Stiffness {
-    /// The stiffness of the fast force, as 10 or pi^2.
-    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
-    pub lambda1: Laurent,
-    /// The stiffness of the slow force, as 2/5 or pi^2/25; may be negative.
-    #[arg(long, value_name = "Y", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
-    pub lambda2: Laurent,
-}
-
-/// A grid of step pairs: all multiples of the spacing in closed ranges.
-#[derive(Clone, Debug, clap::Args)]
-pub struct Grid {
+/// The spacing of a grid, which stands for those of both steps.
+#[derive(Debug, clap::Args)]
+pub struct Spacing {
     /// The spacing of both steps.
     #[arg(long, value_name = "D", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
-    step: Option<Laurent>,
-    /// The spacing of h1, where it differs.
-    #[arg(long, value_name = "D1", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
-    step1: Option<Laurent>,
-    /// The spacing of h2, where it differs.
-    #[arg(long, value_name = "D2", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
-    step2: Option<Laurent>,
-    /// The closed range of h1, as 1/100..2/pi.
-    #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<StepRange>)]
-    h1_range: Option<StepRange>,
-    /// The closed range of h2.
-    #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<StepRange>)]
-    h2_range: Option<StepRange>,
-}
-
-impl Grid {
-    /// Whether no flag of the grid was given.
-    pub fn is_absent(&self) -> bool {
-        [&self.step, &self.step1, &self.step2].iter().all(|step| step.is_none())
-            && [&self.h1_range, &self.h2_range].iter().all(|range| range.is_none())
-    }
-
-    /// The question about the verdicts of the grid, for these stiffnesses.
-    pub fn map(&self, lambda1: &Laurent, lambda2: &Laurent) -> Result<Map> {
-        let missing = |flag: &str, example: &str| {
-            Error::missing(flag, format!("a grid needs it, as --{flag} {example}"))
-        };
-        let step = |value: &Option<Laurent>| {
-            value.as_ref().or(self.step.as_ref()).cloned().ok_or_else(|| missing("step", "1/100"))
-        };
-        let range = |flag: &str, range: &Option<StepRange>, example: &str| {
-            range.clone().ok_or_else(|| missing(flag, example))
-        };
-        Ok(Map {
-            lambda1: lambda1.clone(),
-            lambda2: lambda2.clone(),
-            step1: step(&self.step1)?,
-            step2: step(&self.step2)?,
-            h1_range: range("h1-range", &self.h1_range, "1/100..2/pi")?,
-            h2_range: range("h2-range", &self.h2_range, "1/100..7/2")?,
-            ..Map::default()
-        })
-    }
+    pub step: Option<Laurent>,
 }

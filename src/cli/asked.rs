@@ -1,51 +1,116 @@
-//! Commands whose arguments are a question and whose answer is its document.
+//! Questions whose fields are flags.
 
-use clap::{ArgMatches, Args, Command, FromArgMatches};
+use std::marker::PhantomData;
+
+use clap::parser::ValueSource;
+use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
+use serde_json::{Map, Value};
 
 use super::args::{Columns, Common};
-use super::help::below;
+use super::paper::Paper;
 use super::progress::{Shown, announce, progress};
 use clocks::tongue::Progress;
 use documents::format::Format;
-use documents::question::{Question, Watch, Work};
-use number::error::Error;
+use documents::question::{Fields, Question, Watch, Work};
+use number::error::Result;
 
 /// The flags of a question, and of its table.
-#[derive(Debug)]
-pub struct Asked<Q> {
+#[derive(Debug, clap::Args)]
+pub struct Asked<Q: Question + Args> {
+    #[command(flatten)]
     question: Q,
+    #[command(flatten)]
     columns: Columns,
 }
 
-impl<Q: Question + Args> Args for Asked<Q> {
+impl<Q: Question + Args> Asked<Q> {
+    /// Writes the document, in `default` form unless another one is asked for.
+    pub fn run(&self, common: &Common, default: Default) -> Result<()> {
+        let format = default.of(&Format::DOCUMENT, common)?;
+        common.write(&self.columns.of(self.question.ask(&common.work())?)?, format)
+    }
+}
+
+/// The flags of a question, of its table and of its figure.
+#[derive(Debug, clap::Args)]
+pub struct Drawn<Q: Question + Args> {
+    #[command(flatten)]
+    question: Q,
+    #[command(flatten)]
+    columns: Columns,
+    #[command(flatten)]
+    paper: Paper,
+}
+
+impl<Q: Question + Args> Drawn<Q> {
+    /// Writes the document or the figure, in `default` form unless another one is asked for.
+    pub fn run(&self, common: &Common, default: Default) -> Result<()> {
+        let format = default.of(&Format::DOCUMENT_OR_FIGURE, common)?;
+        self.paper.check(format.is_figure())?;
+        let work = common.work();
+        let answer = self.question.answer(&work)?;
+        let drawn = if format.is_figure() { self.question.figure(&answer, &work)? } else { None };
+        match drawn {
+            Some(figure) => self.paper.write(figure, format, common.output.as_deref(), common),
+            None => common.write(&self.columns.of(self.question.document(&answer))?, format),
+        }
+    }
+}
+
+/// The flags of a question whose fields may be given by other names too, or by those of another question: a
+/// document's `input`, read as such.
+#[derive(Clone, Debug)]
+pub struct Flags<Q> {
+    given: Map<String, Value>,
+    question: PhantomData<Q>,
+}
+
+impl<Q: Fields> Flags<Q> {
+    /// Whether a field is given.
+    pub fn has(&self, field: &str) -> bool {
+        self.given.contains_key(field)
+    }
+
+    /// The question that is asked by them.
+    pub fn question(&self) -> Result<Q> {
+        Q::read(&self.given).map_err(|error| {
+            let flag = error.field().replace('_', "-");
+            error.at(&flag)
+        })
+    }
+}
+
+impl<Q: Fields + Args> Args for Flags<Q> {
+    /// Those that the command does not have yet.
     fn augment_args(command: Command) -> Command {
-        Columns::augment_args(Q::augment_args(command)).after_help(below(Q::NAME, Q::EXAMPLES))
+        let all = Q::augment_args(Command::new(""));
+        let is_new = |flag: &&Arg| command.get_arguments().all(|known| known.get_id() != flag.get_id());
+        let new: Vec<Arg> = all.get_arguments().filter(is_new).cloned().collect();
+        command.args(new)
     }
 
     fn augment_args_for_update(command: Command) -> Command {
-        Columns::augment_args_for_update(Q::augment_args_for_update(command))
+        Self::augment_args(command)
     }
 }
 
-impl<Q: FromArgMatches> FromArgMatches for Asked<Q> {
-    fn from_arg_matches(given: &ArgMatches) -> Result<Self, clap::Error> {
-        Ok(Asked { question: Q::from_arg_matches(given)?, columns: Columns::from_arg_matches(given)? })
-    }
-
-    fn update_from_arg_matches(&mut self, given: &ArgMatches) -> Result<(), clap::Error> {
-        self.question.update_from_arg_matches(given)?;
-        self.columns.update_from_arg_matches(given)
-    }
-}
-
-impl<Q: Question> Asked<Q> {
-    /// Writes the document, in `default` form unless another one is asked for.
-    pub fn run(&self, common: &Common, default: Default) -> Result<(), Error> {
-        let format = match default {
-            Default::Text => Format::Text,
-            Default::Table => common.format_of_table(&Format::DOCUMENT)?,
+impl<Q: Fields> FromArgMatches for Flags<Q> {
+    fn from_arg_matches(matches: &ArgMatches) -> clap::error::Result<Self> {
+        let names = Q::FIELDS.iter().chain(Q::OTHER_NAMES.iter().copied().flatten());
+        let names: Vec<&str> = names.copied().collect();
+        let is_given =
+            |id: &&str| names.contains(id) && matches.value_source(id) == Some(ValueSource::CommandLine);
+        let text = |id: &str| {
+            let mut texts = matches.get_raw(id).into_iter().flatten();
+            (id.to_string(), texts.next().unwrap_or_default().to_string_lossy().into())
         };
-        common.write(&self.columns.of(self.question.ask(&common.work())?)?, format)
+        let given = matches.ids().map(clap::Id::as_str).filter(is_given).map(text).collect();
+        Ok(Flags { given, question: PhantomData })
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> clap::error::Result<()> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
     }
 }
 
@@ -55,6 +120,16 @@ pub enum Default {
     Text,
     /// Text at a terminal, JSON elsewhere.
     Table,
+}
+
+impl Default {
+    /// The form that is asked for, one of these, or this one.
+    fn of(self, forms: &[Format], common: &Common) -> Result<Format> {
+        match self {
+            Default::Text => common.format(forms, Format::Text),
+            Default::Table => common.format_of_table(forms),
+        }
+    }
 }
 
 impl Common {

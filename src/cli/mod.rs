@@ -3,10 +3,8 @@
 //! Exit codes: 0 done, 1 unstable (only with `--exit-code`), 2 error, with one line on standard error.
 
 mod advise;
-mod aperture;
 mod args;
 mod asked;
-mod bands;
 mod cite;
 mod command;
 mod compare;
@@ -34,9 +32,9 @@ use clap::error::ErrorKind;
 use clap::{Command as Program, CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use args::Common;
-use asked::{Asked, Default};
+use asked::{Asked, Default, Drawn};
 use documents::format::Format;
-use documents::question::{Closings, Curves, Half, Polynomial, Proposition, Question};
+use documents::question::{Aperture, Bands, Closings, Curves, Half, Polynomial, Proposition, Question};
 #[cfg(unix)]
 use documents::report::file::abandon;
 use documents::report::file::{stdout_is_closed, writable, write_output};
@@ -78,7 +76,7 @@ enum Command {
     /// edges.
     Tongues(tongues::Args),
     /// Boxes of steps in which every ratio, rational or not, is proven unstable.
-    Bands(bands::Args),
+    Bands(Drawn<Bands>),
     /// Where tongues close: the pairs (s, rho) at which a resonance does not destabilize.
     Closings(Closings),
     /// An integrator as its author writes it: consistency, order, stable steps, cost; its verdict at one
@@ -89,7 +87,7 @@ enum Command {
     /// Which steps are safe for these periods or bonds, for how long, and why.
     Advise(advise::Args),
     /// How hot may a bond be before the method throws it out? Measured over steps, no proof.
-    Aperture(Box<aperture::Args>),
+    Aperture(Box<Drawn<Aperture>>),
     /// Runs a system as Algorithm 1 of Fong, Darve and Lew does: its energy and growth beside the prediction.
     Simulate(simulate::Args),
     /// A page on this machine to move in the plane of steps: maps, tongues and verdicts, at any depth.
@@ -227,7 +225,7 @@ fn run(cli: &Cli) -> Result<u8> {
         Command::Merge(args) => args.run(common)?,
         Command::Run(args) => args.run(common)?,
         Command::Tongues(args) => args.run(common)?,
-        Command::Bands(args) => args.run(common)?,
+        Command::Bands(args) => args.run(common, Default::Table)?,
         Command::Closings(args) => {
             let format = common.format_of_table(&Format::DOCUMENT)?;
             common.write(&args.ask(&common.work())?, format)?;
@@ -236,7 +234,7 @@ fn run(cli: &Cli) -> Result<u8> {
         Command::Verify(args) => args.run(common)?,
         Command::System(args) => return args.run(common),
         Command::Advise(args) => args.run(common)?,
-        Command::Aperture(args) => args.run(common)?,
+        Command::Aperture(args) => args.run(common, Default::Text)?,
         Command::Simulate(args) => args.run(common)?,
         Command::Explore(args) => args.run(common)?,
         Command::Cite(args) => args.run(common)?,

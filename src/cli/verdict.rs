@@ -2,42 +2,29 @@
 
 use std::path::{Path, PathBuf};
 
-use super::args::{Columns, Common, Stiffness};
+use super::args::{Columns, Common};
 use clocks::propagator::Oscillator;
 use clocks::schedule::Schedule;
 use clocks::verdict::Verdict;
 use documents::format::Format;
-use documents::question::{self, Question, flag};
+use documents::question::{self, Question};
 use documents::report::certificate;
 use documents::report::file::write_output;
 use number::error::{Error, Result};
-use number::{Laurent, Rational, rational};
+use number::{Laurent, rational};
 
 /// Flags of `verdict`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     #[command(flatten)]
-    stiffness: Stiffness,
-    /// The fast step.
-    #[arg(long, value_name = "A", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
-    h1: Laurent,
-    /// The slow step; h2/h1 must be rational.
-    #[arg(long, value_name = "B", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
-    h2: Laurent,
+    question: question::Verdict,
     /// Read the steps as doubles: each as the simplest number that rounds to it (0.3333333333333333 is 1/3).
     #[arg(long)]
     simplest: bool,
-    /// Decide in exact arithmetic alone, and show the exact trace where it is rational.
-    #[arg(long)]
-    exact: bool,
     /// Also write a Coq proof of the verdict (fractions times powers of pi); proofs/tools/certificate.sh
     /// checks it.
     #[arg(long, value_name = "FILE.v")]
     certificate: Option<PathBuf>,
-    /// Friction per unit time, as BAOAB has it: halfway through a drift over t, v becomes v exp(-G t). Does
-    /// it stop the growth?
-    #[arg(long, value_name = "G", value_parser = flag::<Rational>)]
-    friction: Option<Rational>,
     /// Exit with 0 if stable, 1 if unstable; with --quiet and without --output that is all the answer.
     #[arg(long)]
     exit_code: bool,
@@ -54,10 +41,8 @@ impl Args {
 
     /// The verdict; the rest of the answer is computed only where it is shown.
     fn answer(&self, common: &Common) -> Result<Verdict> {
-        let Args { stiffness: Stiffness { lambda1, lambda2 }, h1, h2, friction, exact, .. } = self;
-        let [lambda1, lambda2] = [lambda1, lambda2].map(Clone::clone);
-        let [h1, h2] = [h1, h2].map(|step| self.step(step));
-        let asked = question::Verdict { lambda1, lambda2, h1, h2, friction: friction.clone(), exact: *exact };
+        let [h1, h2] = [&self.question.h1, &self.question.h2].map(|step| self.step(step));
+        let asked = question::Verdict { h1, h2, ..self.question.clone() };
         let oscillator = asked.oscillator()?;
         if self.exit_code && common.quiet && common.output.is_none() {
             let verdict = asked.decision(&oscillator, &common.work())?.verdict;

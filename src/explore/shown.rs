@@ -70,7 +70,7 @@ pub(super) fn picture(session: &Session, query: &Query) -> Result<Reply> {
     let (mut chart, mut counts) = (Chart::new(&grid, colouring), Counts::default());
     let Products { label, growth } = colouring.needs();
     let work = Work { threads: 1, ..Work::default() };
-    Map { label, growth, ..map.clone() }.each(&grid, &work, |band| {
+    Map { label, growth, ..map.clone() }.each(&grid, None, &work, |band| {
         chart.add(&grid, &band);
         counts.add(&band);
         Ok(())

@@ -138,7 +138,8 @@ fn ranges_and_grids_without_a_pair() {
     map("0", "1..2", "1..2", &["step1 = 0", "positive"]);
     map("-1/10", "1..2", "1..2", &["step1 = -1/10", "positive"]);
     map("1e-30", "1..2", "1..2", &["h1-range", "larger step"]);
-    refused(&desk, &["map", "--lambda1", "1", "--lambda2", "1"], &["step missing", "--step 1/100"]);
+    let none = ["map", "--lambda1", "1", "--lambda2", "1"];
+    refused(&desk, &none, &["step1, step2", "missing", "--h1-range <LO..HI>"]);
     let apart = "map --lambda1 1 --lambda2 1 --step1 1 --step2 pi --h1-range 1..9 --h2-range 1..9";
     refused(&desk, &apart.split(' ').collect::<Vec<_>>(), &["step2/step1", "commensurable"]);
     refused(&desk, &["curves", "--a", "3..1"], &["a = 3..1", "smaller number first"]);

@@ -3,33 +3,26 @@
 mod drawing;
 mod output;
 mod part;
-mod source;
 
 use std::path::PathBuf;
 
-use super::args::{self, Columns, Common, Stiffness};
+use super::args::{Columns, Common, Spacing};
+use super::asked::Flags;
 use clocks::map::{Products, Shard};
 use documents::format::Format;
-use documents::question::{Map, flag};
+use documents::question::Map;
 pub use drawing::Drawing;
 use number::error::{Error, Result};
-pub use output::Output;
+pub use output::{Output, Source};
 pub use part::Part;
-pub use source::Source;
 
 /// Flags of `map`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     #[command(flatten)]
-    stiffness: Stiffness,
+    asked: Flags<Map>,
     #[command(flatten)]
-    grid: args::Grid,
-    /// Give the tongue's label m of each growing pair, and its dominant family (a, b).
-    #[arg(long)]
-    label: bool,
-    /// Give the growth rate of each growing pair, and the slow steps until its amplitude is tenfold.
-    #[arg(long)]
-    growth: bool,
+    spacing: Spacing,
     #[command(flatten)]
     columns: Columns,
     #[command(flatten)]
@@ -37,36 +30,31 @@ pub struct Args {
     /// Keep finished bands in this directory and take from it those it already holds.
     #[arg(long, value_name = "DIR")]
     resume: Option<PathBuf>,
-    /// Compute the K-th of N parts only, into the directory of --resume; `kickdrift merge` joins the parts.
-    #[arg(long, value_name = "K/N", allow_hyphen_values = true, value_parser = flag::<Shard>)]
-    shard: Option<Shard>,
 }
 
 impl Args {
     pub fn run(&self, common: &Common) -> Result<()> {
         let format = common.format_of_table(&Format::MAP)?;
-        let shard = self.shard(format)?;
+        let asked = self.asked.question()?;
+        self.check(asked.shard, format)?;
         let coloured = self.drawing.products(format)?;
         let shown = self.columns.products(format)?;
         let any = |of: fn(&Products) -> bool| of(&coloured) || of(&shown);
         let products = Products {
-            label: self.label || any(|products| products.label),
-            growth: self.growth || any(|products| products.growth),
+            label: asked.label || any(|products| products.label),
+            growth: asked.growth || any(|products| products.growth),
         };
-        let Stiffness { lambda1, lambda2 } = &self.stiffness;
-        let (label, growth) = (products.label, products.growth);
-        let map = Map { label, growth, ..self.grid.map(lambda1, lambda2)? };
-        let grid = map.grid()?;
-        let store = self.resume.as_ref().map(|directory| Part::create(directory, &map)).transpose()?;
-        let source = Source::compute(common, shard, store.map(Part::into_store));
-        let Args { columns, drawing, shard, .. } = self;
-        let map = Map { shard: *shard, ..map };
+        let map = Map { label: products.label, growth: products.growth, ..asked };
+        let (grid, whole) = (map.grid()?, Map { shard: None, ..map.clone() });
+        let store = self.resume.as_ref().map(|directory| Part::create(directory, &whole)).transpose()?;
+        let source = Source::Computed(store.map(Part::into_store));
+        let Args { columns, drawing, .. } = self;
         Output { map: &map, grid: &grid, format, columns, drawing, common }.write(&source)
     }
 
-    /// The part of the map to compute.
-    fn shard(&self, format: Format) -> Result<Shard> {
-        let Some(shard) = self.shard else { return Ok(Shard::WHOLE) };
+    /// That a part of the map can be kept, and has this form.
+    fn check(&self, shard: Option<Shard>, format: Format) -> Result<()> {
+        let Some(shard) = shard else { return Ok(()) };
         if self.resume.is_none() {
             let remedy = "needs --resume DIR, where the part is kept for kickdrift merge";
             return Err(Error::input("--shard", shard, remedy));
@@ -76,6 +64,6 @@ impl Args {
                 "a part has only a summary (json, text): kickdrift merge makes the rest of all parts";
             return Err(Error::input("--shard", shard, remedy));
         }
-        Ok(shard)
+        Ok(())
     }
 }

@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use super::{Drawing, Source};
+use super::Drawing;
 use crate::cli::args::{Columns, Common};
-use clocks::map::{Band, Grid};
+use clocks::map::{Band, Grid, Store, merge};
 use documents::format::Format;
 use documents::question::{Fields, Map, Question};
 use documents::report::csv;
@@ -13,6 +13,14 @@ use documents::report::file::{write_output, write_with};
 use documents::report::map::{self as report, Counts, MapArrays, MapTally, Marked, Rows, marked};
 use documents::report::plane::Chart;
 use number::error::{Error, Result};
+
+/// Where the bands of a map come from.
+pub enum Source {
+    /// Those in the store, where there is one, are not computed again.
+    Computed(Option<Store>),
+    /// From parts.
+    Joined(Vec<Store>),
+}
 
 /// A result on its way out.
 pub struct Output<'a> {
@@ -45,7 +53,12 @@ impl Output<'_> {
 
     /// Hands on the bands.
     fn each(&self, source: &Source, see: &mut dyn FnMut(&Band) -> Result<()>) -> Result<()> {
-        source.each(self.grid, self.map.products(), see)
+        match source {
+            Source::Computed(store) => {
+                self.map.each(self.grid, store.as_ref(), &self.common.work(), |band| see(&band))
+            }
+            Source::Joined(stores) => merge(self.grid, stores, |_, band| see(&band)).map(drop),
+        }
     }
 
     /// The rows, in the columns asked for.

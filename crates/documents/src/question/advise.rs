@@ -96,6 +96,13 @@ const PLAUSIBLE: std::ops::RangeInclusive<f64> = 3.0..=3000.0;
 
 impl Question for Advise {
     const NAME: &'static str = "advise";
+    const EXAMPLES: &'static [&'static str] = &[
+        "advise --period OH=10fs --period slow=40fs --steps 0.5fs,4fs --steps 0.5fs,5fs",
+        "advise --bond CH:K=340kcal/mol/A^2,12.011,1.008,3 --period 60fs --hmr 3.024 --steps 1fs,6fs --length 10ns",
+        "advise data/scenes/flexible-water.json --steps 0.5fs,4.5fs",
+    ];
+    const USAGE: Option<&'static str> =
+        Some("(FILE | --period <NAME=T>... | --bond <NAME:K=..>... | --engine <FILE>) [--steps <A,B>]...");
     type Answer = Answer;
 
     fn answer(&self, work: &Work) -> Result<Answer> {

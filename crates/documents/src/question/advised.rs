@@ -1,5 +1,5 @@
-//! The typed question of advice, its answer, and its fields that have parts of their own: modes, schemes of steps,
-//! beads.
+//! The typed question of advice, its answer, and its fields that have parts of their own: modes, schemes of
+//! steps, beads.
 
 use num_traits::Zero;
 use serde_json::{Map, Value, json};
@@ -334,7 +334,7 @@ fn bond(given: &Value) -> Result<Bond> {
         Error::input("bond", given, "write {\"masses\": [M1, M2], \"hydrogens\": 1 to 4}, positive, in amu")
     };
     let object = given.as_object().ok_or_else(form)?;
-    super::field::known(object, &["masses", "hydrogens", "heavy"])?;
+    super::field::known(object, &["masses", "hydrogens", "heavy"], &[])?;
     let positive = |value: &Value| {
         super::field::parsed::<Rational>("bond", value).ok().filter(|mass| *mass > Rational::zero())
     };
@@ -348,7 +348,7 @@ fn bond(given: &Value) -> Result<Bond> {
 }
 
 fn mode(given: &Map<String, Value>) -> Result<Mode> {
-    super::field::known(given, &["name", "from", "clock", "stiffness", "bond", "shape"])?;
+    super::field::known(given, &["name", "from", "clock", "stiffness", "bond", "shape"], &[])?;
     let clock = match given.get("clock") {
         None | Some(Value::Null) => None,
         Some(value) => {

@@ -193,6 +193,8 @@ const MOST_STEPS: u64 = 100_000;
 
 impl Question for Aperture {
     const NAME: &'static str = "aperture";
+    const USAGE: Option<&'static str> =
+        Some("--bond <NAME:SHAPE,M1,M2> [--temperature <T>] (--steps <TIME,...> | --h-range <LO..HI>)");
     const EXAMPLES: &'static [&'static str] = &[
         "aperture --bond OH:morse:D=116kcal/mol,a=2.287/A,15.999,1.008 --steps 1.4fs,1.95fs",
         "aperture --bond OH:morse:D=116kcal/mol,a=2.287/A,16,1 --h-range 1.6fs..2.4fs --step 0.05fs --steps 2fs --output oh.png",

@@ -9,12 +9,16 @@ use clocks::verdict::Limits;
 use number::error::Result;
 
 /// The fields of a `Question`, each declared once: a struct that is read from the `input` of a document and
-/// written there, and, as `args struct`, read from arguments too (`arg` as clap has it).
+/// written there, and, as `args struct`, read from arguments too (`arg` as clap has it). After `|` stand
+/// other names that a field is read from where its own is not given.
 macro_rules! question {
     (
         $(#[$meta:meta])*
         args struct $Name:ident {
-            $($(#[doc = $help:literal])* #[arg($($arg:tt)*)] $field:ident: $type:ty $(= $default:literal)?,)*
+            $(
+                $(#[doc = $help:literal])*
+                #[arg($($arg:tt)*)] $field:ident: $type:ty $(| $other:ident)* $(= $default:literal)?,
+            )*
         }
     ) => {
         $(#[$meta])*
@@ -23,7 +27,7 @@ macro_rules! question {
             $($(#[doc = $help])* #[arg($($arg)* $(, default_value = $default)?)] pub $field: $type,)*
         }
 
-        $crate::question::question!(@fields $Name $($field: $type $(= $default)?,)*);
+        $crate::question::question!(@fields $Name $($field: $type $(| $other)* $(= $default)?,)*);
     };
     (
         $(#[$meta:meta])*
@@ -37,23 +41,34 @@ macro_rules! question {
 
         $crate::question::question!(@fields $Name $($field: $type $(= $default)?,)*);
     };
-    (@fields $Name:ident $($field:ident: $type:ty $(= $default:literal)?,)*) => {
+    (@fields $Name:ident $($field:ident: $type:ty $(| $other:ident)* $(= $default:literal)?,)*) => {
         impl $crate::question::Fields for $Name {
             const FIELDS: &'static [&'static str] = &[$(stringify!($field)),*];
+            const OTHER_NAMES: &'static [&'static [&'static str]] = &[$(&[$(stringify!($other)),*]),*];
 
             fn read(input: &serde_json::Map<String, serde_json::Value>) -> number::error::Result<Self> {
-                $crate::question::field::known(input, Self::FIELDS)?;
-                Ok($Name { $($field: $crate::question::field::read(stringify!($field), input, None$(.or(Some($default)))?)?,)* })
+                use $crate::question::field;
+                field::known(input, Self::FIELDS, Self::OTHER_NAMES)?;
+                Ok($Name {
+                    $($field: {
+                        let name = field::name(&[stringify!($field) $(, stringify!($other))*], input);
+                        field::read(name, input, None$(.or(Some($default)))?)?
+                    },)*
+                })
             }
 
             fn input(&self) -> Vec<(&'static str, serde_json::Value)> {
-                let given: [(&'static str, Option<serde_json::Value>); Self::FIELDS.len()] = [$((stringify!($field), $crate::question::field::Field::shown(&self.$field)),)*];
+                let given: [(&'static str, Option<serde_json::Value>); Self::FIELDS.len()] =
+                    [$((stringify!($field), $crate::question::field::Field::shown(&self.$field)),)*];
                 given.into_iter().filter_map(|(name, text)| Some((name, text?))).collect()
             }
         }
 
         impl<'de> serde::Deserialize<'de> for $Name {
-            fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
+            fn deserialize<D>(deserializer: D) -> std::result::Result<Self, D::Error>
+            where
+                D: serde::Deserializer<'de>,
+            {
                 let input = serde_json::Map::deserialize(deserializer)?;
                 $crate::question::Fields::read(&input).map_err(serde::de::Error::custom)
             }
@@ -66,6 +81,9 @@ pub(crate) use question;
 pub trait Fields: Sized {
     /// Their names, as documents have them.
     const FIELDS: &'static [&'static str];
+    /// Names that each is read from where its own is not given: one may stand for several fields, as `step`
+    /// for the spacings of both steps.
+    const OTHER_NAMES: &'static [&'static [&'static str]];
 
     /// Reads the `input` of a document.
     ///
@@ -84,6 +102,8 @@ pub trait Question: Fields {
     const NAME: &'static str;
     /// Command lines that ask it.
     const EXAMPLES: &'static [&'static str] = &[];
+    /// The flags that are required, where these depend on each other.
+    const USAGE: Option<&'static str> = None;
     /// The result that is computed.
     type Answer;
 

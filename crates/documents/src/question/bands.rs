@@ -1,6 +1,7 @@
 //! Where every ratio is unstable.
 
 use num_traits::{One, Signed};
+use plot::Figure;
 
 use super::asking::{Question, Work, question};
 use super::field::StepRange;
@@ -81,5 +82,9 @@ impl Question for Bands {
 
     fn show(&self, answer: &band::Bands) -> Document {
         bands::document(answer)
+    }
+
+    fn figure(&self, answer: &band::Bands, _: &Work) -> Result<Option<Figure>> {
+        Ok(Some(bands::figure(answer)))
     }
 }

@@ -82,6 +82,9 @@ impl Closings {
 
 impl Question for Closings {
     const NAME: &'static str = "closings";
+    const EXAMPLES: &'static [&'static str] =
+        &["closings --max-sum 8", "closings --ratio 5/3 --format latex --digits 8"];
+    const USAGE: Option<&'static str> = Some("(--ratio <P/Q> | --max-sum <N>)");
     type Answer = Vec<Found>;
 
     fn answer(&self, work: &Work) -> Result<Vec<Found>> {

@@ -1,7 +1,7 @@
 //! The trace against the predictions: over a grid, or over ratios.
 
-use super::asking::{Question, Work, question};
-use super::field::StepRange;
+use super::asking::{Fields, Question, Work, question};
+use super::field::{StepRange, flag};
 use super::map::Map;
 use super::ratios::{MOST_SUM, Ratios};
 use crate::report::document::Document;
@@ -16,26 +16,37 @@ question! {
     /// The trace verdict against the tan criterion and against resonance: over a grid with both stiffnesses,
     /// or over all coprime p + q up to a sum at s = 4 k/(samples + 1).
     #[derive(Default)]
-    struct Compare {
-        /// How near q h2 must be to a multiple of T½ to count as resonant, in units of T½.
+    args struct Compare {
+        /// How near q h2 must be to a multiple of T1/2, half the vibration's period, to count as resonant; in
+        /// units of T1/2.
+        #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = flag::<Rational>)]
         tolerance: Rational = "1/20",
-        /// The stiffness of the fast force, with a grid.
+        /// The stiffness of the fast force (with a grid).
+        #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
         lambda1: Option<Laurent>,
-        /// The stiffness of the slow force.
+        /// The stiffness of the slow force (with a grid).
+        #[arg(long, value_name = "Y", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
         lambda2: Option<Laurent>,
-        /// The spacing of h1.
-        step1: Option<Laurent>,
-        /// The spacing of h2.
-        step2: Option<Laurent>,
-        /// The closed range of h1.
+        /// The spacing of h1, where it differs.
+        #[arg(long, value_name = "D1", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
+        step1: Option<Laurent> | step,
+        /// The spacing of h2, where it differs.
+        #[arg(long, value_name = "D2", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
+        step2: Option<Laurent> | step,
+        /// The closed range of h1, as 1/100..2/pi.
+        #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<StepRange>)]
         h1_range: Option<StepRange>,
         /// The closed range of h2.
+        #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<StepRange>)]
         h2_range: Option<StepRange>,
-        /// In place of a grid: all coprime p + q up to this number.
+        /// Instead of a grid: all coprime p + q up to this number.
+        #[arg(long, value_name = "N", value_parser = flag::<u64>)]
         max_sum: Option<u64>,
-        /// λ2/λ1, with a sum.
+        /// lambda2/lambda1, with --max-sum.
+        #[arg(long, value_name = "R", allow_hyphen_values = true, value_parser = flag::<Rational>)]
         rho: Option<Rational>,
-        /// Values of s, evenly spaced inside 0 < s < 4, with a sum.
+        /// With --max-sum: the values of s = h1^2 lambda1, evenly spaced inside 0 < s < 4 [default: 99].
+        #[arg(long, value_name = "K", value_parser = flag::<u64>)]
         samples: Option<u64>,
     }
 }
@@ -57,17 +68,9 @@ impl Compare {
         Compare { tolerance, lambda1, lambda2, step1, step2, h1_range, h2_range, ..Compare::default() }
     }
 
-    /// The comparison over all coprime p + q up to a sum.
-    pub fn over_ratios(max_sum: u64, rho: Rational, samples: u64, tolerance: Rational) -> Compare {
-        let (max_sum, rho, samples) = (Some(max_sum), Some(rho), Some(samples));
-        Compare { tolerance, max_sum, rho, samples, ..Compare::default() }
-    }
-
-    /// The error of a question that is neither, or both.
-    pub fn mixed() -> Error {
-        let remedy =
-            "give --lambda1, --lambda2 and a grid (--step, --h1-range, --h2-range), or --max-sum and --rho";
-        Error::input("flags", "incomplete or mixed", remedy)
+    /// The values of s of each ratio, with a sum.
+    fn samples(&self) -> Option<u64> {
+        self.max_sum.map(|_| self.samples.unwrap_or(99))
     }
 
     /// The pairs that are compared.
@@ -85,9 +88,13 @@ impl Compare {
             }
             (None, None, None, None, None, None, Some(max_sum), Some(rho)) => {
                 Ratios::UpTo(*max_sum).within(MOST_SUM)?;
-                Ok(Over::Ratios { max_sum: *max_sum, rho: rho.clone(), samples: samples.unwrap_or(99) })
+                let samples = self.samples().unwrap_or_default();
+                Ok(Over::Ratios { max_sum: *max_sum, rho: rho.clone(), samples })
             }
-            _ => Err(Compare::mixed()),
+            _ => {
+                let remedy = "give --lambda1, --lambda2 and a grid (--step, --h1-range, --h2-range), or --max-sum and --rho";
+                Err(Error::input("flags", "incomplete or mixed", remedy))
+            }
         }
     }
 }
@@ -96,6 +103,14 @@ const CAPTION: &str = "Pairs at which the prediction $q h_2 \\approx m T_{1/2}$ 
 
 impl Question for Compare {
     const NAME: &'static str = "compare";
+    const EXAMPLES: &'static [&'static str] = &[
+        "compare --max-sum 9 --rho 1/25",
+        "compare --lambda1 10 --lambda2 2/5 --step 1/10 --h1-range 1/10..1/2 --h2-range 1/10..3",
+        "compare --methods impulse,molly-short,respa-4 --h-range 0..8 --h-step 1/8 --rho-range 0..1 --rho-step 1/16 --output side.svg",
+    ];
+    const USAGE: Option<&'static str> = Some(
+        "(--lambda1 X --lambda2 Y --step D --h1-range A..B --h2-range A..B | --max-sum N --rho R | --methods LIST)",
+    );
     type Answer = Comparisons;
 
     fn answer(&self, work: &Work) -> Result<Comparisons> {
@@ -126,6 +141,11 @@ impl Question for Compare {
                     .captioned(CAPTION),
             )
             .summary(&lines(tally, &self.tolerance))
+    }
+
+    /// With the number of samples that was taken.
+    fn document(&self, answer: &Comparisons) -> Document {
+        self.show(answer).inputs(Compare { samples: self.samples(), ..self.clone() }.input())
     }
 }
 

@@ -135,9 +135,15 @@ pub fn read<T: Field>(name: &str, from: &Map<String, Value>, default: Option<&st
     number.unwrap_or_else(|| Err(Error::missing(name, "the question needs it: add it")))
 }
 
-/// That all fields are among those known.
-pub fn known(input: &Map<String, Value>, fields: &[&str]) -> Result<()> {
-    match input.keys().find(|name| !fields.contains(&name.as_str())) {
+/// The first of a field's names that is given, or its own.
+pub fn name<'a>(names: &[&'a str], from: &Map<String, Value>) -> &'a str {
+    names.iter().find(|name| from.contains_key(**name)).unwrap_or(&names[0])
+}
+
+/// That all fields are among those known, by their own or by other names.
+pub fn known(input: &Map<String, Value>, fields: &[&str], others: &[&[&str]]) -> Result<()> {
+    let is_known = |name: &str| fields.contains(&name) || others.iter().any(|others| others.contains(&name));
+    match input.keys().find(|name| !is_known(name)) {
         None => Ok(()),
         Some(name) => {
             let remedy = format!("is no field of this question: there are {}", fields.join(", "));

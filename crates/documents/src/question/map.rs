@@ -1,34 +1,44 @@
 //! The verdicts of a grid of step pairs.
 
 use super::asking::{Question, Work, question};
-use super::field::StepRange;
+use super::field::{StepRange, flag};
 use crate::report::document::Document;
 use crate::report::map::{MapTally, document};
-use clocks::map::{self, Band, Grid, Products, Resources, Shard};
+use clocks::map::{self, Band, Grid, Products, Resources, Shard, Store};
 use number::Laurent;
 use number::error::{Error, Result};
 
 question! {
     /// The verdicts of all pairs of multiples of two spacings in closed ranges.
     #[derive(Default)]
-    struct Map {
-        /// The stiffness of the fast force, 1/time².
+    args struct Map {
+        /// The stiffness of the fast force, as 10 or pi^2.
+        #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
         lambda1: Laurent,
-        /// The stiffness of the slow force.
+        /// The stiffness of the slow force, as 2/5 or pi^2/25; may be negative.
+        #[arg(long, value_name = "Y", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
         lambda2: Laurent,
-        /// The spacing of h1.
-        step1: Laurent,
-        /// The spacing of h2.
-        step2: Laurent,
-        /// The closed range of h1.
+        /// The spacing of h1, where it differs.
+        #[arg(long, value_name = "D1", required = false, required_unless_present = "step", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
+        step1: Laurent | step,
+        /// The spacing of h2, where it differs.
+        #[arg(long, value_name = "D2", required = false, required_unless_present = "step", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
+        step2: Laurent | step,
+        /// The closed range of h1, as 1/100..2/pi.
+        #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<StepRange>)]
         h1_range: StepRange,
         /// The closed range of h2.
+        #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<StepRange>)]
         h2_range: StepRange,
-        /// Labels and dominant families of growing pairs.
+        /// Give the tongue's label m of each growing pair, and its dominant family (a, b).
+        #[arg(long)]
         label: bool,
-        /// Growth rates of growing pairs.
+        /// Give the growth rate of each growing pair, and the slow steps until its amplitude is tenfold.
+        #[arg(long)]
         growth: bool,
-        /// The K-th of N parts, where the map is not whole.
+        /// Compute the K-th of N parts only, into the directory of --resume; `kickdrift merge` joins the
+        /// parts.
+        #[arg(long, value_name = "K/N", allow_hyphen_values = true, value_parser = flag::<Shard>)]
         shard: Option<Shard>,
     }
 }
@@ -54,21 +64,31 @@ impl Map {
         Products { label: self.label, growth: self.growth }
     }
 
-    /// Hands on the bands of the whole map, in order.
+    /// That it is no part.
     ///
     /// # Errors
-    /// A map that is not whole, and as [`map::Map::for_each_band`].
-    pub fn each(&self, grid: &Grid, work: &Work, mut see: impl FnMut(Band) -> Result<()>) -> Result<()> {
-        if let Some(shard) = self.shard {
-            return Err(Error::input(
-                "shard",
-                shard,
-                "this question is about whole maps: join the parts first",
-            ));
-        }
-        let bar = work.count(grid.pairs(), "pairs");
+    /// Where it is one.
+    pub fn check_whole(&self) -> Result<()> {
+        let remedy = "this question is about whole maps: join the parts first";
+        self.shard.map_or(Ok(()), |shard| Err(Error::input("shard", shard, remedy)))
+    }
+
+    /// Hands on the bands of the map or of its part, in order; those in `store` are not computed again.
+    ///
+    /// # Errors
+    /// As [`map::Map::for_each_band`].
+    pub fn each(
+        &self,
+        grid: &Grid,
+        store: Option<&Store>,
+        work: &Work,
+        mut see: impl FnMut(Band) -> Result<()>,
+    ) -> Result<()> {
+        let shard = self.shard.unwrap_or(Shard::WHOLE);
+        let bar = work.count(shard.pairs(grid), "pairs");
         let resources = Resources { threads: work.threads, limits: work.limits(), ..Resources::default() };
-        let task = map::Map::of(grid).with(self.products()).within(resources);
+        let task = map::Map::of(grid).with(self.products()).shard(shard).within(resources);
+        let task = store.map_or(task.clone(), |store| task.kept_in(store));
         let see = |_, band: Band| {
             let pairs = band.counters.pairs;
             see(band)?;
@@ -94,11 +114,18 @@ impl Map {
 
 impl Question for Map {
     const NAME: &'static str = "map";
+    const EXAMPLES: &'static [&'static str] = &[
+        "map --lambda1 pi^2 --lambda2 1/3 --step 1/20 --h1-range 1/20..2/pi --h2-range 1/20..7/2",
+        "map --lambda1 1 --lambda2 1/9 --step 1/9 --h1-range 1..2 --h2-range 1..9 --output map.pdf",
+    ];
+    const USAGE: Option<&'static str> =
+        Some("--lambda1 <X> --lambda2 <Y> --step <D> --h1-range <LO..HI> --h2-range <LO..HI>");
     type Answer = MapTally;
 
     fn answer(&self, work: &Work) -> Result<MapTally> {
+        self.check_whole()?;
         let (grid, mut tally) = (self.grid()?, MapTally::default());
-        self.each(&grid, work, |band| {
+        self.each(&grid, None, work, |band| {
             tally.add(&grid, &band);
             Ok(())
         })?;
@@ -107,5 +134,25 @@ impl Question for Map {
 
     fn show(&self, tally: &MapTally) -> Document {
         document(tally, None)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::question::Fields;
+
+    #[test]
+    fn one_spacing_stands_for_both_steps_that_have_none_of_their_own() {
+        let mut input = serde_json::json!({"lambda1": "1", "lambda2": "1/9", "step": "1/2", "step2": "1/3",
+            "h1_range": "1..2", "h2_range": "1..2"});
+        let read = |input: &serde_json::Value| Map::read(input.as_object().unwrap());
+        let map = read(&input).unwrap();
+        assert_eq!([map.step1.to_string(), map.step2.to_string()], ["1/2", "1/3"]);
+        // Documents name each.
+        let echoed: Vec<&str> = map.input().iter().map(|(name, _)| *name).collect();
+        assert_eq!(echoed, ["lambda1", "lambda2", "step1", "step2", "h1_range", "h2_range"]);
+        input["step3"] = "1".into();
+        assert_eq!(read(&input).unwrap_err().field(), "step3");
     }
 }

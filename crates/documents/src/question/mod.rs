@@ -58,7 +58,7 @@ pub use map::Map;
 pub use polynomial::{Polynomial, Polynomials};
 pub use proposition::Proposition;
 pub use ratios::{MOST_SUM, Ratios};
-pub use scene::{FAMILIES, LONGEST_SCENE, Scene};
+pub use scene::{FAMILIES, LONGEST_SCENE, Made, Products, Scene};
 pub use side::{CompareMethods, Side};
 pub use simulate::{Answer as Simulated, Displacement, Simulate};
 pub use survey::{Survey, THINNEST};
@@ -138,6 +138,7 @@ fn named(name: &str) -> Result<&'static Named> {
         Named::of::<Simulate>(),
         Named::of::<Advise>(),
         Named::of::<Aperture>(),
+        Named::of::<Scene>(),
     ];
     ALL.iter().find(|known| known.name == name).ok_or_else(|| {
         let names: Vec<&str> = ALL.iter().map(|known| known.name).collect();

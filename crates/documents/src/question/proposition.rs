@@ -30,6 +30,7 @@ const POINT: f64 = 1.5e-6;
 
 impl Question for Proposition {
     const NAME: &'static str = "proposition";
+    const USAGE: Option<&'static str> = Some("[--max <N>]");
     const EXAMPLES: &'static [&'static str] = &["proposition --max 12"];
     type Answer = (Check, Vec<Witness>);
 

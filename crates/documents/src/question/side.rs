@@ -3,6 +3,7 @@
 use plot::{Axis, Cells, Figure, Foot, Layer, Panel, Place, literal, palette};
 
 use super::asking::{Question, Work, question};
+use super::field::flag;
 use crate::report::document::Document;
 use crate::report::record::Record;
 use crate::report::table::{Cell, Column};
@@ -15,25 +16,41 @@ use words::{Bounded, Integrator};
 question! {
     /// The verdicts of several integrators at all multiples of two spacings: of the step h and of ρ = Λ2/Λ1,
     /// or of the steps h1 and h2 of each force, h² Λ1 being h1² Λ1 and h² Λ2 being h2² Λ2.
-    struct CompareMethods {
-        /// The integrators, by name or as words, with commas between them.
+    args struct CompareMethods {
+        /// Integrators side by side instead: names of the catalogue (word --list), or words, with commas
+        /// between them.
+        ///
+        /// Over (h, lambda2/lambda1), or over (h1, h2) with a grid: each force in units of its own step, so
+        /// that a step h of the word has
+        ///
+        /// h^2 times the stiffnesses h1^2 lambda1 and h2^2 lambda2. lambda1 is 1 unless given, lambda2 as
+        /// lambda1.
+        #[arg(long, value_name = "A,B,...", required = false, conflicts_with_all = ["max_sum", "rho"])]
         methods: String,
         /// The stiffness of the fast force.
+        #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
         lambda1: Laurent = "1",
-        /// The closed range of steps.
-        h_range: (Rational, Rational),
+        /// The closed range of steps, with --methods.
+        #[arg(long, value_name = "LO..HI", required = false, requires = "methods", value_parser = flag::<(Rational, Rational)>)]
+        h_range: (Rational, Rational) | h1_range,
         /// The spacing of steps.
-        h_step: Rational,
-        /// The closed range of Λ2/Λ1.
+        #[arg(long, value_name = "D", required = false, requires = "methods", value_parser = flag::<Rational>)]
+        h_step: Rational | step1 | step,
+        /// The closed range of lambda2/lambda1, with --methods.
+        #[arg(long, value_name = "LO..HI", requires = "methods", value_parser = flag::<(Rational, Rational)>)]
         rho_range: Option<(Rational, Rational)>,
-        /// Its spacing.
+        /// The spacing of lambda2/lambda1.
+        #[arg(long, value_name = "R", requires = "methods", value_parser = flag::<Rational>)]
         rho_step: Option<Rational>,
         /// The stiffness of the slow force, that of the fast one if not given; with h2.
+        #[arg(skip)]
         lambda2: Option<Laurent>,
         /// In place of Λ2/Λ1: the closed range of h2.
+        #[arg(skip)]
         h2_range: Option<(Rational, Rational)>,
         /// Its spacing.
-        h2_step: Option<Rational>,
+        #[arg(skip)]
+        h2_step: Option<Rational> | step2 | step,
     }
 }
 

@@ -3,7 +3,7 @@
 use plot::{Figure, Foot};
 
 use super::asking::{Question, Work, question};
-use super::field::notation;
+use super::field::{flag, notation};
 use crate::input::{SystemFile, SystemScene};
 use crate::report::document::Document;
 use crate::report::simulate as report;
@@ -17,18 +17,26 @@ use systems::{Limits, Route, middle};
 question! {
     /// A run from rest at a displacement: the bonds themselves about the integrator's own orbit, or the
     /// equilibrium where that is one, linear systems about 0.
-    struct Simulate {
+    args struct Simulate {
         /// The name of the system's file.
+        #[arg(skip)]
         file: String,
         /// Its title, which documents take from the system.
+        #[arg(skip)]
         title: Option<String>,
         /// The contents of the file.
+        #[arg(skip)]
         system: SystemFile,
         /// Synchronization periods to run.
+        #[arg(long, value_name = "N", value_parser = flag::<u32>)]
         periods: u32 = "200",
-        /// Where it starts.
+        /// The starting displacement of each degree of freedom, as 1/10,0,0; one number moves the first
+        /// alone.
+        #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = flag::<Displacement>)]
         displace: Displacement = "1/10",
-        /// The kicks at the ends of a period: whole ones at its start, or halves at both ends.
+        /// Algorithm 1 as printed: whole kicks at the start of a period, none at its end [default: half a
+        /// kick at both]
+        #[arg(long = "staggered", action = clap::ArgAction::SetTrue, hide_default_value = true, value_parser = staggered)]
         form: Ends = "symmetric",
     }
 }
@@ -69,6 +77,11 @@ fn ends(field: &str, text: &str) -> Result<Ends> {
     known.ok_or_else(|| Error::input(field, text, "is symmetric or staggered"))
 }
 
+/// The value of a flag that is given or not.
+fn staggered(text: &str) -> Result<Ends> {
+    if text == "true" { Ok(Ends::Staggered) } else { ends("form", text) }
+}
+
 notation! {
     Displacement: Displacement::parsed, |displacement: &Displacement| displacement.text.clone();
     Ends: ends, |ends: &Ends| ends.name();
@@ -89,6 +102,8 @@ pub struct Answer {
 
 impl Question for Simulate {
     const NAME: &'static str = "simulate";
+    const EXAMPLES: &'static [&'static str] =
+        &["simulate data/scenes/fpu.json --periods 30 --figure run.pdf"];
     type Answer = Answer;
 
     fn answer(&self, work: &Work) -> Result<Answer> {

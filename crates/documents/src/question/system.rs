@@ -4,7 +4,7 @@ use plot::{Figure, Foot};
 use serde_json::Value;
 
 use super::asking::{Question, Work, question};
-use super::field::{Field, notation};
+use super::field::{Field, flag, notation};
 use crate::format::Format;
 use crate::input::{Arrays, Axis, NEAREST, Scan, Span, SystemFile, SystemScene};
 use crate::report::document::Document;
@@ -21,32 +21,52 @@ use systems::{Analysis, Jacobians, Limits, NoGradient, OwnOrbit, Route, SchemeSu
 question! {
     /// The verdict on a system; the verdicts over one of its numbers, or two; or the unstable intervals of
     /// one.
-    struct System {
+    args struct System {
         /// The name of its file.
+        #[arg(skip)]
         file: String,
         /// Its title, which documents take from the system.
+        #[arg(skip)]
         title: Option<String>,
         /// The contents of the file.
+        #[arg(skip)]
         system: SystemFile,
-        /// Decided in exact arithmetic alone.
+        /// Decide in exact arithmetic; where it exceeds --budget (products of machine words) the error states
+        /// its cost.
+        #[arg(long)]
         exact: bool,
-        /// Rigid motions of measured stiffnesses are left in.
+        /// Leave the rigid motions of measured stiffnesses in.
+        #[arg(long)]
         keep_rigid: bool,
-        /// A rate of friction per unit time: is it enough?
+        /// Friction per unit time, as BAOAB has it: halfway through a drift over t, v becomes v exp(-G t).
+        /// Does it stop the growth?
+        #[arg(long, value_name = "G", value_parser = flag::<Rational>)]
         friction: Option<Rational>,
-        /// How well measured stiffnesses are known, relative to their norms.
+        /// How well measured stiffnesses (by reference to NumPy's files) are known, relative to their norms
+        /// [default: 1e-6].
+        #[arg(long, value_name = "X", value_parser = flag::<f64>)]
         accuracy: Option<f64>,
-        /// The integrator of two measured levels, in place of the file's.
+        /// The integrator of two measured levels: respa, implicit-explicit, impulse, molly-short, ...
+        /// [default: the file's].
+        #[arg(long, value_name = "NAME", value_parser = flag::<Method>)]
         method: Option<Method>,
         /// The number that is varied in a map,
+        #[arg(skip)]
         scan_x: Option<Axis>,
         /// and another one.
+        #[arg(skip)]
         scan_y: Option<Axis>,
-        /// The number whose unstable intervals are looked for.
+        /// Unstable intervals of a number of the file: outer (all steps, or one of them), a scale, a
+        /// stiffness, a spring, a mass
+        #[arg(long, value_name = "PATH=LO..HI", conflicts_with_all = ["exact", "friction"], value_parser = flag::<Span>)]
         intervals: Option<Span>,
-        /// With the verdict: the unstable intervals of the outer step next to its own.
+        /// With the verdict: the unstable intervals of the outer step next to this one, from half of it to
+        /// twice it
+        #[arg(long, conflicts_with_all = ["intervals", "friction"])]
         nearest: bool,
-        /// The relative width above which no interval is missed, 1e-4 unless given.
+        /// The relative width above which no interval is missed, of --intervals and --nearest [default:
+        /// 1e-4].
+        #[arg(id = "resolution", long = "resolution", value_name = "W", value_parser = flag::<f64>)]
         width: Option<f64>,
     }
 }
@@ -211,6 +231,8 @@ const ASKED: usize = 16;
 
 impl Question for System {
     const NAME: &'static str = "system";
+    const EXAMPLES: &'static [&'static str] =
+        &["system data/scenes/three-clocks.json", "system data/scenes/bar-resonant.json --output modes.pdf"];
     type Answer = Answer;
 
     fn answer(&self, work: &Work) -> Result<Answer> {

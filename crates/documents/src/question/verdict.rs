@@ -3,6 +3,7 @@
 use num_bigint::BigInt;
 
 use super::asking::{Question, Work, question};
+use super::field::flag;
 use crate::report::decimal;
 use crate::report::document::Document;
 use crate::report::friction;
@@ -18,18 +19,25 @@ use number::{Ball, Laurent, Ratio, Rational, Real, rational};
 
 question! {
     /// One pair of steps of one oscillator.
-    struct Verdict {
-        /// The stiffness of the fast force, 1/time².
+    args struct Verdict {
+        /// The stiffness of the fast force, as 10 or pi^2.
+        #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
         lambda1: Laurent,
-        /// The stiffness of the slow force.
+        /// The stiffness of the slow force, as 2/5 or pi^2/25; may be negative.
+        #[arg(long, value_name = "Y", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
         lambda2: Laurent,
         /// The fast step.
+        #[arg(long, value_name = "A", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
         h1: Laurent,
-        /// The slow step; h2/h1 is rational.
+        /// The slow step; h2/h1 must be rational.
+        #[arg(long, value_name = "B", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
         h2: Laurent,
-        /// A rate of friction per unit time: is it enough?
+        /// Friction per unit time, as BAOAB has it: halfway through a drift over t, v becomes v exp(-G t).
+        /// Does it stop the growth?
+        #[arg(long, value_name = "G", value_parser = flag::<Rational>)]
         friction: Option<Rational>,
-        /// Decided in exact arithmetic alone, the exact trace shown where it is rational.
+        /// Decide in exact arithmetic alone, and show the exact trace where it is rational.
+        #[arg(long)]
         exact: bool,
     }
 }
@@ -83,6 +91,11 @@ impl Verdict {
 
 impl Question for Verdict {
     const NAME: &'static str = "verdict";
+    const EXAMPLES: &'static [&'static str] = &[
+        "verdict --lambda1 pi^2 --lambda2 pi^2/25 --h1 1/100 --h2 0.98",
+        "verdict --lambda1 11/4 --lambda2 57/10 --h1 1 --h2 5/3 --exit-code --quiet",
+        "verdict --lambda1 10 --lambda2 2/5 --h1 0.631 --h2 3.499 --format latex --digits 6",
+    ];
     type Answer = Decided;
 
     fn answer(&self, work: &Work) -> Result<Decided> {

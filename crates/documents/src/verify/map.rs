@@ -55,6 +55,7 @@ pub fn work(question: &Map, options: &Options) -> Result<u64> {
 
 fn recompute<'a>(document: &Object<String, Value>, context: &'a Context<'a>) -> Result<Again<'a>> {
     let question: Map = asked(document)?;
+    question.check_whole()?;
     let grid = question.grid()?;
     let (pairs, limit) = (grid.pairs(), context.limits().kicks);
     if pairs > limit {
@@ -64,7 +65,7 @@ fn recompute<'a>(document: &Object<String, Value>, context: &'a Context<'a>) -> 
     let chosen = sample(&grid.fingerprint(), pairs, most(&grid, context.options));
     let (mut tally, mut drawn) = (MapTally::default(), Drawn::default());
     let (mut next, mut done) = (chosen.as_slice(), 0);
-    question.each(&grid, &context.work(), |band| {
+    question.each(&grid, None, &context.work(), |band| {
         let pairs = band.verdicts.len() as u64;
         let (here, rest) = next.split_at(next.partition_point(|&n| n < done + pairs));
         let one = |&n: &u64| failure(0, kick_by_kick(&grid, &band, (n - done) as usize, context));
@@ -158,7 +159,7 @@ mod tests {
             bands += 1;
             Ok(())
         };
-        question.each(&grid, &context.work(), each).unwrap();
+        question.each(&grid, None, &context.work(), each).unwrap();
         let fastest = tally.fastest.unwrap();
         let is_right =
             |fastest: &Fastest, largest: f64| grows_fastest(fastest, &grid, largest, &context).is_ok();

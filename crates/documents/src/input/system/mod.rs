@@ -116,7 +116,7 @@ fn spread(labels: &[String], n: usize) -> Result<Vec<String>> {
 }
 
 /// A system as it is written, not read yet.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct SystemFile {
     source: Value,
     /// For errors to name their lines, where there is one.

@@ -53,8 +53,8 @@ question! {
         /// Give the edges to so many significant digits, more or fewer than doubles have.
         #[arg(long, value_name = "N", value_parser = flag::<u32>)]
         digits: Option<u32>,
-        /// Columns by the names that csv has, or groups [default: all; with --max-sum all but growth; in LaTeX
-        /// edges].
+        /// Columns by the names that csv has, or groups [default: all; with --max-sum all but growth; in
+        /// LaTeX edges].
         ///
         /// Groups: edges, exact, growth (takes longest), predicted, first-order.
         #[arg(long, value_name = "LIST", value_parser = flag::<Columns>)]
@@ -94,7 +94,9 @@ impl Columns {
 }
 
 notation! {
-    Columns: |_, text: &str| Ok::<_, Error>(Columns(text.split(',').map(|name| name.trim().into()).collect())),
+    Columns: |_, text: &str| {
+            Ok::<_, Error>(Columns(text.split(',').map(|name| name.trim().into()).collect()))
+        },
         |columns: &Columns| columns.0.join(",");
 }
 
@@ -111,6 +113,13 @@ pub struct FoundTongues {
     pub request: Request,
     pub tongues: Vec<Tongue>,
     tally: TongueTally,
+}
+
+impl FoundTongues {
+    /// Counts and extremes in words.
+    pub fn lines(&self) -> Vec<String> {
+        self.tally.lines(&self.asked.words().expect("it was answered"))
+    }
 }
 
 impl Tongues {
@@ -244,22 +253,30 @@ impl Tongues {
     }
 
     /// The tables and the summary, without rows in JSON; what people see has these columns.
-    fn tables(&self, answer: &FoundTongues, seen: &Request) -> Document {
-        let FoundTongues { asked, request, tongues, tally } = answer;
+    fn tables(&self, answer: &FoundTongues, tongues: &[Tongue], seen: &Request) -> Document {
+        let request = &answer.request;
         let table = |request, short| {
             record(request, short).table("tongues", CAPTION, tongues).captioned(CAPTION_LATEX)
         };
-        let words = asked.words().expect("it was answered");
-        // Places come with their digits already; what is left are widths and rounded numbers, which doubles hold.
+        // Places come with their digits already; what is left are widths and rounded numbers, which doubles
+        // hold.
         let layout = Layout { columns: self.named(), digits: request.digits };
         let document =
             Document::new(Self::NAME).long_rows(table(request, false)).for_people(table(seen, true));
-        document.summary(&tally.lines(&words)).laid_out(&layout).expect("it was answered")
+        document.summary(&answer.lines()).laid_out(&layout).expect("it was answered")
     }
 }
 
 impl Question for Tongues {
     const NAME: &'static str = "tongues";
+    const EXAMPLES: &'static [&'static str] = &[
+        "tongues --ratio 7/3 --rho 1/25 --m 3..5 --digits 30",
+        "tongues --ratio 5/3,7/2 --rho 5/2 --figure diagram --output tongues.svg",
+        "tongues --ratio 5/3 --rho 1/25 --m 3 --figure trace --output trace.pdf --width 174mm",
+        "tongues --survey --max-sum 12 --rho 1/25 --format latex",
+    ];
+    const USAGE: Option<&'static str> =
+        Some("(--ratio <P/Q> | --max-sum <N>) (--rho <R> | --lambda1 <X> --lambda2 <Y>)");
     type Answer = FoundTongues;
 
     fn answer(&self, work: &Work) -> Result<FoundTongues> {
@@ -271,7 +288,7 @@ impl Question for Tongues {
         // A table for paper has edges alone unless it is asked for more.
         let wanted = self.columns.as_ref().map_or_else(Wanted::default, |_| answer.request.wanted);
         let seen = Request { wanted, ..answer.request.clone() };
-        self.tables(answer, &seen).entry("tongues", rows).entries(answer.tally.entries())
+        self.tables(answer, &answer.tongues, &seen).entry("tongues", rows).entries(answer.tally.entries())
     }
 
     fn document(&self, answer: &FoundTongues) -> Document {

@@ -27,6 +27,8 @@ const LETTERS: u64 = 1000;
 
 impl Question for Word {
     const NAME: &'static str = "word";
+    const USAGE: Option<&'static str> =
+        Some("(WORD | --method <NAME> | --list) [--lambda1 <X>] [--lambda2 <Y>] [--h <H>]");
     const EXAMPLES: &'static [&'static str] = &[
         "word \"K(1/6) D(1/2) K(2/3, -1/36) D(1/2) K(1/6)\"",
         "word --method pefrl",

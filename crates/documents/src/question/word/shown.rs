@@ -131,7 +131,8 @@ impl Linted {
                     let exact = edge.rational().map_or(String::new(), |s| format!(" = sqrt({s})"));
                     let below = if edge.coexistence { "<=" } else { "<" };
                     let ends = omega_h(edge).to_f64_enclosure();
-                    let nominal = self.nominal_edge().map(|ball| ball.to_f64_enclosure()).filter(|pair| *pair != ends);
+                    let nominal = self.nominal_edge().map(|ball| ball.to_f64_enclosure());
+                    let nominal = nominal.filter(|pair| *pair != ends);
                     let nominal = nominal.map_or(String::new(), |pair| {
                         let own = enclosed(pair);
                         format!("; {own} but for unstable intervals below 1e-9, as rounded coefficients open them")

@@ -1,18 +1,16 @@
 //! `kickdrift run`: the products that a scene wants, nothing else; a grid is decided once, however many
 //! products show it.
 
-mod work;
-
 use std::path::{Path, PathBuf};
 
-use super::args::Common;
+use super::args::{Common, TO_SEE_ROWS};
 use super::paper::Paper;
 use documents::format::Format;
-use documents::question::{LONGEST_SCENE, Scene};
+use documents::question::{Form, LONGEST_SCENE, Scene, Want};
 use documents::report::file::{Folder, write_output};
+use documents::report::map::MapArrays;
 use number::error::{Error, Result};
 use number::file;
-use work::Work;
 
 /// Flags of `run`.
 #[derive(Debug, clap::Args)]
@@ -33,23 +31,23 @@ impl Args {
         let scene = Scene::from_json(&self.text()?)?;
         self.paper.check(scene.want.iter().any(|want| want.product.is_figure()))?;
         let folder = Folder::make(&common.output.clone().unwrap_or_else(|| self.default_folder()))?;
-        let work = Work::new(&scene, common, &self.paper, folder.path());
+        let mut products = scene.products(Some(folder.path()), &common.work())?;
         // All products before the first file: an error leaves nothing behind.
-        let contents = scene.want.iter().map(|want| work.contents(*want)).collect::<Result<Vec<_>>>()?;
-        let mut lines: Vec<String> =
-            Some(scene.title.clone()).filter(|title| !title.is_empty()).into_iter().collect();
-        let mut shown = Vec::new();
+        let written = |&Want { product, format }: &Want| {
+            let form = Form { format, float: common.float, to_see: TO_SEE_ROWS };
+            let draw = |figure| self.paper.bytes(figure, format, &common.command);
+            // Arrays are on the disk already.
+            let held = (format != Format::Npz).then(|| products.of(product).written(form, draw));
+            held.transpose()
+        };
+        let contents = scene.want.iter().map(written).collect::<Result<Vec<_>>>()?;
         for (want, contents) in scene.want.iter().zip(contents) {
-            let (product, path) = (want.product, folder.path().join(want.file_name()));
-            work.write(contents, &path)?;
-            lines.push(path.display().to_string());
-            // A product's summary is shown once, with its first file.
-            if let Some(summary) = work.summary(product).filter(|_| !shown.contains(&product)) {
-                lines.extend(summary.lines().map(|line| format!("    {line}")));
+            match contents {
+                Some(bytes) => write_output(Some(&folder.path().join(want.file_name())), &bytes)?,
+                None => products.arrays.take().map_or(Ok(()), MapArrays::finish)?,
             }
-            shown.push(product);
         }
-        let document = scene.written(folder.path()).summary(&lines);
+        let document = scene.summary(folder.path(), &products);
         folder.keep();
         let format = common.format.unwrap_or(Format::Text);
         write_output(None, document.render(format)?.as_bytes())

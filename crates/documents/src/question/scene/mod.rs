@@ -1,28 +1,27 @@
 //! A scene: quantities by name, and the products that are wanted of them.
 
+mod products;
+
+pub use products::{Made, Products};
+
 use std::path::Path;
 
 use serde_json::{Map as Input, Value, json};
 
-use super::asking::{Fields, Question, Work, question};
-use super::closings::{Closings, DIGITS};
-use super::compare::Compare;
+use super::asking::{Fields, question};
 use super::curves::Curves;
 use super::field::StepRange;
 use super::map::Map;
-use super::polynomial::Polynomial;
-use super::proposition::Proposition;
 use super::ratios::{MOST_SUM, Ratios};
 use super::survey::{Survey, THINNEST};
 use super::tongues::{Colour, Tongues};
-use super::want::{Product, Want};
+use super::want::Want;
 use crate::input::json;
 use crate::input::kind::of_another_kind;
 use crate::report::document::Document;
 use clocks::resonance::Families;
 use clocks::tongue::Stiffness;
 use number::error::{Error, Result};
-use number::rational::ratio;
 use number::{Laurent, Ratio, Rational};
 
 question! {
@@ -140,20 +139,16 @@ impl Scene {
         Ok(scene)
     }
 
-    /// That it has what its products need.
-    ///
-    /// # Errors
-    /// A product whose fields are missing, or make no sense together.
-    pub fn check(&self) -> Result<()> {
-        self.want.iter().try_for_each(|want| self.supports(want.product))
-    }
-
     /// The document on the files of its products in a folder.
     pub fn written(&self, folder: &Path) -> Document {
-        let file = |want: &Want| folder.join(want.file_name()).display().to_string();
+        let file = |want: &Want| self.file(folder, want);
         let product = |want: &Want| json!({"product": want.product.name(), "file": file(want)});
         let products: Vec<Value> = self.want.iter().map(product).collect();
         Document::new("run").inputs(self.input()).entry("products", products)
+    }
+
+    fn file(&self, folder: &Path, want: &Want) -> String {
+        folder.join(want.file_name()).display().to_string()
     }
 
     /// The question about the verdicts of the grid.
@@ -163,18 +158,8 @@ impl Scene {
     pub fn map(&self) -> Result<Map> {
         let ([step1, step2], [h1_range, h2_range]) = self.grid()?;
         let [lambda1, lambda2] = [("lambda1", &self.lambda1), ("lambda2", &self.lambda2)].map(given);
-        let (label, growth, shard) = (false, false, None);
-        Ok(Map {
-            lambda1: lambda1?,
-            lambda2: lambda2?,
-            step1,
-            step2,
-            h1_range,
-            h2_range,
-            label,
-            growth,
-            shard,
-        })
+        let (lambda1, lambda2) = (lambda1?, lambda2?);
+        Ok(Map { lambda1, lambda2, step1, step2, h1_range, h2_range, ..Map::default() })
     }
 
     /// The question about the tongues, in the window where there is one.
@@ -202,35 +187,6 @@ impl Scene {
     pub fn families(&self) -> Families {
         let Families { a, b, samples } = FAMILIES;
         Families { a: self.a.unwrap_or(a), b: self.b.unwrap_or(b), samples: self.samples.unwrap_or(samples) }
-    }
-
-    /// The document of a product that one question answers.
-    ///
-    /// # Errors
-    /// A field that is missing, and as [`Question::ask`].
-    ///
-    /// # Panics
-    /// Where the product is a figure, or the tongues, whose rows are streamed.
-    pub fn ask(&self, product: Product, work: &Work) -> Result<Document> {
-        match product {
-            Product::Map => self.map()?.ask(work),
-            Product::Curves => self.curves()?.ask(work),
-            Product::Compare => {
-                let tolerance = self.tolerance.clone().unwrap_or_else(|| ratio(1, 20));
-                Compare::over_grid(self.map()?, tolerance).ask(work)
-            }
-            Product::Proposition => Proposition { max: self.max.unwrap_or(60) }.ask(work),
-            Product::Polynomial => Polynomial { ratio: self.ratio()? }.ask(work),
-            Product::Closings => {
-                let (one, max_sum) = self.ratios()?.fields();
-                let rho_range = self.rho_range.clone().unwrap_or_else(|| (ratio(1, 10_000), ratio(100, 1)));
-                Closings { ratio: one, max_sum, m: None, rho_range, samples: 400, digits: DIGITS }.ask(work)
-            }
-            Product::Survey => self.survey()?.ask(work),
-            Product::Tongues | Product::Atlas | Product::Figure | Product::Overlay => {
-                unreachable!("streamed, or drawn")
-            }
-        }
     }
 
     fn survey(&self) -> Result<Survey> {
@@ -261,25 +217,6 @@ impl Scene {
     /// ρ, as such or by the stiffnesses.
     fn stiffness(&self) -> Result<Stiffness> {
         Stiffness::new(self.rho.clone(), self.lambda1.clone(), self.lambda2.clone())
-    }
-
-    /// The fields that a product needs are there, and make sense together.
-    fn supports(&self, product: Product) -> Result<()> {
-        match product {
-            Product::Map | Product::Compare | Product::Figure | Product::Overlay => {
-                self.map()?.grid().map(drop)
-            }
-            Product::Curves => self.curves().map(drop),
-            Product::Polynomial => self.ratio().map(drop),
-            Product::Proposition => Ok(()),
-            Product::Closings => self.ratios().map(drop),
-            Product::Tongues => self.tongues().map(drop),
-            Product::Survey => self.survey().map(drop),
-            Product::Atlas => {
-                given(("lambda1", &self.lambda1)).and(self.tongues())?;
-                self.window_h1.as_ref().map(drop).ok_or_else(|| missing("window"))
-            }
-        }
     }
 }
 
