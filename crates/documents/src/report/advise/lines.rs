@@ -7,7 +7,7 @@ use molecules::aperture::{Cold, Edge};
 use molecules::engine::{Engine, Reading, nested_beside, not_nested};
 use molecules::unit::{TimeUnit, decimal};
 use molecules::{
-    Advice, Answer, Beads, Bound, FAST, GROMPP, Mode, Origin, PRACTICE, Pair, Place, Row, SLOW, Scheme,
+    Advice, Answer, Beads, Bound, FAST, GROMPP, Mode, Origin, PRACTICE, Pair, Place, Row, SEEN, SLOW, Scheme,
     Status, Typical, Unstable, shortest_of,
 };
 use number::Rational;
@@ -318,6 +318,11 @@ pub(super) fn published(
     )
 }
 
+/// What runs show beside what is published of several clocks.
+pub(super) fn seen(steps: usize) -> Option<String> {
+    (steps > 1).then(|| format!("  measured   {SEEN}"))
+}
+
 pub(super) fn friction(rate: &Rational, unit: TimeUnit) -> String {
     let rate = unit.rate(decimal(&(rate * Rational::from_integer(unit.in_rates().into()))));
     format!(
@@ -410,6 +415,8 @@ fn reasons(advice: &Advice) -> Vec<String> {
         if unit == TimeUnit::Plain { own.replace(&format!(": {PRACTICE}"), "") } else { own }
     };
     lines.extend((!advice.lacks_fast).then(limits));
+    let is_of_molecules = !advice.lacks_fast && unit == TimeUnit::Femtoseconds;
+    lines.extend(seen(answer.scheme.steps().len()).filter(|_| is_of_molecules));
     lines.extend(advice.cold.iter().map(|cold| measured(advice, cold)));
     lines.push(format!("  unknown    {}", unknown(advice)[0]));
     lines.extend(advice.beads.as_ref().map(ring));

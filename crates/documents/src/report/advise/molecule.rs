@@ -91,6 +91,7 @@ fn summary(findings: &Findings, reading: Option<&Reading>, notes: &[String]) -> 
     lines.push(lines::published(&name, best.scheme.steps().len(), inner, |place| {
         unit.of(rounded(period / place.parts(), 4))
     }));
+    lines.extend(lines::seen(best.scheme.steps().len()));
     lines.extend((2..).zip(&findings.between).map(|(level, value)| between(level, *value)));
     lines.extend((best.scheme.steps().len() > 1).then(|| slow(findings.slow)));
     lines.push(format!("  unknown    {}", UNKNOWN[0]));
