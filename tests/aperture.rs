@@ -238,10 +238,14 @@ fn steps_know_which_resonance_is_near() {
 
 /// Advice on one clock with this bond, at 298 K, for 10^9 bonds times picoseconds.
 fn advice(bond: &str, harmonic: bool) -> Advice {
+    advice_on(bond, harmonic, 1_000_000_000)
+}
+
+fn advice_on(bond: &str, harmonic: bool, seen: i64) -> Advice {
     let modes = vec![Mode::from_bond(bond, None).unwrap()];
     let scheme = Scheme::new(vec![ratio(1, 1)]).unwrap();
     let question = Question::new(modes, vec![scheme], ratio(1, 20)).unwrap().with_harmonic_bonds(harmonic);
-    question.at_temperature(&ratio(298, 1), &ratio(1_000_000_000, 1)).unwrap().answer().unwrap()
+    question.at_temperature(&ratio(298, 1), &ratio(seen, 1)).unwrap().answer().unwrap()
 }
 
 #[test]
@@ -250,17 +254,39 @@ fn advice_on_a_bond_of_a_known_shape_stays_where_it_is_cold_enough() {
         let found = advice(bond, false);
         let answer = &found.schemes[0];
         assert_eq!((answer.bound, answer.status), (Some(Bound::Aperture), Status::Safe), "{bond}");
-        // 1.4 fs is published as close to the upper bound; runs lose bonds within a picosecond at 1.65 fs.
+        // Bonds of 20 kT that were made so hot in a droplet are lost from 1.23 fs on (data/published/bonds.json);
+        // the narrow dips of k = 7 begin at 1.24 fs, of a Morse bond at 1.29 fs.
         let safe = to_f64(answer.safe.as_ref().unwrap());
-        assert!((1.15..1.45).contains(&safe), "{bond}: {safe}");
-        // Every period of the band, and every shorter step: the aperture is not below ln N.
-        let measurement = measurement(bond, VERLET);
-        for part in [15, 18, 19] {
-            let h = safe / 0.95 * f64::from(part) / 20.0;
-            let step = measurement.at(&ratio((h * 1e6) as i64, 1_000_000)).unwrap();
-            assert!(step.aperture.is_none_or(|aperture| aperture >= 1e9f64.ln()), "{bond}: {h} {step:?}");
+        assert!((1.2..1.3).contains(&safe), "{bond}: {safe}");
+        // The step itself and every shorter one, which is what longer periods come to: E* is not below ln N.
+        for word in [VERLET, "K(1/2) D(1/2) O(1) D(1/2) K(1/2)"] {
+            let measurement = measurement(bond, word);
+            for part in [15, 18, 19, 20] {
+                let h = safe * f64::from(part) / 20.0;
+                let step = measurement.at(&ratio((h * 1e6) as i64, 1_000_000)).unwrap();
+                assert!(step.aperture.is_none_or(|aperture| aperture >= 1e9f64.ln()), "{bond}: {h} {step:?}");
+            }
         }
     }
+}
+
+#[test]
+fn of_as_many_runs_as_are_published_the_bound_is_the_published_one() {
+    // 10^4 runs of 50 ps of a water, two bonds each: 1.4 fs is published as close to the upper bound.
+    let found = advice_on(QUARTIC, false, 1_000_000);
+    let safe = to_f64(found.schemes[0].safe.as_ref().unwrap());
+    assert!((1.4..1.42).contains(&safe), "{safe}");
+}
+
+#[test]
+fn a_thermostat_in_the_middle_of_the_drift_loses_a_bond_no_earlier() {
+    let found = advice(QUARTIC, false);
+    let [verlet, middle] = &found.cold[..] else { panic!("two kinds of schemes") };
+    assert_eq!((verlet.kind.method, middle.kind.method), ("velocity-verlet", "baoab"));
+    assert!(verlet.first.unwrap().share <= middle.first.unwrap().share);
+    // The bound holds for both.
+    let safe = to_f64(found.schemes[0].safe.as_ref().unwrap());
+    assert!((safe / found.modes[0].period().0 / verlet.first.unwrap().share - 1.0).abs() < 1e-9);
 }
 
 #[test]
@@ -279,12 +305,12 @@ fn a_heavier_bond_has_the_same_share_of_its_period() {
     let [light, heavy] = [QUARTIC, &heavy].map(|bond| {
         let found = advice(bond, false);
         (
-            found.cold[0].1.clone().unwrap().share,
+            found.cold[0].first.unwrap().share,
             to_f64(found.schemes[0].safe.as_ref().unwrap()),
             found.modes[0].period().0,
         )
     });
-    // The steps of both measurements are not at the same parts of the period: two parts in a thousand.
-    assert!((light.0 - heavy.0).abs() < 0.002, "{light:?} {heavy:?}");
-    assert!((light.1 / light.2 - heavy.1 / heavy.2).abs() < 0.002);
+    // The steps of both measurements are not at the same parts of the period: a part in a thousand.
+    assert!((light.0 - heavy.0).abs() < 0.001, "{light:?} {heavy:?}");
+    assert!((light.1 / light.2 - heavy.1 / heavy.2).abs() < 0.001);
 }

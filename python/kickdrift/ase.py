@@ -5,7 +5,7 @@ Units: lengths in Å, energies in eV, masses in u as ASE has them; steps in fs, 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import Any
 
@@ -20,6 +20,8 @@ from kickdrift._numbers import Exact, doubles, duration, positive
 from kickdrift._periods import listed
 from kickdrift._progress import Progress
 from kickdrift._rigid import Doubles
+from kickdrift._shape import Shape
+from kickdrift._shape import shapes as scanned
 from kickdrift._system import System
 
 try:
@@ -27,7 +29,7 @@ try:
 except ImportError:
     raise needs("ase") from None
 
-__all__ = ["oscillations", "system"]
+__all__ = ["oscillations", "shapes", "system"]
 
 #: The difference of positions, Å.
 DIFFERENCE = 1e-3
@@ -188,3 +190,60 @@ def _force(atoms: Any, calculator: Any, field: str) -> Force:
         return np.asarray(copy.get_forces() * units.fs**2, dtype=np.float64)
 
     return force
+
+
+def shapes(
+    atoms: Any,
+    calculator: Any,
+    *,
+    pairs: Sequence[tuple[int, int]] | None = None,
+    temperature: float = 298.0,
+    count: int = 1,
+) -> list[Shape]:
+    """Scan the energy along the fastest bonds, some twenty energies each, and describe it as ``kd.aperture`` reads it.
+
+    Both atoms of a bond move along it, about their centre of mass; all others stand still. A mode of several bonds is
+    not scanned: a hot bond vibrates alone, for its frequency leaves that of the others. So the scan leaves out the
+    coupling of bonds, which makes the fastest mode some percent faster, and whatever moves meanwhile.
+
+    Parameters
+    ----------
+    atoms : ase.Atoms
+        At a minimum or near one. Not changed; constraints of ASE's are an error.
+    calculator : ase.calculators.calculator.Calculator
+        The energy.
+    pairs : sequence of (int, int), optional
+        Bonds, as pairs of atoms; unless given every atom and the one nearest to it. Held distances are left out.
+    temperature : float
+        K: the scan goes to 20 kT.
+    count : int
+        How many bonds, the fastest first.
+
+    Raises
+    ------
+    KickdriftError
+        Pairs that are none, bonds that are all held, a length without a minimum beside it.
+
+    Examples
+    --------
+    >>> import ase
+    >>> from ase.calculators.morse import MorsePotential
+    >>> import kickdrift.ase
+    >>> atoms = ase.Atoms("OH", [[0, 0, 0], [0.97, 0, 0]])
+    >>> calculator = MorsePotential(epsilon=5.03, r0=0.97, rho0=2.2)
+    >>> [shape] = kickdrift.ase.shapes(atoms, calculator)
+    >>> shape.bond.split(":")[0], round(shape.period, 1)
+    ('O0-H1', 8.7)
+    """
+    if atoms.constraints:
+        raise KickdriftError("atoms", f"{len(atoms.constraints)} constraints", "constraints are not handled here")
+    copy = atoms.copy()
+    copy.calc = calculator
+
+    def energy(positions: Doubles) -> float:
+        copy.set_positions(10 * positions)
+        return float(copy.get_potential_energy() * units.mol / units.kJ)
+
+    where, masses = doubles("atoms", atoms.positions) / 10, doubles("masses", atoms.get_masses())
+    names = [f"{symbol}{n}" for n, symbol in enumerate(atoms.get_chemical_symbols())]
+    return scanned(energy, where, masses, names, held=(), pairs=pairs, temperature=temperature, count=count)

@@ -36,9 +36,11 @@ from kickdrift._openmm.rest import at_rest, near_minimum, relaxed
 from kickdrift._orbit import monodromy
 from kickdrift._progress import Progress, shown
 from kickdrift._rigid import Doubles, is_held, norm, off_the_mesh, rigid_motions
+from kickdrift._shape import Shape
+from kickdrift._shape import shapes as scanned
 from kickdrift._system import System
 
-__all__ = ["bands", "oscillations", "system"]
+__all__ = ["bands", "oscillations", "shapes", "system"]
 
 #: The difference of positions, nm: force fields are smooth on this length.
 DIFFERENCE = 1e-4
@@ -685,3 +687,60 @@ def _notes(system: Any, integrator: Any, clocks: Mapping[int, Fraction]) -> list
             f"{system.getNumConstraints()} constraints: deviations along them are projected out, RATTLE assumed"
         )
     return notes
+
+
+def shapes(
+    system: Any,
+    positions: Any,
+    *,
+    pairs: Sequence[tuple[int, int]] | None = None,
+    temperature: float = 298.0,
+    count: int = 1,
+) -> list[Shape]:
+    """Scan the energy along the fastest bonds, some twenty energies each, and describe it as ``kd.aperture`` reads it.
+
+    Both atoms of a bond move along it, about their centre of mass; all others stand still. A mode of several bonds is
+    not scanned: a hot bond vibrates alone, for its frequency leaves that of the others. So the scan leaves out the
+    coupling of bonds, which makes the fastest mode some percent faster, and whatever moves meanwhile.
+
+    Parameters
+    ----------
+    system : openmm.System
+        Not changed.
+    positions : Quantity or array, shape (n, 3), nm
+        At a minimum or near one.
+    pairs : sequence of (int, int), optional
+        Bonds, as pairs of atoms; unless given every atom and the one nearest to it. Held distances are left out.
+    temperature : float
+        K: the scan goes to 20 kT.
+    count : int
+        How many bonds, the fastest first.
+
+    Raises
+    ------
+    KickdriftError
+        Pairs that are none, bonds that are all held, a length without a minimum beside it.
+
+    Examples
+    --------
+    A Morse bond of two atoms:
+
+    >>> import openmm
+    >>> import kickdrift.openmm
+    >>> system, bond = openmm.System(), openmm.CustomBondForce("485.72*(1-exp(-22.87*(r-0.1)))^2")
+    >>> added = [system.addParticle(mass) for mass in (15.999, 1.008)], bond.addBond(0, 1), system.addForce(bond)
+    >>> shape = kickdrift.openmm.shapes(system, [[0, 0, 0], [0.1, 0, 0]])[0]
+    >>> round(shape.period, 1)
+    8.6
+    """
+    engine, where = engine_of(system), positions_of(positions, system)
+    place = {int(n): k for k, n in enumerate(engine.moving)}
+    ends = (system.getConstraintParameters(n)[:2] for n in range(system.getNumConstraints()))
+    held = {frozenset(place[n] for n in pair) for pair in ends}
+    own = None if pairs is None else [(place.get(a, -1), place.get(b, -1)) for a, b in pairs]
+    names = [name.replace(" ", "") for name in names_of(masses_of(system), None, engine.moving)[0]]
+    found = scanned(
+        engine.energy, where, engine.masses, names, held=held, pairs=own, temperature=temperature, count=count
+    )
+    first, second = ([int(engine.moving[shape.pair[k]]) for shape in found] for k in (0, 1))
+    return [replace(shape, pair=pair) for shape, pair in zip(found, zip(first, second, strict=True), strict=True)]

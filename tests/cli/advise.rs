@@ -17,7 +17,14 @@ fn the_first_lines_can_be_acted_on() {
              proven too, but drift is published beyond T/3",
         ]
     );
-    for word in ["  proven ", "  published ", "  unknown ", "Ma, Izaguirre, Skeel 2003"] {
+    // What runs of our own show stands beside what is published.
+    for word in [
+        "  proven ",
+        "  published ",
+        "  measured   27 flexible waters",
+        "  unknown ",
+        "Ma, Izaguirre, Skeel 2003",
+    ] {
         assert!(text.contains(word), "{word}: {text}");
     }
 }
@@ -492,4 +499,12 @@ fn a_friction_that_masks_is_no_bound_unless_all_larger_ones_do() {
     assert!(text.contains("(frictions of ") && text.contains("mask it, the one given does not"), "{text}");
     assert!(!text.contains("friction above"), "{text}");
     assert!(stdout(&words(line, &["8/5/ps"])).contains("masked by the friction given"));
+}
+
+#[test]
+fn levels_whose_innermost_forces_are_held_are_limited_by_the_next() {
+    let text = stdout(&words("advise data/scenes/water4-levels.json --constraints h-bonds --no-levers", &[]));
+    // 15.1 fs is the angles' shortest period; rounding left modes of 8e6 fs of the bonds.
+    assert!(text.contains("\nlimit: level 2 (T = 15.") && text.contains("near T/3 = 5.0"), "{text}");
+    assert!(!text.contains("e6"), "{text}");
 }

@@ -131,8 +131,8 @@ pub struct Advice {
     pub caps: Caps,
     /// Whether the bonds are said to be harmonic.
     pub harmonic: bool,
-    /// Of bonds whose shape is known, by name: the first step at which they are too hot, if there is one.
-    pub cold: Vec<(String, Option<Cold>)>,
+    /// Of bonds whose shape is known: where they begin to be too hot, by each kind of scheme.
+    pub cold: Vec<Cold>,
     pub beads: Option<Beads>,
     /// Of all times.
     pub unit: TimeUnit,

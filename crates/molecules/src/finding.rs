@@ -66,7 +66,10 @@ pub struct Finding {
 /// The whole answer for a molecule.
 #[derive(Clone, Debug)]
 pub struct Findings {
+    /// Of the innermost forces; none where all that they pull is held.
     pub groups: Vec<Group>,
+    /// The first group, or else the fastest motion of a level between.
+    pub fastest: Group,
     /// The shortest period of the slowest stiffness alone, in fs, rounded.
     pub slow: f64,
     /// The shortest periods of the levels between, each alone, from the inside out.

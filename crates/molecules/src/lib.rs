@@ -76,7 +76,7 @@ pub use words;
 pub use answer::{Advice, Answer, Pair, Row, Status};
 pub use beads::Beads;
 pub use caps::{Bound, Caps, shortest_of};
-pub use caution::{Caution, GROMPP, HEEDED, OF_MANY, OF_ONE, PRACTICE, Place, published};
+pub use caution::{Caution, GROMPP, HEEDED, OF_MANY, OF_ONE, PRACTICE, Place, SEEN, published};
 pub use constraint::Constraints;
 pub use direct::{Adds, Direct, DirectFinding, DirectFindings, Rung, TIMES};
 pub use finding::{Finding, Findings, Group};

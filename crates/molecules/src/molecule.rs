@@ -52,7 +52,8 @@ const NEIGHBOUR: f64 = 1.03;
 /// At most this many groups are listed.
 const MOST_GROUPS: usize = 12;
 
-/// Frequencies below this part of the highest one are no modes of the fast stiffness: rigid to it, or slow.
+/// Frequencies below this part of the highest one of all levels are no modes of a fast one: rigid to it, or
+/// slow, or held.
 const NO_MODE: f64 = 1e-2;
 
 /// The most products unless a budget is given: a minute or two.
@@ -132,13 +133,10 @@ impl Molecule {
             return Err(Error::missing("steps", "give the inner and the outer step, as 0.5fs,4fs"));
         }
         let (groups, caps) = (self.groups(), self.caps());
-        if groups.is_empty() {
-            return Err(Error::input(
-                "fast stiffness",
-                "0",
-                "no force of the shorter step acts on what is free: give it the bonds, or leave it out and ask `kickdrift system FILE`",
-            ));
-        }
+        let fastest = groups.first().cloned().or_else(|| self.fastest_between()).ok_or_else(|| {
+            let remedy = "no force of the shorter step acts on what is free: give it the bonds, or leave it out and ask `kickdrift system FILE`";
+            Error::input("fast stiffness", "0", remedy)
+        })?;
         friction.map_or(Ok(()), check_friction)?;
         length.map_or(Ok(()), check_length)?;
         let mut known: Vec<(Vec<Rational>, AtRatio)> = Vec::new();
@@ -152,11 +150,10 @@ impl Molecule {
             let (_, at) = known.iter().find(|(values, _)| *values == ratios).expect("just put there");
             found.push(self.find(scheme, &caps, band, (length, friction), at)?);
         }
-        let mut slower: Vec<f64> =
-            self.source.slower_frequencies().into_iter().map(|value| self.period(value * value)).collect();
+        let slow = self.source.slower_frequencies().last().map(|value| self.period(value * value));
         Ok(Findings {
-            slow: slower.pop().unwrap_or(f64::INFINITY),
-            between: slower,
+            slow: slow.unwrap_or(f64::INFINITY),
+            between: self.between().map(|period| period.unwrap_or(f64::INFINITY)).collect(),
             removed: self.source.removed().cloned(),
             accuracy: self.accuracy,
             caps,
@@ -166,6 +163,7 @@ impl Molecule {
             friction: friction.cloned(),
             schemes: found,
             groups,
+            fastest,
             levers: None,
         })
     }
@@ -174,9 +172,31 @@ impl Molecule {
         2.0 * std::f64::consts::PI / square.sqrt() * to_f64(&self.unit)
     }
 
+    /// A square up to this is no mode of any level: rigid, held, or what rounding left of a held force.
+    fn least_square(&self) -> f64 {
+        let slower = self.source.slower_frequencies().into_iter().map(|value| value * value);
+        let stiffest = self.source.fast_squares().last().copied().into_iter().chain(slower);
+        NO_MODE * NO_MODE * stiffest.fold(0.0, f64::max)
+    }
+
+    /// The shortest period of each level between the innermost and the outermost one alone, in fs; `None`
+    /// where it has no mode.
+    fn between(&self) -> impl Iterator<Item = Option<f64>> {
+        let (mut slower, least) = (self.source.slower_frequencies(), self.least_square());
+        slower.pop();
+        slower.into_iter().map(move |value| (value * value > least).then(|| self.period(value * value)))
+    }
+
+    /// Where all that the innermost forces pull is held: the fastest motion of the next level that has one.
+    fn fastest_between(&self) -> Option<Group> {
+        let found = (2..).zip(self.between()).filter_map(|(level, period)| Some((level, period?)));
+        let (level, period) = found.min_by(|a, b| a.1.total_cmp(&b.1))?;
+        let name = Some(format!("level {level}"));
+        Some(Group { count: 1, period: (period, period), name, atoms: String::new() })
+    }
+
     fn groups(&self) -> Vec<Group> {
-        let squares = self.source.fast_squares();
-        let least = NO_MODE * NO_MODE * squares.last().copied().unwrap_or(0.0).max(0.0);
+        let (squares, least) = (self.source.fast_squares(), self.least_square());
         let mut groups: Vec<(Group, Vec<Vec<f64>>)> = Vec::new();
         for (k, &square) in squares.iter().enumerate().rev().take_while(|(_, square)| **square > least) {
             let (period, mode) = (self.period(square), self.source.fast_mode(k));
@@ -372,10 +392,13 @@ impl Molecule {
 
     /// What bounds the steps beside linear theory: periods are rounded, so they are taken a little shorter.
     fn caps(&self) -> Caps {
-        let shorter = |square: f64| (square > 0.0).then(|| self.period(square) * (1.0 - 1e-9));
-        let slower = self.source.slower_frequencies().into_iter().map(|value| shorter(value * value));
-        let fastest = self.source.fast_squares().last().copied().and_then(shorter);
-        let levels: Vec<Option<f64>> = [fastest].into_iter().chain(slower).collect();
+        let shorter = |square: f64| self.period(square) * (1.0 - 1e-9);
+        let fastest = self.source.fast_squares().last().filter(|square| **square > self.least_square());
+        let between = self.between().map(|period| period.map(|period| period * (1.0 - 1e-9)));
+        let slowest = self.source.slower_frequencies().pop().map(|value| value * value);
+        let slowest = slowest.map(|square| (square > 0.0).then(|| shorter(square)));
+        let levels: Vec<Option<f64>> =
+            [fastest.map(|square| shorter(*square))].into_iter().chain(between).chain(slowest).collect();
         Caps::new(&levels, self.harmonic)
     }
 

@@ -11,7 +11,6 @@ use super::unit::TimeUnit;
 use clocks::schedule::Schedule;
 use clocks::verdict::Limits;
 use number::error::{Error, Result};
-use number::rational::to_f64;
 use number::{Laurent, Rational};
 
 /// Modes, the schemes that they are asked about, and how well the periods are known.
@@ -35,8 +34,8 @@ pub struct Question {
     pub(super) all_modes: bool,
     /// Whether bonds are said to be harmonic: then a clock's own step has no bound but the proven one.
     pub(super) harmonic: bool,
-    /// Of bonds whose shape is known, by name: the first step at which they are too hot, if there is one.
-    pub(super) cold: Vec<(String, Option<Cold>)>,
+    /// Of bonds whose shape is known: where they begin to be too hot, by each kind of scheme.
+    pub(super) cold: Vec<Cold>,
     /// Ring polymers in place of atoms.
     pub(super) beads: Option<Beads>,
     /// The unit of all times.
@@ -217,9 +216,9 @@ impl Question {
     /// # Errors
     /// Where somebody has stopped the work.
     pub fn at_temperature(mut self, temperature: &Rational, seen: &Rational) -> Result<Question> {
-        let shaped = self.modes.iter().filter_map(|mode| Some((mode.name.clone(), mode.shape.as_ref()?)));
-        let cold = shaped.map(|(name, bond)| Ok((name, Cold::of(bond, temperature, seen)?)));
-        self.cold = cold.collect::<Result<_>>()?;
+        let shaped = self.modes.iter().filter_map(|mode| Some((&mode.name, mode.shape.as_ref()?)));
+        let cold = shaped.map(|(name, bond)| Cold::of(name, bond, temperature, seen));
+        self.cold = cold.collect::<Result<Vec<_>>>()?.concat();
         Ok(self)
     }
 
@@ -248,17 +247,17 @@ impl Question {
             let on = |clock: usize| self.modes.iter().filter(move |mode| mode.clock == Some(clock));
             (0..self.clocks()).map(|clock| on(clock).filter_map(period).reduce(f64::min)).collect()
         };
-        let cold_of = |mode: &Mode| self.cold.iter().find(|(name, _)| *name == mode.name);
+        let is_measured = |mode: &Mode| self.cold.iter().any(|cold| cold.name == mode.name);
         let caps = Caps::new(&shortest(&|mode| Some(mode.period().0)), self.harmonic);
         if self.cold.is_empty() {
             return caps;
         }
-        let other = |mode: &Mode| cold_of(mode).is_none().then(|| mode.period().0);
-        // The shortest period of the band is the hottest; two roundings.
-        let shorter = to_f64(&(Rational::one() - &self.band));
+        let other = |mode: &Mode| (!is_measured(mode)).then(|| mode.period().0);
+        // Of all kinds of schemes. Surroundings make the period of a shape longer: these bonds are colder.
         let cold = |mode: &Mode| {
-            let share = cold_of(mode)?.1.as_ref()?.share;
-            Some((mode.period().0 * share * shorter).next_down().next_down())
+            let own = self.cold.iter().filter(|cold| cold.name == mode.name);
+            let least = own.filter_map(|cold| cold.first).map(|edge| edge.share).reduce(f64::min)?;
+            Some((mode.period().0 * least).next_down())
         };
         caps.with_measured(&Caps::new(&shortest(&other), self.harmonic), &shortest(&cold))
     }

@@ -122,7 +122,7 @@ impl Question for Advise {
         let safe = asked.answer(work)?;
         let mut notes = Vec::new();
         if let (Safe::Hessians(pair), Some(_)) = (&safe, archive) {
-            let fastest = pair.1.groups[0].period.0;
+            let fastest = pair.1.fastest.period.0;
             if !PLAUSIBLE.contains(&fastest) {
                 let given = format!("a fastest period of {fastest:.1e} fs");
                 let remedy = "an archive is read as mass-weighted, in 1/ps^2: write a system file that says what it is";

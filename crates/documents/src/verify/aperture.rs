@@ -1,21 +1,22 @@
 //! The aperture of a bond: its letters one by one, phase by phase, with the exponential of the platform.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 use super::context::{Checked, Context, Outcome, holds};
 use super::kind::Verify;
 use crate::question::Aperture;
-use molecules::aperture::{Bond, FAR, LATE, Measured, Shape, Step, rungs, squared_frequency, thermal};
+use molecules::aperture::{Bond, Edge, FAR, LATE, Measured, Shape, Step, rungs, squared_frequency, thermal};
 use number::error::Result;
 use number::rational::to_f64;
-use number::{Radical, Real};
+use number::{Radical, Rational, Real};
 use words::{Force, Letter, Word};
 
 const ROUTE: &str = "the word run letter by letter, phase by phase: no start is lost a tenth or half a kT below E*, and some are up to as much above it";
 
 impl Verify for Aperture {
     fn check(&self, measured: &Measured, context: &Context) -> Result<Outcome> {
-        let plain = Plain::of(self)?;
+        let slow = self.slow.as_ref().map(|slow| &slow.value);
+        let plain = Plain::of(&self.bond, &self.integrator()?, &self.temperature.value, slow);
         context.each(ROUTE, Ok(()), &measured.steps, |step| plain.holds(step))
     }
 }
@@ -27,7 +28,7 @@ enum Part {
 }
 
 /// The bond and the word, in amu, nm, fs.
-struct Plain {
+pub struct Plain {
     shape: Shape,
     parts: Vec<Part>,
     /// Whether a letter O stands within the word.
@@ -38,8 +39,8 @@ struct Plain {
 }
 
 impl Plain {
-    fn of(asked: &Aperture) -> Result<Plain> {
-        let (bond, word): (&Bond, Word) = (&asked.bond, asked.integrator()?);
+    /// A bond at a temperature in K by a word; `slow` is the slow force's period in fs.
+    pub fn of(bond: &Bond, word: &Word, temperature: &Rational, slow: Option<&Rational>) -> Plain {
         let letters = word.letters();
         let is_thermostat = |letter: &Letter| matches!(letter, Letter::Friction(_));
         let ends = letters.iter().enumerate().filter(|(_, letter)| is_thermostat(letter));
@@ -55,15 +56,15 @@ impl Plain {
             _ => None,
         };
         let mass = bond.mass();
-        let slow = asked.slow.as_ref().map_or(0.0, |slow| squared_frequency(to_f64(&slow.value)));
-        Ok(Plain {
+        let slow = slow.map_or(0.0, |slow| squared_frequency(to_f64(slow)));
+        Plain {
             shape: bond.shape.clone(),
             parts: letters.iter().filter_map(part).collect(),
             is_within,
-            thermal: to_f64(&thermal(&asked.temperature.value)),
+            thermal: to_f64(&thermal(temperature)),
             squares: [to_f64(&(bond.curvature() / &mass)), slow],
             mass: to_f64(&mass),
-        })
+        }
     }
 
     /// −V'(x)/μ.
@@ -127,6 +128,26 @@ impl Plain {
         (0..48).filter(is_lost).count()
     }
 
+    /// That a bond stays below a level in kT at the share of its period where it is said to begin to be too
+    /// hot, and is lost just above it, at E* or up to as much above it as other routes differ; where it is
+    /// nowhere too hot, that it stays nearly up to the linear limit.
+    pub fn begins(&self, first: Option<&Edge>, level: f64) -> Checked {
+        let period = TAU / self.squares[0].sqrt();
+        let cold = |share: f64| {
+            rungs()
+                .take_while(|rung| *rung <= level - room(level))
+                .all(|rung| self.lost(share * period, rung) == 0)
+        };
+        let Some(Edge { share, aperture }) = first else {
+            return holds(cold(0.99 / PI), || "bonds are lost by another route".into());
+        };
+        holds(cold(*share) && cold(0.97 * share), || {
+            format!("at T times {share} bonds are lost by another route")
+        })?;
+        let is_lost = above(*aperture).iter().any(|energy| self.lost(BESIDE * share * period, *energy) > 0);
+        holds(is_lost, || format!("just above T times {share} no bond is lost by another route"))
+    }
+
     fn holds(&self, step: &Step) -> Checked {
         let h = to_f64(&step.step);
         let [[a, _], [_, d]] = self.linear(h);
@@ -137,15 +158,10 @@ impl Plain {
             None => holds((a + d).abs() > 2.0 - 1e-9, wrong)?,
         }
         let last = rungs().last().expect("there are rungs");
-        let below = |energy: f64| {
-            let room = energy - f64::max(0.5, 0.1 * energy);
-            rungs().filter(|rung| *rung <= room).last()
-        };
+        let below = |energy: f64| rungs().filter(|rung| *rung <= energy - room(energy)).last();
         if let Some(rung) = below(step.aperture.unwrap_or(last)) {
             holds(self.lost(h, rung) == 0, || format!("at {rung} kT a bond is lost by another route"))?;
         }
-        let above =
-            |energy: f64| [0.0, 0.25, 0.5, 0.75, 1.0].map(|part| energy + part * f64::max(0.5, 0.1 * energy));
         if let Some(aperture) = step.aperture {
             let is_lost = above(aperture).iter().any(|energy| self.lost(h, *energy) > 0);
             holds(is_lost, || format!("at {aperture} kT and above no bond is lost by another route"))?;
@@ -157,3 +173,17 @@ impl Plain {
         Ok(())
     }
 }
+
+/// How far another route may tell E* otherwise, in kT: another order of sums, on chaotic orbits.
+fn room(energy: f64) -> f64 {
+    f64::max(0.5, 0.1 * energy)
+}
+
+/// E* and energies up to that much above it.
+fn above(energy: f64) -> [f64; 5] {
+    [0.0, 0.25, 0.5, 0.75, 1.0].map(|part| energy + part * room(energy))
+}
+
+/// The step that loses a bond lies within this factor of the one that does not: half a thousandth of the period,
+/// halved six times.
+const BESIDE: f64 = 1.0001;

@@ -276,6 +276,28 @@ fn forged_advice_on_periods_is_found() {
     );
 }
 
+#[test]
+fn a_forged_step_at_which_a_hot_bond_is_lost_is_found() {
+    // O-H of q-TIP4P/F, a thousand of them for a nanosecond: E* falls steeply there.
+    let hot = json!({"band": "1/20", "bonds": "1000", "length": "1000000", "no_levers": "true", "schemes": [["1"]],
+        "modes": [{"name": "OH", "from": "curvature at rest", "clock": 1, "stiffness": "360051629878123/671958000000000",
+            "bond": {"masses": ["15999/1000", "126/125"], "hydrogens": 1},
+            "shape": "OH:poly:k2=254049.483068kJ/mol/nm^2,k3=-5810111.67776516kJ/mol/nm^3,k4=77511731.5411187kJ/mol/nm^4,15.999,1.008"}]});
+    finds::<Advised>(
+        hot,
+        &[
+            |safe| edge(safe, 0).share *= 1.01,
+            |safe| edge(safe, 1).share *= 0.99,
+            |safe| edge(safe, 0).aperture *= 0.5,
+            |safe| advice(safe).cold[1].first = None,
+        ],
+    );
+}
+
+fn edge(safe: &mut Safe, kind: usize) -> &mut molecules::aperture::Edge {
+    advice(safe).cold[kind].first.as_mut().unwrap()
+}
+
 fn advice(safe: &mut Safe) -> &mut molecules::Advice {
     if let Safe::Periods(advice) = safe { advice } else { panic!("advice on periods") }
 }

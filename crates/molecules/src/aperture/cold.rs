@@ -1,4 +1,4 @@
-//! Up to which step of its own a bond stays at a temperature.
+//! Up to which step of its own a bond stays at a temperature, by each kind of scheme.
 
 use num_traits::ToPrimitive;
 
@@ -10,50 +10,105 @@ use number::parallel::try_map;
 use number::rational::to_f64;
 use words::method;
 
-/// The first step of velocity Verlet at which a bond is too hot.
+/// Schemes that lose a bond at the same energies: what they are called in the catalogue, and for people.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Kind {
+    pub method: &'static str,
+    pub names: &'static str,
+}
+
+/// A thermostat at the ends of a step, or none; and one in the middle of its drift.
+pub const KINDS: [Kind; 2] = [
+    Kind { method: "velocity-verlet", names: "velocity Verlet and OBABO" },
+    Kind { method: "baoab", names: "BAOAB and LangevinMiddle" },
+];
+
+/// Where a bond begins to be too hot for a kind of scheme.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cold {
-    /// The step over the period of the smallest oscillations: it is the same for all masses.
-    pub share: f64,
-    /// E* there, in kT.
-    pub aperture: f64,
+    /// Of the bond's mode.
+    pub name: String,
+    pub kind: Kind,
+    /// Where E* is below the level; `None` where it nowhere is up to the linear limit.
+    pub first: Option<Edge>,
     /// What E* is held against, in kT.
     pub level: f64,
     /// In K.
     pub temperature: Rational,
 }
 
+/// The first step at which a bond is too hot.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Edge {
+    /// The step over the period of the smallest oscillations, rounded down: it is the same for all masses.
+    pub share: f64,
+    /// E* just above it, in kT.
+    pub aperture: f64,
+}
+
 /// Steps are looked at from the tenth part of the period on, by four thousandths of it, and from the eighth
-/// on, where resonances are strong, by one.
-const FIRST: usize = 100;
-const STRONG: usize = 125;
-const PARTS: usize = 1000;
+/// on, where resonances are strong and narrow, by half of one.
+const FIRST: usize = 200;
+const STRONG: usize = 250;
+const PARTS: usize = 2000;
+
+/// The step between two that were looked at is halved so many times.
+const HALVINGS: u32 = 6;
 
 /// So many steps are measured side by side.
 const TOGETHER: usize = 8;
 
 impl Cold {
-    /// The first step at which E* is below the logarithm of `seen` independent energies, at a temperature in
-    /// K; `None` where there is none up to the linear limit.
+    /// Where a bond begins to be too hot at a temperature in K, for the logarithm of `seen` independent
+    /// energies, by each kind of scheme.
     ///
     /// # Errors
     /// Where somebody has stopped the work.
-    pub fn of(bond: &Bond, temperature: &Rational, seen: &Rational) -> Result<Option<Cold>> {
-        let measurement = Measurement::new(bond, temperature, &method("velocity-verlet")?.word(), None)?;
+    pub fn of(name: &str, bond: &Bond, temperature: &Rational, seen: &Rational) -> Result<Vec<Cold>> {
         let level = hottest_of(seen);
-        // Whole fs or their thousandths keep the digits of the steps few.
-        let period = measurement.period();
-        let unit = Rational::new((period.ceil().to_u64().unwrap_or(u64::MAX)).into(), PARTS.into());
-        let step = |n: usize| &unit * Rational::from_integer(n.into());
-        let last = measurement.limit.map_or(PARTS, |limit| (limit / to_f64(&unit)).floor() as usize);
-        let all: Vec<Rational> = (FIRST..STRONG).step_by(4).chain(STRONG..=last).map(step).collect();
-        for steps in all.chunks(TOGETHER) {
-            let found = try_map(steps, |step| measurement.aperture_below(step, level))?;
-            if let Some((step, aperture)) = steps.iter().zip(found).find_map(|(step, e)| Some((step, e?))) {
-                let (share, temperature) = (to_f64(step) / period, temperature.clone());
-                return Ok(Some(Cold { share, aperture, level, temperature }));
-            }
-        }
-        Ok(None)
+        let by = |kind: &Kind| {
+            let measurement = Measurement::new(bond, temperature, &method(kind.method)?.word(), None)?;
+            let first = edge(&measurement, level)?;
+            Ok(Cold { name: name.into(), kind: *kind, first, level, temperature: temperature.clone() })
+        };
+        KINDS.iter().map(by).collect()
     }
+}
+
+/// The first step at which a bond below the level is lost.
+fn edge(measurement: &Measurement, level: f64) -> Result<Option<Edge>> {
+    // Whole fs or their parts keep the digits of the steps few.
+    let period = measurement.period();
+    let unit = Rational::new(period.ceil().to_u64().unwrap_or(u64::MAX).into(), PARTS.into());
+    let below = |step: &Rational| measurement.aperture_below(step, level);
+    let step = |n: usize| &unit * Rational::from_integer(n.into());
+    let last = measurement.limit.map_or(PARTS, |limit| (limit / to_f64(&unit)).floor() as usize);
+    let all: Vec<Rational> = (FIRST..STRONG).step_by(8).chain(STRONG..=last).map(step).collect();
+    let mut cold = Rational::default();
+    for together in all.chunks(TOGETHER) {
+        for (step, aperture) in together.iter().zip(try_map(together, below)?) {
+            if let Some(aperture) = aperture {
+                return narrowed([cold, step.clone()], aperture, period, below).map(Some);
+            }
+            cold.clone_from(step);
+        }
+    }
+    Ok(None)
+}
+
+/// Between a step at which none is lost and one at which some are.
+fn narrowed(
+    [mut cold, mut hot]: [Rational; 2],
+    mut aperture: f64,
+    period: f64,
+    below: impl Fn(&Rational) -> Result<Option<f64>>,
+) -> Result<Edge> {
+    for _ in 0..HALVINGS {
+        let middle = (&cold + &hot) / Rational::from_integer(2.into());
+        match below(&middle)? {
+            Some(found) => (hot, aperture) = (middle, found),
+            None => cold = middle,
+        }
+    }
+    Ok(Edge { share: (to_f64(&cold) / period).next_down(), aperture })
 }

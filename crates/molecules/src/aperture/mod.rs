@@ -31,7 +31,7 @@ mod map;
 mod search;
 
 pub use bond::{Bond, Shape};
-pub use cold::Cold;
+pub use cold::{Cold, Edge, KINDS, Kind};
 pub use kernel::{FAR, PHASES};
 pub use map::{Map, Stage, squared_frequency};
 pub use search::{EARLY, LATE, Measurement, Resonance, Step, energies_seen, hottest_of, rungs, thermal};

@@ -3,11 +3,11 @@
 use super::words::{Choice, cap, down, length, named, nearest, percent, within};
 use crate::report::decimal::few;
 use crate::report::friction;
-use molecules::aperture::Cold;
+use molecules::aperture::{Cold, Edge};
 use molecules::engine::{Engine, Reading, nested_beside, not_nested};
 use molecules::unit::{TimeUnit, decimal};
 use molecules::{
-    Advice, Answer, Beads, Bound, FAST, GROMPP, Mode, Origin, PRACTICE, Pair, Place, Row, SLOW, Scheme,
+    Advice, Answer, Beads, Bound, FAST, GROMPP, Mode, Origin, PRACTICE, Pair, Place, Row, SEEN, SLOW, Scheme,
     Status, Typical, Unstable, shortest_of,
 };
 use number::Rational;
@@ -318,6 +318,11 @@ pub(super) fn published(
     )
 }
 
+/// What runs show beside what is published of several clocks.
+pub(super) fn seen(steps: usize) -> Option<String> {
+    (steps > 1).then(|| format!("  measured   {SEEN}"))
+}
+
 pub(super) fn friction(rate: &Rational, unit: TimeUnit) -> String {
     let rate = unit.rate(decimal(&(rate * Rational::from_integer(unit.in_rates().into()))));
     format!(
@@ -356,20 +361,20 @@ fn ring(beads: &Beads) -> String {
     }
 }
 
-/// Up to which step of its own a bond of a known shape stays.
-fn measured(advice: &Advice, name: &str, cold: Option<&Cold>) -> String {
-    let Some(Cold { share, aperture, level, temperature }) = cold else {
-        return format!("  measured   {name}: hot bonds stay up to the limit of small oscillations");
+/// Up to which step of its own a bond of a known shape stays, by a kind of scheme.
+fn measured(advice: &Advice, cold: &Cold) -> String {
+    let Cold { name, kind, first, level, temperature } = cold;
+    let start = format!("  measured   {name} at {} K by {}:", decimal(temperature), kind.names);
+    let Some(Edge { share, aperture }) = first else {
+        return format!("{start} hot bonds stay up to the limit of small oscillations");
     };
-    let mode = advice.modes.iter().find(|mode| mode.name == name);
+    let mode = advice.modes.iter().find(|mode| mode.name == *name);
     let at = mode.map_or_else(String::new, |mode| {
         let (lo, hi) = mode.period();
         format!(" = {}", advice.unit.of(nearest((lo * share, hi * share), 4)))
     });
     format!(
-        "  measured   {name} at {} K: from T/{}{at} on velocity Verlet loses bonds of {aperture} kT, and about one of all is as hot as {} kT \
-         (kickdrift aperture)",
-        decimal(temperature),
+        "{start} from T/{}{at} on bonds of {aperture} kT are lost, and about one of all is as hot as {} kT (kickdrift aperture)",
         few(share.recip(), 4),
         few(*level, 3)
     )
@@ -410,7 +415,9 @@ fn reasons(advice: &Advice) -> Vec<String> {
         if unit == TimeUnit::Plain { own.replace(&format!(": {PRACTICE}"), "") } else { own }
     };
     lines.extend((!advice.lacks_fast).then(limits));
-    lines.extend(advice.cold.iter().map(|(name, cold)| measured(advice, name, cold.as_ref())));
+    let is_of_molecules = !advice.lacks_fast && unit == TimeUnit::Femtoseconds;
+    lines.extend(seen(answer.scheme.steps().len()).filter(|_| is_of_molecules));
+    lines.extend(advice.cold.iter().map(|cold| measured(advice, cold)));
     lines.push(format!("  unknown    {}", unknown(advice)[0]));
     lines.extend(advice.beads.as_ref().map(ring));
     lines.extend(advice.harmonic.then(|| {

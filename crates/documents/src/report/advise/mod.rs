@@ -14,7 +14,7 @@ use super::record::Record;
 use super::table::{Cell, Column, Table};
 use serde_json::Value;
 
-use molecules::aperture::Cold;
+use molecules::aperture::{Cold, Edge};
 use molecules::engine::Reading;
 use molecules::unit::{TimeUnit, decimal};
 use molecules::{Advice, Answer, Caution, DirectFindings, Findings, Mode, Pair, Row, Unstable};
@@ -124,15 +124,15 @@ fn mode_table(advice: &Advice) -> Table {
         .table("modes", &caption, &advice.modes)
 }
 
-/// The record of a bond of a known shape.
-fn cold_record() -> Record<'static, (String, Option<Cold>)> {
-    type Named = (String, Option<Cold>);
-    let of = |find: fn(&Cold) -> f64| move |(_, cold): &Named| cold.as_ref().map(find).into();
+/// The record of a bond of a known shape, by a kind of scheme.
+fn cold_record() -> Record<'static, Cold> {
+    let of = |find: fn(&Edge) -> f64| move |cold: &Cold| cold.first.as_ref().map(find).into();
     Record::new()
-        .field(Column::new("mode"), |(name, _): &Named| name.as_str().into())
-        .field(Column::new("share"), of(|cold| cold.share))
-        .field(Column::new("aperture"), of(|cold| cold.aperture))
-        .field(Column::new("level"), of(|cold| cold.level))
+        .field(Column::new("mode"), |cold: &Cold| cold.name.as_str().into())
+        .field(Column::new("method"), |cold| cold.kind.method.into())
+        .field(Column::new("share"), of(|edge| edge.share))
+        .field(Column::new("aperture"), of(|edge| edge.aperture))
+        .field(Column::new("level"), |cold| cold.level.into())
 }
 
 fn scheme_table(advice: &Advice) -> Table {

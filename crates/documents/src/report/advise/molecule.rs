@@ -17,7 +17,7 @@ use systems::levels::Growing;
 /// The document `kickdrift/advise-system/1`.
 pub(super) fn document(findings: &Findings, reading: Option<&Reading>, notes: &[String]) -> Document {
     let removed = findings.removed.as_ref();
-    let fastest = &findings.groups[0];
+    let fastest = &findings.fastest;
     let (groups, rows, intervals) = (groups(findings), rows(findings), intervals(findings));
     let (best, between) = (&findings.schemes[0], &findings.between);
     let document = Document::new("advise-system")
@@ -60,7 +60,7 @@ fn advised_step(finding: &Finding) -> Option<&Rational> {
 }
 
 fn summary(findings: &Findings, reading: Option<&Reading>, notes: &[String]) -> Vec<String> {
-    let (best, fastest) = (&findings.schemes[0], &findings.groups[0]);
+    let (best, fastest) = (&findings.schemes[0], &findings.fastest);
     let period = fastest.period.0;
     let name = named(fastest);
     let band = percent(&findings.band);
@@ -91,6 +91,7 @@ fn summary(findings: &Findings, reading: Option<&Reading>, notes: &[String]) -> 
     lines.push(lines::published(&name, best.scheme.steps().len(), inner, |place| {
         unit.of(rounded(period / place.parts(), 4))
     }));
+    lines.extend(lines::seen(best.scheme.steps().len()));
     lines.extend((2..).zip(&findings.between).map(|(level, value)| between(level, *value)));
     lines.extend((best.scheme.steps().len() > 1).then(|| slow(findings.slow)));
     lines.push(format!("  unknown    {}", UNKNOWN[0]));
@@ -134,7 +135,7 @@ fn limit(name: &str, findings: &Findings, finding: &Finding) -> String {
     let first = finding.first.map_or_else(String::new, |(lo, hi)| {
         format!("; the first unstable outer step is {} fs (proven)", nearest((lo, hi), 4))
     });
-    let period = findings.groups[0].period.0;
+    let period = findings.fastest.period.0;
     match findings.caps.outer().map(|(cap, bound)| (self::cap(cap, TimeUnit::Femtoseconds), bound)) {
         Some((_, Bound::Third)) => {
             format!(
@@ -232,7 +233,7 @@ fn not_below(findings: &Findings, finding: &Finding) -> String {
             self::cap(cap, unit)
         );
     }
-    let third = || unit.of(rounded(findings.groups[0].period.0 / 3.0, 3));
+    let third = || unit.of(rounded(findings.fastest.period.0 / 3.0, 3));
     match findings.caps.outer() {
         Some((_, Bound::Third)) => format!("not below T/3 = {}", third()),
         Some((cap, bound)) => format!("not below {} = {}", bound.name(), self::cap(cap, unit)),

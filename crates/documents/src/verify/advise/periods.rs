@@ -3,7 +3,9 @@
 use num_traits::One;
 
 use super::mass::{BITS, Mass, exact};
+use crate::verify::aperture::Plain;
 use crate::verify::context::{Checked, Context, Outcome, holds, located, same};
+use molecules::aperture::Cold;
 use molecules::{Advice, Answer, Mode, Pair, Row, Scheme, Status};
 use number::error::Result;
 use number::rational::to_f64;
@@ -31,6 +33,7 @@ impl Periods<'_> {
             located(format!("scheme {number}"), self.scheme(answer))?;
             answer.pairs.iter().try_for_each(|pair| self.pair(pair, &answer.scheme))?;
         }
+        self.advice.cold.iter().try_for_each(|cold| located(&cold.name, self.cold(cold)))?;
         let levers = self.advice.levers.iter().flat_map(|levers| &levers.rows);
         levers.into_iter().try_for_each(|lever| located(&lever.name, self.lever(lever)))
     }
@@ -110,18 +113,29 @@ impl Periods<'_> {
         }
         self.advice.modes.iter().filter(|mode| mode.clock == Some(clock)).all(|mode| {
             let stiffness = mode.stiffness.enclosure(BITS);
-            match self.advice.cold.iter().find(|(name, _)| *name == mode.name) {
-                None => self.advice.harmonic || is_below_one(&stiffness, step),
-                // h below T (1 - band) share, that is h w/(2 π (1 - band) share) below 1.
-                Some((_, Some(cold))) => {
-                    let part = Ball::from_rational(&(exact(cold.share) * self.shorter()), BITS);
-                    let turn = Ball::pi(BITS).scale2(1).mul(&part, BITS);
-                    let scaled = stiffness.div(&turn.square(BITS), BITS);
-                    scaled.is_some_and(|scaled| is_below_one(&scaled, step))
-                }
-                Some((_, None)) => true,
+            let mut cold = self.advice.cold.iter().filter(|cold| cold.name == mode.name).peekable();
+            if cold.peek().is_none() {
+                return self.advice.harmonic || is_below_one(&stiffness, step);
             }
+            // h below share T, that is h w/(2 π share) below 1.
+            cold.filter_map(|cold| cold.first).all(|edge| {
+                let share = Ball::from_rational(&exact(edge.share), BITS);
+                let turn = Ball::pi(BITS).scale2(1).mul(&share, BITS);
+                let scaled = stiffness.div(&turn.square(BITS), BITS);
+                scaled.is_some_and(|scaled| is_below_one(&scaled, step))
+            })
         })
+    }
+
+    /// Where a bond of a known shape begins to be too hot, letter by letter.
+    fn cold(&self, cold: &Cold) -> Checked {
+        let bond = self.advice.modes.iter().find(|mode| mode.name == cold.name);
+        let word = words::method(cold.kind.method)?.word();
+        let plain = bond
+            .and_then(|mode| mode.shape.as_ref())
+            .map(|bond| Plain::of(bond, &word, &cold.temperature, None));
+        holds(plain.is_some(), || "it has no shape".into())?;
+        plain.map_or(Ok(()), |plain| plain.begins(cold.first.as_ref(), cold.level))
     }
 
     /// That the band's corner is in the first region at `largest`, and not at the next multiple; and `safe`
