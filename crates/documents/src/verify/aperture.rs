@@ -16,7 +16,7 @@ const ROUTE: &str = "the word run letter by letter, phase by phase: no start is 
 impl Verify for Aperture {
     fn check(&self, measured: &Measured, context: &Context) -> Result<Outcome> {
         let plain = Plain::of(self)?;
-        context.each(ROUTE, Ok(()), &measured.steps, |step| plain.holds(step))
+        context.outcome(ROUTE, Ok(()), &measured.steps, |step| plain.holds(step))
     }
 }
 
