@@ -3,6 +3,7 @@
 use serde_json::{Map, Value};
 
 use crate::report::document::Document;
+use crate::report::shape::{Keys, Schema};
 use crate::report::text::quoted;
 use clocks::tongue::Progress;
 use clocks::verdict::Limits;
@@ -23,7 +24,7 @@ macro_rules! question {
             $($(#[doc = $help])* #[arg($($arg)* $(, default_value = $default)?)] pub $field: $type,)*
         }
 
-        $crate::question::question!(@fields $Name $($field: $type $(= $default)?,)*);
+        $crate::question::question!(@fields $Name $($(#[doc = $help])* $field: $type $(= $default)?,)*);
     };
     (
         $(#[$meta:meta])*
@@ -35,11 +36,20 @@ macro_rules! question {
             $($(#[doc = $help])* pub $field: $type,)*
         }
 
-        $crate::question::question!(@fields $Name $($field: $type $(= $default)?,)*);
+        $crate::question::question!(@fields $Name $($(#[doc = $help])* $field: $type $(= $default)?,)*);
     };
-    (@fields $Name:ident $($field:ident: $type:ty $(= $default:literal)?,)*) => {
+    (@fields $Name:ident $($(#[doc = $help:literal])* $field:ident: $type:ty $(= $default:literal)?,)*) => {
         impl $crate::question::Fields for $Name {
             const FIELDS: &'static [&'static str] = &[$(stringify!($field)),*];
+
+            fn keys() -> $crate::report::shape::Keys {
+                $crate::report::shape::Keys::new()$(.with(
+                    stringify!($field),
+                    <$type as $crate::question::Field>::SHAPE,
+                    concat!($($help),*).trim(),
+                    <$type as $crate::question::Field>::IS_REQUIRED,
+                ))*
+            }
 
             fn read(input: &serde_json::Map<String, serde_json::Value>) -> number::error::Result<Self> {
                 $crate::question::field::known(input, Self::FIELDS)?;
@@ -67,6 +77,9 @@ pub trait Fields: Sized {
     /// Their names, as documents have them.
     const FIELDS: &'static [&'static str];
 
+    /// The same as keys of `input`, with what they may be.
+    fn keys() -> Keys;
+
     /// Reads the `input` of a document.
     ///
     /// # Errors
@@ -92,6 +105,11 @@ pub trait Question: Fields {
     /// # Errors
     /// A question out of range, one that costs more than `work` allows, and whatever the library refuses.
     fn answer(&self, work: &Work) -> Result<Self::Answer>;
+
+    /// What its documents are, for their schema; `None` where that is kept by hand.
+    fn schema() -> Option<Schema> {
+        None
+    }
 
     /// The answer in a document that lacks its `input`.
     fn show(&self, answer: &Self::Answer) -> Document;

@@ -3,7 +3,8 @@
 use super::asking::{Question, Work, question};
 use super::field::StepRange;
 use crate::report::document::Document;
-use crate::report::map::{MapTally, document};
+use crate::report::map::{self as map_report, MapTally, document};
+use crate::report::shape::Schema;
 use clocks::map::{self, Band, Grid, Products, Resources, Shard};
 use number::Laurent;
 use number::error::{Error, Result};
@@ -95,6 +96,10 @@ impl Map {
 impl Question for Map {
     const NAME: &'static str = "map";
     type Answer = MapTally;
+
+    fn schema() -> Option<Schema> {
+        Some(map_report::schema())
+    }
 
     fn answer(&self, work: &Work) -> Result<MapTally> {
         let (grid, mut tally) = (self.grid()?, MapTally::default());
