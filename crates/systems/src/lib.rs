@@ -83,6 +83,7 @@ pub use model::{Body, MeasuredLevels, MeasuredSystem, Model, Number, Oscillator,
 pub use pi::{BesidePi, PiPotential, beside_pi};
 pub use single::clocks::{ManyClocks, families, shortest_families, shortest_family};
 pub use single::decide::decide_oscillator;
+pub use spectrum::dense::{eigen, symmetric_eigenvalues};
 pub use spectrum::modes::{Origin, Resonance};
 pub use spectrum::rate::{Multiplier, middle};
 pub use vary::{edges, nearest, scan, stretches};

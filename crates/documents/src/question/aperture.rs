@@ -7,6 +7,7 @@ use super::asking::{Question, Work, question};
 use super::field::{flag, notation};
 use crate::report::aperture as report;
 use crate::report::document::Document;
+use crate::report::shape::Schema;
 use molecules::aperture::{Bond, Measured, Measurement, energies_seen, hottest_of};
 use molecules::unit::{self, Dimension};
 use number::Rational;
@@ -201,6 +202,11 @@ impl Question for Aperture {
         "aperture --bond OH:morse:D=116kcal/mol,a=2.287/A,15.999,1.008 --substeps 4 --slow 40fs --steps 8fs",
     ];
     type Answer = Measured;
+
+    fn schema() -> Option<Schema> {
+        let title = "How hot a bond may be at each step before the method throws it out: a measurement in doubles, no proof";
+        Some(Schema::new(title, report::keys()))
+    }
 
     fn answer(&self, work: &Work) -> Result<Measured> {
         let (measurement, all) = (self.measurement()?, self.all_steps()?);

@@ -3,6 +3,7 @@
 use serde_json::{Map, Value};
 
 use crate::report::document::Document;
+use crate::report::shape::{Keys, Schema};
 use crate::report::text::quoted;
 use clocks::tongue::Progress;
 use clocks::verdict::Limits;
@@ -27,7 +28,7 @@ macro_rules! question {
             $($(#[doc = $help])* #[arg($($arg)* $(, default_value = $default)?)] pub $field: $type,)*
         }
 
-        $crate::question::question!(@fields $Name $($field: $type $(| $other)* $(= $default)?,)*);
+        $crate::question::question!(@fields $Name $($(#[doc = $help])* $field: $type $(| $other)* $(= $default)?,)*);
     };
     (
         $(#[$meta:meta])*
@@ -39,12 +40,21 @@ macro_rules! question {
             $($(#[doc = $help])* pub $field: $type,)*
         }
 
-        $crate::question::question!(@fields $Name $($field: $type $(= $default)?,)*);
+        $crate::question::question!(@fields $Name $($(#[doc = $help])* $field: $type $(= $default)?,)*);
     };
-    (@fields $Name:ident $($field:ident: $type:ty $(| $other:ident)* $(= $default:literal)?,)*) => {
+    (@fields $Name:ident $($(#[doc = $help:literal])* $field:ident: $type:ty $(| $other:ident)* $(= $default:literal)?,)*) => {
         impl $crate::question::Fields for $Name {
             const FIELDS: &'static [&'static str] = &[$(stringify!($field)),*];
             const OTHER_NAMES: &'static [&'static [&'static str]] = &[$(&[$(stringify!($other)),*]),*];
+
+            fn keys() -> $crate::report::shape::Keys {
+                $crate::report::shape::Keys::new()$(.with(
+                    stringify!($field),
+                    <$type as $crate::question::Field>::SHAPE,
+                    concat!($($help),*).trim(),
+                    <$type as $crate::question::Field>::IS_REQUIRED,
+                ))*
+            }
 
             fn read(input: &serde_json::Map<String, serde_json::Value>) -> number::error::Result<Self> {
                 use $crate::question::field;
@@ -85,6 +95,9 @@ pub trait Fields: Sized {
     /// for the spacings of both steps.
     const OTHER_NAMES: &'static [&'static [&'static str]];
 
+    /// The same as keys of `input`, with what they may be.
+    fn keys() -> Keys;
+
     /// Reads the `input` of a document.
     ///
     /// # Errors
@@ -112,6 +125,11 @@ pub trait Question: Fields {
     /// # Errors
     /// A question out of range, one that costs more than `work` allows, and whatever the library refuses.
     fn answer(&self, work: &Work) -> Result<Self::Answer>;
+
+    /// What its documents are, for their schema; `None` where that is kept by hand.
+    fn schema() -> Option<Schema> {
+        None
+    }
 
     /// The answer in a document that lacks its `input`.
     fn show(&self, answer: &Self::Answer) -> Document;

@@ -8,6 +8,7 @@ use super::field::StepRange;
 use super::field::flag;
 use crate::report::bands;
 use crate::report::document::Document;
+use crate::report::shape::Schema;
 use clocks::band::{self, Window};
 use number::error::{Error, Result};
 use number::{Laurent, Rational};
@@ -60,6 +61,11 @@ impl Question for Bands {
         "bands --lambda1 pi^2 --lambda2 pi^2/25 --h1-range 0..2/pi --h2-range 0..7/2 --area 3/50 --output bands.png",
     ];
     type Answer = band::Bands;
+
+    fn schema() -> Option<Schema> {
+        let title = "Sectors of steps in which every ratio h2/h1, rational or not, is unstable";
+        Some(Schema::new(title, bands::keys()))
+    }
 
     fn answer(&self, work: &Work) -> Result<band::Bands> {
         let most = work.budget.unwrap_or(MOST_SECTORS);

@@ -6,6 +6,9 @@ use super::ratios::Ratios;
 use crate::report::decimal::outward;
 use crate::report::document::Document;
 use crate::report::record::Record;
+use crate::report::shape::{
+    DECIMAL, FLAG, GROUP, Keys, POSITIVE, POSITIVE_ENCLOSURE, RATIONAL_OR_NULL, Schema, Shape,
+};
 use crate::report::table::{Cell, Column};
 use clocks::tongue::{self, Closing, Enclosure, Found, Labels, Search};
 use number::error::{Error, Result};
@@ -87,6 +90,23 @@ impl Question for Closings {
     const USAGE: Option<&'static str> = Some("(--ratio <P/Q> | --max-sum <N>)");
     type Answer = Vec<Found>;
 
+    fn schema() -> Option<Schema> {
+        let says = "By p + q, p, m, rho. The box s x rho holds exactly one common zero of the two entries, and it is this tongue's.";
+        let body = Keys::new().key("closings", Shape::List(&Shape::Object(closing_keys)), says).key(
+            "ratios",
+            Shape::List(&Shape::Object(|| ratio_record().keys())),
+            "The ratios searched.",
+        );
+        let title =
+            "Closed tongues: pairs (s, rho) at which both edges of a tongue are one point and Q = I or -I";
+        // One ratio or all up to a sum, and a range of rho above 0.
+        let rules = r#"{"allOf": [{"properties": {"input": {
+            "oneOf": [{"required": ["ratio"]}, {"required": ["max_sum"]}],
+            "properties": {"rho_range": {"pattern": "^[0-9/]+[.][.][0-9/]+$"}}
+        }}}]}"#;
+        Some(Schema::new(title, body).rules(rules))
+    }
+
     fn answer(&self, work: &Work) -> Result<Vec<Found>> {
         let ratios = self.ratios()?;
         if matches!(ratios, Ratios::UpTo(_)) && self.m.is_some() {
@@ -121,21 +141,34 @@ impl Question for Closings {
         let ((lo, hi), digits) = (&self.rho_range, self.digits);
         let what = format!("{}, rho in {lo}..{hi}", self.words());
         let closings = || found.iter().flat_map(|found| &found.closings);
-        let ratios = Record::new()
-            .json("p", |found: &Found| found.ratio.p().into())
-            .json("q", |found| found.ratio.q().into())
-            .json("complete", |found| found.complete.into());
         let table = |short| {
             let record = record(digits, short);
             record.table("closings", "Closed tongues: Q = I or -I", closings()).captioned(CAPTION)
         };
         Document::new(Self::NAME)
             .entry("closings", record(digits, false).all(closings()))
-            .entry("ratios", ratios.all(found))
+            .entry("ratios", ratio_record().all(found))
             .long_rows(table(false))
             .for_people(table(true))
             .summary(&lines(found, &what))
     }
+}
+
+/// The entries of a ratio.
+fn ratio_record() -> Record<'static, Found> {
+    Record::new()
+        .json("p", |found: &Found| found.ratio.p().into())
+        .says(POSITIVE, "Fast kicks a period: h2/h1 = p/q in lowest terms.")
+        .json("q", |found| found.ratio.q().into())
+        .says(POSITIVE, "Slow kicks a period.")
+        .json("complete", |found| found.complete.into())
+        .says(FLAG, "Whether elimination proves that the range of rho holds no others; false says nothing.")
+}
+
+/// The keys of a closing.
+fn closing_keys() -> Keys {
+    let keys = ["s.decimal", "rho.decimal"].into_iter();
+    keys.fold(record(DIGITS, false).keys(), |keys, path| keys.key(path, GROUP, "Decimals around the value."))
 }
 
 /// s or ρ of a closing: its enclosure, and its value where that is rational.
@@ -145,13 +178,18 @@ type Side = fn(&Closing) -> (&Enclosure, Option<&Rational>);
 fn record(digits: u32, short: bool) -> Record<'static, Closing> {
     let mut record = Record::new()
         .field(Column::math("p", "p"), |closing: &Closing| closing.ratio.p().into())
+        .says(POSITIVE, "Fast kicks a period: h2/h1 = p/q in lowest terms.")
         .field(Column::math("q", "q"), |closing| closing.ratio.q().into())
-        .field(Column::math("m", "m"), |closing| closing.m.into());
-    let sides: [(&str, &str, Side); 2] = [
-        ("s", "s", |closing| (&closing.s, closing.exact.as_ref().map(|(s, _)| s))),
-        ("rho", "\\rho", |closing| (&closing.rho, closing.exact.as_ref().map(|(_, rho)| rho))),
+        .says(POSITIVE, "Slow kicks a period.")
+        .field(Column::math("m", "m"), |closing| closing.m.into())
+        .says(POSITIVE, "The tongue's label.");
+    let sides: [(&str, &str, &str, Side); 2] = [
+        ("s", "s", "s = h1^2 lambda1.", |closing| (&closing.s, closing.exact.as_ref().map(|(s, _)| s))),
+        ("rho", "\\rho", "rho = lambda2/lambda1.", |closing| {
+            (&closing.rho, closing.exact.as_ref().map(|(_, rho)| rho))
+        }),
     ];
-    for (key, formula, side) in sides {
+    for (key, formula, says, side) in sides {
         let column = Column::math(key, formula).enclosure();
         let exact = move |closing: &Closing| side(closing).1.map(Cell::exact).unwrap_or(Cell::Missing);
         let enclosed = move |closing: &Closing| Cell::from(side(closing).0.to_f64());
@@ -169,16 +207,21 @@ fn record(digits: u32, short: bool) -> Record<'static, Closing> {
         let titled = |part: &str, title: &str| Column::new(&format!("{key}_{part}")).titled(title, title);
         record = record
             .field(column, enclosed)
-            .at(format!("{key}.exact"), titled("exact", "exact"), exact)
-            .at(format!("{key}.decimal.lo"), titled("decimal_lo", "lo"), move |closing| {
+            .says(POSITIVE_ENCLOSURE, says)
+            .at(&format!("{key}.exact"), titled("exact", "exact"), exact)
+            .says(RATIONAL_OR_NULL, "The value, where s and rho are rational.")
+            .at(&format!("{key}.decimal.lo"), titled("decimal_lo", "lo"), move |closing| {
                 Cell::exact(&ends(closing)[0])
             })
-            .at(format!("{key}.decimal.hi"), titled("decimal_hi", "hi"), move |closing| {
+            .says(DECIMAL, "Not above the value.")
+            .at(&format!("{key}.decimal.hi"), titled("decimal_hi", "hi"), move |closing| {
                 Cell::exact(&ends(closing)[1])
-            });
+            })
+            .says(DECIMAL, "Not below the value.");
     }
     record
         .field(Column::new("below_verlet").titled("s < 4", "$s < 4$"), |closing| closing.below_verlet.into())
+        .says(FLAG, "Whether s < 4, the fast clock's Verlet limit.")
 }
 
 fn lines(found: &[Found], what: &str) -> Vec<String> {

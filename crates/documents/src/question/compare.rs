@@ -6,6 +6,7 @@ use super::map::Map;
 use super::ratios::{MOST_SUM, Ratios};
 use crate::report::document::Document;
 use crate::report::record::Record;
+use crate::report::shape::{COUNT, EXACT, GROUP, KIND, POSITIVE, Schema, Shape, WIDE_ENCLOSURE};
 use crate::report::table::{Cell, Column};
 use clocks::map::Grid;
 use clocks::resonance::compare::{Comparison, Comparisons, Offender, Tally, compare_ratios};
@@ -113,6 +114,33 @@ impl Question for Compare {
     );
     type Answer = Comparisons;
 
+    fn schema() -> Option<Schema> {
+        let body = counts()
+            .keys()
+            .key(
+                "tan",
+                GROUP,
+                "Pairs at which the tan criterion and the trace condition give one verdict, and others.",
+            )
+            .key(
+                "resonance",
+                GROUP,
+                "The rule `unstable whenever q h2 is near a multiple of T_half` against the trace condition.",
+            )
+            .key(
+                "offenders",
+                OFFENDERS,
+                "The pairs at which a prediction is wrong, in the order of the grid or of the ratios.",
+            );
+        let title = "The trace condition against the tan criterion and against nearness to a resonance";
+        // Either a grid of steps for one oscillator, or all coprime p + q up to a sum for one rho.
+        let rules = r#"{"allOf": [{"properties": {"input": {"oneOf": [
+            {"required": ["lambda1", "lambda2", "step1", "step2", "h1_range", "h2_range"], "properties": {"max_sum": false, "rho": false, "samples": false}},
+            {"required": ["max_sum", "rho", "samples"], "properties": {"lambda1": false, "lambda2": false, "step1": false, "step2": false, "h1_range": false, "h2_range": false}}
+        ]}}}]}"#;
+        Some(Schema::new(title, body).rules(rules))
+    }
+
     fn answer(&self, work: &Work) -> Result<Comparisons> {
         match self.pairs()? {
             Over::Grid(grid) => grid.compare(&self.tolerance, &work.limits()),
@@ -125,16 +153,8 @@ impl Question for Compare {
     fn show(&self, answer: &Comparisons) -> Document {
         let places = if self.max_sum.is_some() { ["s", "rho"] } else { ["h1", "h2"] };
         let Comparisons { tally, offenders } = answer;
-        Document::new(Self::NAME)
-            .entry("pairs", tally.pairs)
-            .entry("unstable", tally.unstable)
-            .entry("tan.agree", tally.tan_agree)
-            .entry("tan.disagree", tally.tan_disagree)
-            .entry("resonance.hits", tally.hits)
-            .entry("resonance.quiet", tally.quiet)
-            .entry("resonance.misses", tally.misses)
-            .entry("resonance.false_alarms", tally.false_alarms)
-            .entry("resonance.beyond_verlet", tally.beyond_verlet)
+        counts()
+            .document(Document::new(Self::NAME), tally)
             .rows(
                 record(places)
                     .table("offenders", "Pairs at which a prediction is wrong", offenders)
@@ -148,6 +168,35 @@ impl Question for Compare {
         self.show(answer).inputs(Compare { samples: self.samples(), ..self.clone() }.input())
     }
 }
+
+/// The counts of a comparison.
+fn counts() -> Record<'static, Tally> {
+    Record::new()
+        .json("pairs", |tally: &Tally| tally.pairs.into())
+        .says(COUNT, "The pairs that were compared.")
+        .json("unstable", |tally| tally.unstable.into())
+        .says(COUNT, "By the trace condition.")
+        .json("tan.agree", |tally| tally.tan_agree.into())
+        .says(COUNT, "")
+        .json("tan.disagree", |tally| tally.tan_disagree.into())
+        .says(COUNT, "")
+        .json("resonance.hits", |tally| tally.hits.into())
+        .says(COUNT, "Unstable and near.")
+        .json("resonance.quiet", |tally| tally.quiet.into())
+        .says(COUNT, "Stable and away.")
+        .json("resonance.misses", |tally| tally.misses.into())
+        .says(COUNT, "Unstable but away.")
+        .json("resonance.false_alarms", |tally| tally.false_alarms.into())
+        .says(COUNT, "Stable but near.")
+        .json("resonance.beyond_verlet", |tally| tally.beyond_verlet.into())
+        .says(COUNT, "s = h1^2 lambda1 >= 4: there is no T_half.")
+}
+
+/// Offenders of a grid, or of ratios.
+const OFFENDERS: Shape = Shape::List(&Shape::Any(&[
+    Shape::Object(|| record(["h1", "h2"]).keys()),
+    Shape::Object(|| record(["s", "rho"]).keys()),
+]));
 
 fn lines(tally: &Tally, tolerance: &Rational) -> Vec<String> {
     let Tally { pairs, unstable, tan_agree, hits, quiet, misses, false_alarms, beyond_verlet, .. } = tally;
@@ -170,23 +219,32 @@ fn record(places: [&str; 2]) -> Record<'static, Offender> {
     let nearest = |offender: &Offender| offender.comparison.nearest.clone();
     Record::new()
         .field(first, |offender: &Offender| Cell::exact(&offender.place[0]))
+        .says(EXACT, "")
         .field(second, |offender| Cell::exact(&offender.place[1]))
+        .says(EXACT, "")
         .field(Column::math("p", "p"), |offender| offender.ratio.p().into())
+        .says(POSITIVE, "Fast kicks a period: h2/h1 = p/q in lowest terms.")
         .field(Column::math("q", "q"), |offender| offender.ratio.q().into())
+        .says(POSITIVE, "Slow kicks a period.")
         .field(Column::new("offence").left(), |offender| offence(&offender.comparison).into())
+        .says(Shape::OneOf(&["miss", "false alarm", "tan"]), "Which prediction is wrong, and how.")
         .field(Column::new("kind").left().aside(), |offender| {
             offender.comparison.trace.verdict.kind().name().into()
         })
+        .says(KIND, "By the trace condition.")
         .field(Column::new("tan").in_words("tan criterion").left().aside(), |offender| {
             offender.comparison.tan.kind().name().into()
         })
+        .says(KIND, "By the tan criterion.")
         .field(Column::new("m").titled("nearest m", "nearest $m$"), move |offender| {
             nearest(offender).map(|n| n.m).into()
         })
+        .says(Shape::OrNull(&COUNT), "The multiple of T_half that q h2 is nearest to, 0 being no resonance; null where there is no T_half.")
         .field(
             Column::new("distance").titled("q h2/T½ - m", "$q h_2/T_{1/2} - m$").enclosure(),
             move |offender| nearest(offender).map(|n| n.distance.to_f64_enclosure()).into(),
         )
+        .says(Shape::OrNull(&WIDE_ENCLOSURE), "q h2/T_half - m; null where there is no T_half.")
 }
 
 fn offence(comparison: &Comparison) -> &'static str {

@@ -7,6 +7,7 @@ use super::field::StepRange;
 use super::field::flag;
 use crate::report::document::Document;
 use crate::report::record::Record;
+use crate::report::shape::{COUNT, INTEGER, Keys, ROUNDED, Schema, Shape};
 use crate::report::table::{Column, Table};
 use clocks::resonance::{Curve, CurvePoint, Families, Window};
 use number::error::{Error, Result};
@@ -48,6 +49,13 @@ impl Question for Curves {
         &["curves --lambda1 pi^2 --a 0..1 --b 1..3 --samples 20 --format csv"];
     type Answer = Vec<Curve>;
 
+    fn schema() -> Option<Schema> {
+        let says = "The curves that pass through the window, by a, then b.";
+        let body = Keys::new().key("curves", Shape::List(&Shape::Object(curve_keys)), says);
+        let title = "The (a, b) families of resonance curves 1/T_half = a/h1 + b/h2, sampled";
+        Some(Schema::new(title, body))
+    }
+
     fn answer(&self, _: &Work) -> Result<Vec<Curve>> {
         for (field, (lo, hi)) in [("h1-range", &self.h1_range), ("h2-range", &self.h2_range)] {
             if hi.sign() != Sign::Positive {
@@ -78,18 +86,42 @@ fn points(curve: &Curve) -> impl Iterator<Item = Point<'_>> {
     pieces.flat_map(move |(i, piece)| piece.iter().map(move |point| (curve, i, point)))
 }
 
+const STEP: Shape = Shape::With(&ROUNDED, r#"{"exclusiveMinimum": 0}"#);
+const SHARE: Shape = Shape::With(&ROUNDED, r#"{"exclusiveMinimum": 0, "exclusiveMaximum": 1}"#);
+
 /// The columns of a point, behind those of its curve.
 fn place<'a>(record: Record<'a, Point<'a>>) -> Record<'a, Point<'a>> {
     record
         .field(Column::math("h1", "h_1"), |(_, _, point)| point.h1.into())
+        .says(STEP, "A double; h2 and theta_over_pi are the doubles nearest to the curve there, so theta/pi = a + b h1/h2 holds to 2^-53 (|a| + 2).")
         .field(Column::math("h2", "h_2"), |(_, _, point)| point.h2.into())
+        .says(STEP, "As h1.")
         .field(Column::new("theta_over_pi").titled("theta/pi", "$\\theta/\\pi$"), |(_, _, point)| {
             point.theta_over_pi.into()
         })
+        .says(SHARE, "theta/pi = h1/T_half as a double, as h1.")
+}
+
+/// The entries of a point.
+fn point_record<'a>() -> Record<'a, Point<'a>> {
+    place(Record::new()).field(Column::new("piece"), |(_, piece, _)| (*piece as u64).into()).says(
+        COUNT,
+        "Points of one piece are joined by a line; where the curve leaves the window a new piece begins.",
+    )
+}
+
+fn curve_keys() -> Keys {
+    const POINTS: Shape =
+        Shape::With(&Shape::List(&Shape::Object(|| point_record().keys())), r#"{"minItems": 1}"#);
+    Keys::new().key("a", INTEGER, "a of the curve.").key("b", INTEGER, "b of the curve.").key(
+        "points",
+        POINTS,
+        "Points in the window, in their order along the curve.",
+    )
 }
 
 fn value(curve: &Curve) -> Value {
-    let record = place(Record::new()).field(Column::new("piece"), |(_, piece, _)| (*piece as u64).into());
+    let record = point_record();
     let points: Vec<Value> = points(curve).map(|point| record.entries(&point)).collect();
     json!({"a": curve.a, "b": curve.b, "points": points})
 }

@@ -3,6 +3,9 @@
 use num_traits::ToPrimitive;
 use serde_json::{Map, Value};
 
+use crate::report::shape::{
+    EXACT, INTEGERS, RANGE, RATIO, RATIONAL, RATIONAL_RANGE, SET, Shape, TEXT, WHOLE,
+};
 use clocks::map::Shard;
 use clocks::tongue::Labels;
 use number::error::{Error, Result};
@@ -11,6 +14,9 @@ use number::parse::{
 };
 use number::rational::to_f64;
 use number::{Laurent, Ratio, Rational};
+
+/// Labels of tongues as a text.
+const LABELS: Shape = Shape::Plain(r#"{"type": "string", "pattern": "^[0-9.,]+$"}"#);
 
 /// A closed range of steps.
 pub type StepRange = (Laurent, Laurent);
@@ -30,7 +36,7 @@ pub trait Notation: Sized {
 }
 
 macro_rules! notation {
-    ($($type:ty: $parse:expr, $show:expr;)*) => {
+    ($($type:ty: $parse:expr, $show:expr $(, $shape:expr)?;)*) => {
         $(
             impl $crate::question::Notation for $type {
                 fn parsed(field: &str, text: &str) -> number::error::Result<Self> {
@@ -39,6 +45,8 @@ macro_rules! notation {
             }
 
             impl $crate::question::field::Field for $type {
+                $(const SHAPE: $crate::report::shape::Shape = $shape;)?
+
                 fn of(given: Option<&serde_json::Value>, name: &str) -> Option<number::error::Result<Self>> {
                     given.map(|value| $crate::question::field::parsed(name, value))
                 }
@@ -53,23 +61,26 @@ macro_rules! notation {
 pub(super) use notation;
 
 notation! {
-    Rational: parse_rational, ToString::to_string;
-    Laurent: parse, ToString::to_string;
-    Ratio: parse_ratio, ToString::to_string;
-    (Laurent, Laurent): parse_range, shown_range;
-    (Rational, Rational): parse_rational_range, shown_range;
-    (i64, i64): parse_integer_range, shown_range;
-    u64: whole, ToString::to_string;
-    u32: whole, ToString::to_string;
-    usize: whole, ToString::to_string;
-    Labels: |_, text: &str| text.parse(), ToString::to_string;
-    Shard: |_, text: &str| text.parse(), ToString::to_string;
+    Rational: parse_rational, ToString::to_string, RATIONAL;
+    Laurent: parse, ToString::to_string, EXACT;
+    Ratio: parse_ratio, ToString::to_string, RATIO;
+    (Laurent, Laurent): parse_range, shown_range, RANGE;
+    (Rational, Rational): parse_rational_range, shown_range, RATIONAL_RANGE;
+    (i64, i64): parse_integer_range, shown_range, INTEGERS;
+    u64: whole, ToString::to_string, WHOLE;
+    u32: whole, ToString::to_string, WHOLE;
+    usize: whole, ToString::to_string, WHOLE;
+    Labels: |_, text: &str| text.parse(), ToString::to_string, LABELS;
+    Shard: |_, text: &str| text.parse(), ToString::to_string, RATIO;
     f64: |field: &str, text: &str| Ok(to_f64(&parse_rational(field, text)?)), ToString::to_string;
     String: |_, text: &str| Ok(text.to_string()), String::clone;
 }
 
 /// A flag, which is not there where it is not set.
 impl Field for bool {
+    const SHAPE: Shape = SET;
+    const IS_REQUIRED: bool = false;
+
     fn of(given: Option<&Value>, name: &str) -> Option<Result<Self>> {
         Some(match given {
             None | Some(Value::Bool(false)) => Ok(false),
@@ -99,6 +110,11 @@ pub fn flag<T: Notation>(text: &str) -> std::result::Result<T, String> {
 
 /// A field of a question: a value, an option of one, or a flag.
 pub trait Field: Sized {
+    /// What documents hold of it.
+    const SHAPE: Shape = TEXT;
+    /// Whether every document echoes it.
+    const IS_REQUIRED: bool = true;
+
     /// Reads the value that is given; `None` where a value is missing that has to be there.
     fn of(given: Option<&Value>, name: &str) -> Option<Result<Self>>;
 
@@ -107,6 +123,9 @@ pub trait Field: Sized {
 }
 
 impl<T: Field> Field for Option<T> {
+    const SHAPE: Shape = T::SHAPE;
+    const IS_REQUIRED: bool = false;
+
     fn of(given: Option<&Value>, name: &str) -> Option<Result<Self>> {
         match given {
             None => Some(Ok(None)),

@@ -4,6 +4,7 @@ use super::asking::{Question, Work, question};
 use super::field::flag;
 use crate::report::document::Document;
 use crate::report::record::Record;
+use crate::report::shape::{Keys, RATIONAL, SIGN, Schema, Shape, WIDE_ENCLOSURE};
 use crate::report::table::{Cell, Column};
 use clocks::propagator::{HalfPeriod, TwoClocks, half_period};
 use clocks::schedule::Schedule;
@@ -40,15 +41,29 @@ struct Entry<'a> {
 fn record<'a>() -> Record<'a, Entry<'a>> {
     Record::new()
         .field(Column::new("entry").left(), |entry: &Entry| entry.name.into())
+        .says(Shape::OneOf(&["A", "B", "C", "D"]), "Which of the four entries it is.")
         .field(Column::new("sign"), |entry| i64::from(entry.value.sign().to_i8()).into())
+        .says(SIGN, "Its sign.")
         .field(Column::new("value").enclosure(), |entry| rational::enclose_f64(entry.value).into())
+        .says(WIDE_ENCLOSURE, "An enclosure in doubles.")
         .field(Column::new("exact"), |entry| Cell::exact(entry.value))
+        .says(RATIONAL, "The entry, exactly.")
 }
 
 impl Question for Half {
     const NAME: &'static str = "half";
     const EXAMPLES: &'static [&'static str] = &["half --ratio 5/3 --s 11/4 --rho 1/25"];
     type Answer = HalfPeriod<Rational>;
+
+    fn schema() -> Option<Schema> {
+        const ENTRIES: Shape = Shape::With(
+            &Shape::List(&Shape::Object(|| record().keys())),
+            r#"{"minItems": 4, "maxItems": 4}"#,
+        );
+        let body = Keys::new().key("entries", ENTRIES, "A, B, C, D in the time unit h1: B in h1, C in 1/h1.");
+        let title = "The half period of two clocks in numbers: A, B, C, D at rational s and rho";
+        Some(Schema::new(title, body))
+    }
 
     fn answer(&self, work: &Work) -> Result<HalfPeriod<Rational>> {
         let (kicks, most) = (self.ratio.kicks(), work.budget.unwrap_or(MOST_KICKS));

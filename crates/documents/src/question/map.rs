@@ -3,7 +3,8 @@
 use super::asking::{Question, Work, question};
 use super::field::{StepRange, flag};
 use crate::report::document::Document;
-use crate::report::map::{MapTally, document};
+use crate::report::map::{self as map_report, MapTally, document};
+use crate::report::shape::Schema;
 use clocks::map::{self, Band, Grid, Products, Resources, Shard, Store};
 use number::Laurent;
 use number::error::{Error, Result};
@@ -121,6 +122,10 @@ impl Question for Map {
     const USAGE: Option<&'static str> =
         Some("--lambda1 <X> --lambda2 <Y> --step <D> --h1-range <LO..HI> --h2-range <LO..HI>");
     type Answer = MapTally;
+
+    fn schema() -> Option<Schema> {
+        Some(map_report::schema())
+    }
 
     fn answer(&self, work: &Work) -> Result<MapTally> {
         self.check_whole()?;

@@ -98,11 +98,17 @@ pub fn draw(name: &str, input: &Input<String, Value>, work: &Work) -> Result<Opt
     (named(name)?.draw)(input, work)
 }
 
+/// The schemas of the documents that say what they hold, by their names.
+pub fn schemas() -> Vec<(&'static str, Value)> {
+    ALL.iter().filter_map(|known| Some((known.name, (known.schema)()?))).collect()
+}
+
 /// A question that is read from its fields.
 struct Named {
     name: &'static str,
     ask: fn(&Input<String, Value>, &Work) -> Result<Document>,
     draw: fn(&Input<String, Value>, &Work) -> Result<Option<plot::Figure>>,
+    schema: fn() -> Option<Value>,
 }
 
 impl Named {
@@ -114,32 +120,34 @@ impl Named {
                 let question = Q::read(input)?;
                 question.figure(&question.answer(work)?, work)
             },
+            schema: || Some(Q::schema()?.value(Q::NAME, &Q::keys())),
         }
     }
 }
 
+const ALL: &[Named] = &[
+    Named::of::<Verdict>(),
+    Named::of::<Map>(),
+    Named::of::<Tongues>(),
+    Named::of::<Curves>(),
+    Named::of::<Compare>(),
+    Named::of::<CompareMethods>(),
+    Named::of::<Proposition>(),
+    Named::of::<Polynomial>(),
+    Named::of::<Half>(),
+    Named::of::<Closings>(),
+    Named::of::<Survey>(),
+    Named::of::<Bands>(),
+    Named::of::<Word>(),
+    Named::of::<Methods>(),
+    Named::of::<System>(),
+    Named::of::<Simulate>(),
+    Named::of::<Advise>(),
+    Named::of::<Aperture>(),
+    Named::of::<Scene>(),
+];
+
 fn named(name: &str) -> Result<&'static Named> {
-    const ALL: &[Named] = &[
-        Named::of::<Verdict>(),
-        Named::of::<Map>(),
-        Named::of::<Tongues>(),
-        Named::of::<Curves>(),
-        Named::of::<Compare>(),
-        Named::of::<CompareMethods>(),
-        Named::of::<Proposition>(),
-        Named::of::<Polynomial>(),
-        Named::of::<Half>(),
-        Named::of::<Closings>(),
-        Named::of::<Survey>(),
-        Named::of::<Bands>(),
-        Named::of::<Word>(),
-        Named::of::<Methods>(),
-        Named::of::<System>(),
-        Named::of::<Simulate>(),
-        Named::of::<Advise>(),
-        Named::of::<Aperture>(),
-        Named::of::<Scene>(),
-    ];
     ALL.iter().find(|known| known.name == name).ok_or_else(|| {
         let names: Vec<&str> = ALL.iter().map(|known| known.name).collect();
         Error::input("question", name, format!("there are {}", names.join(", ")))

@@ -9,6 +9,7 @@ use super::field::flag;
 use crate::report::document::Document;
 use crate::report::latex::Equation;
 use crate::report::record::Record;
+use crate::report::shape::{COUNT, GROUP, Keys, POSITIVE, RATIONAL, Schema, Shape};
 use crate::report::table::{Cell, Column, Table};
 use clocks::propagator::{HalfPeriod, TwoClocks, half_period};
 use number::error::{Error, Result};
@@ -38,6 +39,29 @@ impl Question for Polynomial {
     const EXAMPLES: &'static [&'static str] =
         &["polynomial --ratio 5/3", "polynomial --ratio 5/3 --format latex"];
     type Answer = Polynomials;
+
+    fn schema() -> Option<Schema> {
+        const POLYNOMIAL: Shape = Shape::Named(
+            "polynomial",
+            r#"{
+                "type": "string",
+                "pattern": "^[-0-9srho^*/+() ]+$",
+                "description": "Exact, with rational coefficients."
+            }"#,
+        );
+        let body = Keys::new()
+            .key("p", POSITIVE, "Fast kicks a period: h2/h1 = p/q in lowest terms.")
+            .key("q", POSITIVE, "Slow kicks a period.")
+            .key("polynomials", GROUP, "Each entry, and the trace.")
+            .key("polynomials.A", POLYNOMIAL, "")
+            .key("polynomials.B", POLYNOMIAL, "")
+            .key("polynomials.C", POLYNOMIAL, "")
+            .key("polynomials.D", POLYNOMIAL, "")
+            .key("polynomials.trace", POLYNOMIAL, "Tr Q = 2 (AD + BC).")
+            .key("terms", TERMS, "The nonzero terms, by entry, then by power of s, then of rho.");
+        let title = "The half period and the trace of one ratio as polynomials in s = h1^2 lambda1 and rho = lambda2/lambda1";
+        Some(Schema::new(title, body).about("In the time unit h1: B is in units of h1, C in units of 1/h1."))
+    }
 
     fn answer(&self, work: &Work) -> Result<Self::Answer> {
         let (ratio, most) = (self.ratio, work.budget.unwrap_or(MOST_PRODUCTS));
@@ -139,20 +163,32 @@ fn equation(name: &str, f: &Bivariate) -> Equation {
     Equation { name: left.into(), key: name.into(), terms: terms.iter().enumerate().map(term).collect() }
 }
 
-/// The terms other than zero: entry, powers of s and rho, coefficient.
+/// A term: its entry, powers of s and rho, coefficient.
+type Term<'a> = (&'static str, usize, usize, &'a Rational);
+
+const TERMS: Shape = Shape::List(&Shape::Object(|| record().keys()));
+
+/// The row of a term.
+fn record<'a>() -> Record<'a, Term<'a>> {
+    Record::new()
+        .field(Column::new("entry").left(), |(name, ..): &Term| (*name).into())
+        .says(Shape::OneOf(&["A", "B", "C", "D", "trace"]), "The polynomial that it is a term of.")
+        .field(Column::new("s").titled("power of s", "power of $s$"), |(_, s, ..)| (*s as u64).into())
+        .says(COUNT, "The power of s.")
+        .field(Column::new("rho").titled("power of rho", "power of $\\rho$"), |(_, _, rho, _)| {
+            (*rho as u64).into()
+        })
+        .says(COUNT, "The power of rho.")
+        .field(Column::new("coefficient"), |(.., coefficient)| Cell::exact(coefficient))
+        .says(RATIONAL, "An exact rational.")
+}
+
+/// The terms other than zero.
 fn table(polynomials: &[(&'static str, Bivariate)]) -> Table {
-    type Term<'a> = (&'static str, usize, usize, &'a Rational);
     let terms = polynomials.iter().flat_map(|(name, f)| {
         let in_s = f.coefficients().iter().enumerate();
         in_s.flat_map(move |(i, g)| g.coefficients().iter().enumerate().map(move |(j, c)| (*name, i, j, c)))
     });
     let terms: Vec<Term> = terms.filter(|(.., coefficient)| **coefficient != Rational::default()).collect();
-    Record::new()
-        .field(Column::new("entry").left(), |(name, ..): &Term| (*name).into())
-        .field(Column::new("s").titled("power of s", "power of $s$"), |(_, s, ..)| (*s as u64).into())
-        .field(Column::new("rho").titled("power of rho", "power of $\\rho$"), |(_, _, rho, _)| {
-            (*rho as u64).into()
-        })
-        .field(Column::new("coefficient"), |(.., coefficient)| Cell::exact(coefficient))
-        .table("terms", "Half period and trace as polynomials in s and rho", &terms)
+    record().table("terms", "Half period and trace as polynomials in s and rho", &terms)
 }

@@ -4,6 +4,7 @@ use super::asking::{Question, Work, question};
 use super::field::flag;
 use crate::report::document::Document;
 use crate::report::record::Record;
+use crate::report::shape::{COUNT, FLAG, INTEGER, Keys, POSITIVE, Schema, Shape};
 use crate::report::table::Column;
 use clocks::resonance::proposition::{Check, Witness, check};
 use number::error::{Error, Result};
@@ -33,6 +34,22 @@ impl Question for Proposition {
     const USAGE: Option<&'static str> = Some("[--max <N>]");
     const EXAMPLES: &'static [&'static str] = &["proposition --max 12"];
     type Answer = (Check, Vec<Witness>);
+
+    fn schema() -> Option<Schema> {
+        const WITNESSES: Shape = Shape::List(&Shape::Object(|| record().keys()));
+        let body = Keys::new()
+            .key("holds", FLAG, "Whether there is no failure.")
+            .key(
+                "resonant_points",
+                COUNT,
+                "Points (p, q, m) of eq. (9), each found on a curve (a, b) with b != 0.",
+            )
+            .key("curves", COUNT, "Curves (a, b) at a ratio p/q, each found resonant with m = a p + b q.")
+            .key("failures", WITNESSES, "Points and curves for which it fails.")
+            .key("witnesses", WITNESSES, "One for each resonant point.");
+        let title = "The Proposition (eqs. 9 and 10) checked exactly for all coprime p, q up to a bound";
+        Some(Schema::new(title, body))
+    }
 
     fn answer(&self, work: &Work) -> Result<Self::Answer> {
         let max = self.max;
@@ -77,8 +94,13 @@ impl Question for Proposition {
 fn record() -> Record<'static, Witness> {
     Record::new()
         .field(Column::math("p", "p"), |witness: &Witness| witness.ratio.p().into())
+        .says(POSITIVE, "Fast kicks a period: h2/h1 = p/q in lowest terms.")
         .field(Column::math("q", "q"), |witness| witness.ratio.q().into())
+        .says(POSITIVE, "Slow kicks a period.")
         .field(Column::math("m", "m"), |witness| witness.m.into())
+        .says(POSITIVE, "The point is p theta = m pi.")
         .field(Column::math("a", "a"), |witness| witness.a.into())
+        .says(INTEGER, "a of the curve, m = a p + b q.")
         .field(Column::math("b", "b"), |witness| witness.b.into())
+        .says(Shape::With(&INTEGER, r#"{"not": {"const": 0}}"#), "b of the curve.")
 }

@@ -6,6 +6,7 @@ use super::asking::{Question, Work, question};
 use super::field::flag;
 use crate::report::document::Document;
 use crate::report::record::Record;
+use crate::report::shape::{COUNT, EXACT, Keys, POSITIVE, ROUNDED, Schema, Shape, TEXT};
 use crate::report::table::{Cell, Column};
 use number::error::{Error, Result};
 use number::parallel::try_map;
@@ -170,9 +171,47 @@ impl CompareMethods {
     }
 }
 
+/// The row of an integrator, so many points of a map, each with so much area.
+fn record(points: u64, cell: Rational) -> Record<'static, Side> {
+    let area = move |side: &Side, what: Bounded| {
+        Cell::exact(&(Rational::from_integer(side.count(what).into()) * &cell))
+    };
+    let area_too = area.clone();
+    let share = move |side: &Side| Cell::Float(side.count(Bounded::Stable) as f64 / points as f64);
+    Record::new()
+        .field(Column::new("method").left(), |side: &Side| side.name.as_str().into())
+        .says(TEXT, "A name or a word, as it was asked for.")
+        .field(Column::new("stable"), |side| side.count(Bounded::Stable).into())
+        .says(COUNT, "Points with bounded powers; of words decided exactly.")
+        .field(Column::new("unstable"), |side| side.count(Bounded::Unstable).into())
+        .says(COUNT, "Points without; edges of words count here unless the propagator is 1 or -1.")
+        .field(Column::new("edge"), |side| side.count(Bounded::Edge).into())
+        .says(COUNT, "Points of words with exact flows or filters nearer to an edge than bits tell, or on one of which no theorem says so.")
+        .field(Column::new("share").in_words("share that is stable"), share)
+        .says(ROUNDED, "stable over points; the nearest double.")
+        .field(Column::new("stable_area").in_words("stable area"), move |side| {
+            area(side, Bounded::Stable)
+        })
+        .says(EXACT, "stable times h_step times rho_step.")
+        .field(Column::new("unstable_area").in_words("unstable area"), move |side| {
+            area_too(side, Bounded::Unstable)
+        })
+        .says(EXACT, "unstable times h_step times rho_step.")
+}
+
 impl Question for CompareMethods {
     const NAME: &'static str = "compare-methods";
     type Answer = Vec<Side>;
+
+    fn schema() -> Option<Schema> {
+        let methods = Shape::List(&Shape::Object(|| record(0, Rational::default()).keys()));
+        let body = Keys::new().key("points", POSITIVE, "Points of each map.").key(
+            "methods",
+            methods,
+            "The integrators, in the order in which they were asked for.",
+        );
+        Some(Schema::new("Integrators side by side over the same steps and ratios of stiffness", body))
+    }
 
     fn answer(&self, work: &Work) -> Result<Vec<Side>> {
         if self.lambda1.sign() != Sign::Positive {
@@ -216,24 +255,8 @@ impl Question for CompareMethods {
     fn show(&self, sides: &Vec<Side>) -> Document {
         let cell = self.second().map_or_else(|_| Rational::default(), |(_, step, _)| &self.h_step * step);
         let points = sides.first().map_or(0, |side| side.rows.iter().map(Vec::len).sum::<usize>() as u64);
-        let area = move |side: &Side, what: Bounded| {
-            Cell::exact(&(Rational::from_integer(side.count(what).into()) * &cell))
-        };
-        let area_too = area.clone();
-        let share = move |side: &Side| Cell::Float(side.count(Bounded::Stable) as f64 / points as f64);
-        let table = Record::new()
-            .field(Column::new("method").left(), |side: &Side| side.name.as_str().into())
-            .field(Column::new("stable"), |side| side.count(Bounded::Stable).into())
-            .field(Column::new("unstable"), |side| side.count(Bounded::Unstable).into())
-            .field(Column::new("edge"), |side| side.count(Bounded::Edge).into())
-            .field(Column::new("share").in_words("share that is stable"), share)
-            .field(Column::new("stable_area").in_words("stable area"), move |side| {
-                area(side, Bounded::Stable)
-            })
-            .field(Column::new("unstable_area").in_words("unstable area"), move |side| {
-                area_too(side, Bounded::Unstable)
-            })
-            .table("methods", "Integrators side by side, over the same steps", sides);
+        let table =
+            record(points, cell).table("methods", "Integrators side by side, over the same steps", sides);
         let plane = if self.rho_range.is_some() { "(h, lambda2/lambda1)" } else { "(h1, h2)" };
         let line = format!("{points} points {plane} for each of {} integrators", sides.len());
         let shown =

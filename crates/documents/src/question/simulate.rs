@@ -6,6 +6,7 @@ use super::asking::{Question, Work, question};
 use super::field::{flag, notation};
 use crate::input::{SystemFile, SystemScene};
 use crate::report::document::Document;
+use crate::report::shape::{Schema, Shape, TEXT};
 use crate::report::simulate as report;
 use number::error::{Error, Kind, Result};
 use number::parallel::go_on;
@@ -83,8 +84,8 @@ fn staggered(text: &str) -> Result<Ends> {
 }
 
 notation! {
-    Displacement: Displacement::parsed, |displacement: &Displacement| displacement.text.clone();
-    Ends: ends, |ends: &Ends| ends.name();
+    Displacement: Displacement::parsed, |displacement: &Displacement| displacement.text.clone(), TEXT;
+    Ends: ends, |ends: &Ends| ends.name(), Shape::OneOf(&["symmetric", "staggered"]);
 }
 
 /// The most periods: the series is kept in memory, and is written as some 50 MB.
@@ -105,6 +106,12 @@ impl Question for Simulate {
     const EXAMPLES: &'static [&'static str] =
         &["simulate data/scenes/fpu.json --periods 30 --figure run.pdf"];
     type Answer = Answer;
+
+    fn schema() -> Option<Schema> {
+        // Documents have the title of the system.
+        let rules = r#"{"allOf": [{"properties": {"input": {"required": ["title"]}}}]}"#;
+        Some(Schema::new("A run of Algorithm 1", report::keys()).rules(rules))
+    }
 
     fn answer(&self, work: &Work) -> Result<Answer> {
         let scene = work.read(&self.system)?;

@@ -5,6 +5,7 @@ use super::ratios::{MOST_SUM, Ratios};
 use crate::report::decimal::{self, rounded};
 use crate::report::document::Document;
 use crate::report::record::Record;
+use crate::report::shape::{COUNT, GROUP, INTEGER, POSITIVE, POSITIVE_ENCLOSURE, ROUNDED, Schema, Shape};
 use crate::report::table::{Cell, Column};
 use clocks::tongue::{self, Spread, Thin};
 use number::error::{Error, Result};
@@ -38,6 +39,32 @@ impl Question for Survey {
     const NAME: &'static str = "survey";
     type Answer = tongue::Survey;
 
+    fn schema() -> Option<Schema> {
+        let body = counts()
+            .keys()
+            .key("edges", GROUP, "Edges certified in doubles, and with more bits.")
+            .key(
+                "predicted",
+                GROUP,
+                "The points p theta = m pi, m < p, and where they lie about the tongue of their own label.",
+            )
+            .key(
+                "width_ratios",
+                Shape::List(&Shape::Object(|| spreads(None).keys())),
+                "Width over first-order width by |a| of the dominant family, m < p.",
+            )
+            .key(
+                "thinnest",
+                Shape::List(&Shape::Object(|| thin().keys())),
+                "The thinnest open tongues, thinnest first.",
+            );
+        let title = "A survey of all tongues that begin below s = 4, for all coprime p + q up to a number";
+        // rho is not below 0.
+        let rules =
+            r#"{"allOf": [{"properties": {"input": {"properties": {"rho": {"pattern": "^[0-9]"}}}}}]}"#;
+        Some(Schema::new(title, body).rules(rules))
+    }
+
     fn answer(&self, _: &Work) -> Result<tongue::Survey> {
         if self.thinnest > MOST_THIN {
             return Err(Error::input("thinnest", self.thinnest, format!("choose at most {MOST_THIN}")));
@@ -47,24 +74,11 @@ impl Question for Survey {
     }
 
     fn show(&self, survey: &tongue::Survey) -> Document {
-        let closed = Record::new()
-            .json("p", |(ratio, _): &(Ratio, u64)| ratio.p().into())
-            .json("q", |(ratio, _)| ratio.q().into())
-            .json("m", |(_, m)| (*m).into());
         let of = format!("for all p + q up to {} at rho = {}", survey.max_sum, survey.rho);
         let widths = format!("Width over first-order width, by the dominant family (a, b), {of}");
         let thinnest = format!("The thinnest tongues that begin below s = 4, {of}");
-        Document::new(Self::NAME)
-            .entry("ratios", survey.ratios)
-            .entry("tongues", survey.tongues)
-            .entry("open", survey.open)
-            .entry("closed", closed.all(&survey.closed))
-            .entry("edges.doubles", survey.edges.0)
-            .entry("edges.more_bits", survey.edges.1)
-            .entry("predicted.points", survey.predicted)
-            .entry("predicted.outside", survey.predicted_outside)
-            .entry("predicted.on_edge", survey.predicted_on_edge)
-            .entry("predicted.inside", survey.predicted_inside)
+        counts()
+            .document(Document::new(Self::NAME), survey)
             .entry("width_ratios", spreads(None).all(&survey.width_ratios))
             .entry("thinnest", thin().all(&survey.thinnest))
             .long_rows(spreads(None).table("width_ratios", &widths, &survey.width_ratios))
@@ -117,32 +131,82 @@ fn lines(survey: &tongue::Survey) -> Vec<String> {
     lines
 }
 
+/// The counts of a survey.
+fn counts() -> Record<'static, tongue::Survey> {
+    Record::new()
+        .json("ratios", |survey: &tongue::Survey| survey.ratios.into())
+        .says(COUNT, "The ratios with p + q up to the number.")
+        .json("tongues", |survey| survey.tongues.into())
+        .says(COUNT, "Each certified open or closed.")
+        .json("open", |survey| survey.open.into())
+        .says(COUNT, "Proven open.")
+        .value("closed", |survey| closed().all(&survey.closed).into())
+        .says(Shape::List(&Shape::Object(|| closed().keys())), "Proven closed.")
+        .json("edges.doubles", |survey| survey.edges.0.into())
+        .says(COUNT, "")
+        .json("edges.more_bits", |survey| survey.edges.1.into())
+        .says(COUNT, "")
+        .json("predicted.points", |survey| survey.predicted.into())
+        .says(COUNT, "All of them.")
+        .json("predicted.outside", |survey| survey.predicted_outside.into())
+        .says(COUNT, "Those outside.")
+        .json("predicted.on_edge", |survey| survey.predicted_on_edge.into())
+        .says(COUNT, "Those on an edge.")
+        .json("predicted.inside", |survey| survey.predicted_inside.into())
+        .says(COUNT, "Those inside.")
+}
+
+/// The entries of a closed tongue.
+fn closed() -> Record<'static, (Ratio, u64)> {
+    Record::new()
+        .json("p", |(ratio, _): &(Ratio, u64)| ratio.p().into())
+        .says(POSITIVE, "Fast kicks a period: h2/h1 = p/q in lowest terms.")
+        .json("q", |(ratio, _)| ratio.q().into())
+        .says(POSITIVE, "Slow kicks a period.")
+        .json("m", |(_, m)| (*m).into())
+        .says(POSITIVE, "The tongue's label.")
+}
+
 /// The row of a family's widths, in so many significant digits where a number is given.
 fn spreads(digits: Option<usize>) -> Record<'static, Spread> {
     let float = move |x: f64| Cell::Float(digits.map_or(x, |digits| rounded(x, digits)));
     let titled = |key: &str, title: &str| Column::new(key).titled(title, title);
     Record::new()
         .field(Column::new("abs_a").titled("|a|", "$|a|$"), |spread: &Spread| spread.abs_a.into())
+        .says(COUNT, "|a| of the dominant family.")
         .field(titled("count", "tongues"), |spread| spread.count.into())
+        .says(POSITIVE, "The tongues of such families.")
         .field(Column::new("least"), move |spread| float(spread.least))
+        .says(ROUNDED, "")
         .field(Column::new("lower_quartile").titled("lower quartile", "$25\\,\\%$"), move |spread| {
             float(spread.lower_quartile)
         })
+        .says(ROUNDED, "")
         .field(Column::new("median"), move |spread| float(spread.median))
+        .says(ROUNDED, "")
         .field(Column::new("upper_quartile").titled("upper quartile", "$75\\,\\%$"), move |spread| {
             float(spread.upper_quartile)
         })
+        .says(ROUNDED, "")
         .field(Column::new("largest"), move |spread| float(spread.largest))
+        .says(ROUNDED, "")
 }
 
 /// The row of a thin tongue.
 fn thin() -> Record<'static, Thin> {
     Record::new()
         .field(Column::math("p", "p"), |thin: &Thin| thin.ratio.p().into())
+        .says(POSITIVE, "Fast kicks a period: h2/h1 = p/q in lowest terms.")
         .field(Column::math("q", "q"), |thin| thin.ratio.q().into())
+        .says(POSITIVE, "Slow kicks a period.")
         .field(Column::math("m", "m"), |thin| thin.m.into())
+        .says(POSITIVE, "The tongue's label.")
         .field(Column::math("a", "a"), |thin| thin.a.into())
+        .says(INTEGER, "a of the dominant family.")
         .field(Column::math("b", "b"), |thin| thin.b.into())
+        .says(INTEGER, "b of the dominant family.")
         .field(Column::math("s", "s"), |thin| thin.s.into())
+        .says(Shape::With(&ROUNDED, r#"{"exclusiveMinimum": 0}"#), "A double not above the lower edge.")
         .field(Column::new("width").enclosure(), |thin| thin.width.into())
+        .says(POSITIVE_ENCLOSURE, "From one edge to the other, in s.")
 }

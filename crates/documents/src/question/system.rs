@@ -8,6 +8,7 @@ use super::field::{Field, flag, notation};
 use crate::format::Format;
 use crate::input::{Arrays, Axis, NEAREST, Scan, Span, SystemFile, SystemScene};
 use crate::report::document::Document;
+use crate::report::shape::Shape;
 use crate::report::system::{self as report, Beside, SystemMap};
 use number::Rational;
 use number::error::{Error, Kind, Result};
@@ -79,6 +80,10 @@ notation! {
 
 /// A file: what is in it, or its text.
 impl Field for SystemFile {
+    const SHAPE: Shape = Shape::Plain(
+        r#"{"type": "object", "description": "The system file, whole: a document of kickdrift/system/1."}"#,
+    );
+
     fn of(given: Option<&Value>, _: &str) -> Option<Result<Self>> {
         given.map(|value| match value {
             Value::String(text) => SystemFile::of_text(text),

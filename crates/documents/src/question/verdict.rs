@@ -8,6 +8,9 @@ use crate::report::decimal;
 use crate::report::document::Document;
 use crate::report::friction;
 use crate::report::record::Record;
+use crate::report::shape::{
+    COUNT, EXACT, FLAG, GROUP_OR_NULL, INTEGER, KIND, SIGN, Schema, Shape, WIDE_ENCLOSURE,
+};
 use crate::report::table::{Cell, Column};
 use clocks::propagator::Oscillator;
 use clocks::resonance::dominant_family;
@@ -98,6 +101,12 @@ impl Question for Verdict {
     ];
     type Answer = Decided;
 
+    fn schema() -> Option<Schema> {
+        let says = "The tongue's label m and its dominant family, m = a p + b q; null unless hyperbolic, and where half turns cannot be counted within the budget.";
+        let body = record().keys().key("resonance", GROUP_OR_NULL, says);
+        Some(Schema::new("Is this pair of steps stable?", body).rules(RULES))
+    }
+
     fn answer(&self, work: &Work) -> Result<Decided> {
         let oscillator = self.oscillator()?;
         if self.friction.is_some() {
@@ -115,14 +124,8 @@ impl Question for Verdict {
 
     fn show(&self, answer: &Decided) -> Document {
         let record = record();
-        let mut document = record.document(Document::new(Self::NAME), answer);
-        if let Some(exact) = &answer.exact_trace {
-            document = document.entry("trace.exact", exact.to_string());
-        }
-        if let Some(friction) = &answer.friction {
-            document = document.entry("friction", friction::value(friction));
-        }
-        document
+        record
+            .document(Document::new(Self::NAME), answer)
             .long_rows(record.table("verdict", CAPTION, [answer]).captioned(CAPTION_LATEX))
             .summary_alone(&answer.lines())
     }
@@ -191,23 +194,74 @@ fn record() -> Record<'static, Decided> {
         .column(Column::math("h1", "h_1").aside(), |decided: Of| Cell::exact(decided.oscillator.h1()))
         .column(Column::math("h2", "h_2").aside(), |decided| Cell::exact(decided.oscillator.h2()))
         .field(Column::math("p", "p"), |decided| Cell::whole(decided.oscillator.ratio().numer()))
+        .says(KICKS, "Fast kicks a period: h2/h1 = p/q in lowest terms.")
         .field(Column::math("q", "q"), |decided| Cell::whole(decided.oscillator.ratio().denom()))
+        .says(KICKS, "Slow kicks a period.")
         .field(Column::new("kind").left(), |decided| decided.decision.verdict.kind().name().into())
+        .says(KIND, "")
         .field(Column::new("stable").aside(), |decided| decided.decision.verdict.is_stable().into())
+        .says(FLAG, "Whether the powers of Q are bounded: elliptic or coexistence.")
         .field(Column::new("side").aside(), |decided| i64::from(decided.decision.verdict.side()).into())
+        .says(SIGN, "1 where Tr Q >= 2, -1 where Tr Q <= -2, else 0.")
         .field(Column::math("trace", "\\operatorname{Tr} Q").enclosure(), |decided| {
             decided.growth.trace.to_f64_enclosure().into()
         })
+        .says(
+            WIDE_ENCLOSURE,
+            "Tr Q: an enclosure, and the exact value where it is rational and short, or was asked for.",
+        )
+        .optional("trace.exact", |decided| Some(decided.exact_trace.as_ref()?.to_string().into()))
+        .says(EXACT, "Tr Q, exactly.")
         .field(Column::new("growth_rate").titled("growth rate", "$\\ln\\mu/T$").enclosure(), |decided| {
             decided.growth_rate().into()
         })
+        .says(
+            WIDE_ENCLOSURE,
+            "ln(mu)/T per unit time, mu the larger multiplier of Q: an enclosure; 0 where nothing grows exponentially.",
+        )
         .at("resonance.m", Column::math("m", "m"), |decided| decided.resonance().map(|(m, ..)| m).into())
+        .says(COUNT, "The tongue's label: half turns of the growing solution a period.")
         .at("resonance.a", Column::math("a", "a"), |decided| decided.resonance().map(|(_, a, _)| a).into())
+        .says(INTEGER, "a of the dominant family.")
         .at("resonance.b", Column::math("b", "b"), |decided| decided.resonance().map(|(.., b)| b).into())
+        .says(INTEGER, "b of the dominant family.")
         .field(Column::new("decided_by").in_words("decided by").left().aside(), |decided| {
             decided.decision.decided_by.name().into()
         })
+        .says(Shape::OneOf(&["filter", "refine", "exact"]), "The tier of arithmetic that proved the verdict.")
+        .optional("friction", |decided| decided.friction.as_ref().map(friction::value))
+        .says(friction::SHAPE, friction::SAYS)
 }
+
+/// A number of kicks.
+const KICKS: Shape = Shape::Named(
+    "kicks",
+    r#"{
+        "description": "A whole number: beyond 2^63 as a text.",
+        "oneOf": [{"type": "integer", "minimum": 1}, {"type": "string", "pattern": "^[1-9][0-9]{18,}$"}]
+    }"#,
+);
+
+/// What the keys of a verdict say of each other.
+const RULES: &str = r#"{"allOf": [
+    {
+        "if": {"properties": {"kind": {"enum": ["elliptic", "coexistence"]}}},
+        "then": {"properties": {"stable": {"const": true}}},
+        "else": {"properties": {"stable": {"const": false}}}
+    },
+    {
+        "if": {"properties": {"kind": {"const": "elliptic"}}},
+        "then": {"properties": {"side": {"const": 0}}},
+        "else": {"properties": {"side": {"enum": [-1, 1]}}}
+    },
+    {
+        "if": {"properties": {"kind": {"const": "hyperbolic"}}},
+        "else": {"properties": {
+            "resonance": {"const": null},
+            "growth_rate": {"properties": {"lo": {"const": 0}, "hi": {"const": 0}}}
+        }}
+    }
+]}"#;
 
 /// For people.
 impl Decided {

@@ -3,6 +3,7 @@
 use super::decimal;
 use super::document::Document;
 use super::record::Record;
+use super::shape::{COUNT, ENCLOSURE, INTEGER, Keys, Shape};
 use super::table::{Cell as Value, Column};
 use clocks::band::{Bands, Sector};
 
@@ -15,17 +16,38 @@ pub fn document(bands: &Bands) -> Document {
         "Sectors of steps in which every ratio h2/h1 is unstable",
         &bands.certified,
     );
-    let ends = |(lo, hi): (f64, f64)| serde_json::json!({"lo": lo, "hi": hi});
-    let (share, area) = (bands.share(), bands.area());
-    Document::new("bands")
-        .entry("certified", bands.certified.len())
-        .entry("open", bands.open)
-        .entry("tried", bands.tried)
-        .entry("share", ends(share))
-        .entry("area", ends(area))
-        .rows(table.captioned(CAPTION))
-        .summary(&lines(bands, share.0, area.0))
+    counts().document(Document::new("bands"), bands).rows(table.captioned(CAPTION)).summary(&lines(
+        bands,
+        bands.share().0,
+        bands.area().0,
+    ))
 }
+
+/// The keys of the document.
+pub fn keys() -> Keys {
+    let says = "By curves and ratios; no two overlap. Every pair of steps in one, edges included, is unstable with exponential growth: ratios h2/h1 of a range, and h1 between two sides, each affine in the ratio.";
+    counts().keys().key("sectors", Shape::List(&Shape::Object(|| record().keys())), says)
+}
+
+/// What is certified.
+fn counts() -> Record<'static, Bands> {
+    Record::new()
+        .json("certified", |bands: &Bands| (bands.certified.len() as u64).into())
+        .says(COUNT, "Sectors that are proven.")
+        .json("open", |bands| bands.open.into())
+        .says(COUNT, "Ranges of ratios of a tongue that are left to try.")
+        .json("tried", |bands| bands.tried.into())
+        .says(COUNT, "Ranges of ratios of a tongue that were tried.")
+        .json("share", |bands| bands.share().into())
+        .says(ENCLOSURE, "The share of the window that is certified.")
+        .json("area", |bands| bands.area().into())
+        .says(ENCLOSURE, "The area that is certified.")
+}
+
+/// A ratio of steps, whole or a fraction.
+const RATIO: Shape = Shape::Plain(r#"{"type": "string", "pattern": "^[0-9]+(/[0-9]+)?$"}"#);
+/// Decimal digits.
+const DIGITS: Shape = Shape::Plain(r#"{"type": "string", "pattern": "^[0-9]+([.][0-9]+)?$"}"#);
 
 fn lines(bands: &Bands, share: f64, area: f64) -> Vec<String> {
     vec![
@@ -48,10 +70,16 @@ fn lines(bands: &Bands, share: f64, area: f64) -> Vec<String> {
 fn record() -> Record<'static, Sector> {
     let ends = ["from", "to"];
     let mut record = Record::new();
-    for (k, name) in ["a", "b"].into_iter().enumerate() {
-        record =
-            record.field(Column::math(name, name), move |sector: &Sector| Value::Integer(sector.family[k]));
+    let says = [
+        "a of the curve (a, b) of the tongue: at the ratio p/q the growing solution makes a p + b q half turns a period.",
+        "b of the curve.",
+    ];
+    for (k, (name, says)) in ["a", "b"].into_iter().zip(says).enumerate() {
+        record = record
+            .field(Column::math(name, name), move |sector: &Sector| Value::Integer(sector.family[k]))
+            .says(INTEGER, says);
     }
+    let ratios = ["least", "largest"];
     for (k, end) in ends.into_iter().enumerate() {
         let column = Column::new(&format!("ratio_{end}"));
         let column = column.titled(&format!("h2/h1 {end}"), &format!("$h_2/h_1$ {end}"));
@@ -59,6 +87,7 @@ fn record() -> Record<'static, Sector> {
             let (p, q) = sector.ratios[k];
             Value::exact(if q == 1 { p.to_string() } else { format!("{p}/{q}") })
         });
+        record = record.says(RATIO, format!("The {} ratio h2/h1.", ratios[k]));
     }
     for (side, name) in ["lower", "upper"].into_iter().enumerate() {
         for (k, end) in ends.into_iter().enumerate() {
@@ -68,6 +97,8 @@ fn record() -> Record<'static, Sector> {
             record = record.field(column, move |sector| {
                 Value::exact(decimal::shifted(sector.sides[side][k], sector.decimals))
             });
+            record =
+                record.says(DIGITS, format!("h1 on the {name} side at the {} ratio, exactly.", ratios[k]));
         }
     }
     record

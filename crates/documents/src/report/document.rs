@@ -219,23 +219,11 @@ impl Document {
         all.insert("schema".into(), format!("kickdrift/{}/1", self.name).into());
         all.insert(
             "kickdrift".into(),
-            json!({"version": env!("CARGO_PKG_VERSION"), "command": self.command()}),
+            json!({"version": env!("CARGO_PKG_VERSION"), "command": command(self.name)}),
         );
         all.insert("input".into(), Value::Object(self.input.clone()));
         all.extend(self.body.clone());
         Value::Object(all)
-    }
-
-    /// The command that makes the document, alone or as a part of a larger one.
-    fn command(&self) -> &'static str {
-        match self.name {
-            "system-verdict" | "system-map" | "system-intervals" => "system",
-            "advise-system" | "advise-direct" => "advise",
-            "survey" => "tongues",
-            "methods" => "word",
-            "compare-methods" => "compare",
-            name => name,
-        }
     }
 
     fn json(&self) -> String {
@@ -262,6 +250,18 @@ impl Document {
             }
         }
         visible(&out)
+    }
+}
+
+/// The command that makes documents of this name, alone or as a part of a larger one.
+pub(super) fn command(name: &'static str) -> &'static str {
+    match name {
+        "system-verdict" | "system-map" | "system-intervals" => "system",
+        "advise-system" | "advise-direct" => "advise",
+        "survey" => "tongues",
+        "methods" => "word",
+        "compare-methods" => "compare",
+        name => name,
     }
 }
 

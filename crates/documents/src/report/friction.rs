@@ -4,7 +4,53 @@ use serde_json::{Value, json};
 
 use super::decimal;
 use super::document::enclosure;
+use super::shape::{ENCLOSURE, FLAG, Keys, ROUNDED, Shape, TEXT};
 use systems::friction::{Damping, Friction, Mask, Masked};
+
+/// The sentence on the entry `friction` of a document.
+pub const SAYS: &str =
+    "O-steps, v to exp(-rate t) v in the middle of every drift; only where a rate was given.";
+
+/// What it is.
+pub const SHAPE: Shape = Shape::Object(|| {
+    const DAMPING: Shape = Shape::OneOf(&["damped", "marginal", "growing", "not told"]);
+    const MASKING: Shape =
+        Shape::Any(&[Shape::OneOf(&["nothing grows", "not told"]), Shape::Object(masking_keys)]);
+    Keys::new()
+        .key("rate", TEXT, "Exact, per unit time.")
+        .key("damping", DAMPING, "The spectral radius of the period: proven below, at or above 1.")
+        .key(
+            "growth_rate",
+            Shape::OrNull(&ENCLOSURE),
+            "ln(spectral radius)/T, per unit time, of the part where it is largest.",
+        )
+        .key(
+            "masking",
+            MASKING,
+            "The frictions that mask every resonance: at lo something is proven to grow, at hi nothing does.",
+        )
+});
+
+fn masking_keys() -> Keys {
+    const RANGES: Shape = Shape::With(&Shape::List(&Shape::Object(range_keys)), r#"{"minItems": 1}"#);
+    Keys::new()
+        .key("lo", ROUNDED, "A double; a lower bound.")
+        .key("hi", ROUNDED, "A double; an upper bound.")
+        .key("stays", FLAG, "Whether every friction above hi is proven to mask, too.")
+        .key(
+            "ranges",
+            RANGES,
+            "Frictions that are proven to mask, from lo to hi; hi null where all larger ones are proven to.",
+        )
+}
+
+fn range_keys() -> Keys {
+    Keys::new().key("lo", ROUNDED, "A double, proven to mask.").key(
+        "hi",
+        Shape::OrNull(&ROUNDED),
+        "A double, proven to mask.",
+    )
+}
 
 /// The entry `friction` of a document.
 pub fn value(own: &Friction) -> Value {

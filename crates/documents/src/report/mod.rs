@@ -28,6 +28,7 @@ pub mod npz;
 pub mod plane;
 #[doc(hidden)]
 pub mod record;
+pub mod shape;
 pub mod simulate;
 #[doc(hidden)]
 pub mod stream;

@@ -1,13 +1,22 @@
 //! Records: the named, typed cells of one thing, from which its JSON entries, its row of CSV and LaTeX and
 //! its line of text all come.
 
+use std::borrow::Cow;
+
 use serde_json::{Map, Value};
 
 use super::document::{Document, put};
+use super::shape::{Keys, Shape};
 use super::table::{Cell, Column, Table};
 
-/// How the cell of one column is found in a `T`.
-type Find<'a, T> = Box<dyn Fn(&T) -> Cell + Send + Sync + 'a>;
+/// How the value of one field is found in a `T`.
+enum Find<'a, T> {
+    Cell(Box<dyn Fn(&T) -> Cell + Send + Sync + 'a>),
+    /// JSON with parts of its own.
+    Value(fn(&T) -> Value),
+    /// The same, where there is one.
+    Optional(fn(&T) -> Option<Value>),
+}
 
 /// One cell: its column, where it is a column of tables, its path among the entries of JSON, where it is one
 /// of them, and the way to it.
@@ -15,6 +24,8 @@ struct Field<'a, T> {
     column: Option<Column>,
     path: Option<String>,
     find: Find<'a, T>,
+    /// Its shape, and a sentence on it, for the schema.
+    says: Option<(Shape, Cow<'static, str>)>,
 }
 
 /// The cells that are written of a `T`, each with the way to it.
@@ -49,39 +60,72 @@ impl<'a, T> Record<'a, T> {
         Record { fields: Vec::new() }
     }
 
-    fn with(mut self, column: Option<Column>, path: Option<String>, find: Find<'a, T>) -> Self {
-        self.fields.push(Field { column, path, find });
+    fn with(mut self, column: Option<Column>, path: Option<&str>, find: Find<'a, T>) -> Self {
+        self.fields.push(Field { column, path: path.map(Into::into), find, says: None });
         self
+    }
+
+    fn with_column(self, column: Column, find: Find<'a, T>) -> Self {
+        let path = column.key.clone();
+        self.with(Some(column), Some(&path), find)
     }
 
     /// One more field: an entry of JSON and a column of the same name.
     #[must_use]
     pub fn field(self, column: Column, find: impl Fn(&T) -> Cell + Send + Sync + 'a) -> Self {
-        let path = column.key.clone();
-        self.at(path, column, find)
+        self.with_column(column, Find::Cell(Box::new(find)))
     }
 
     /// One more field, which JSON has at `path`.
     #[must_use]
-    pub fn at(
-        self,
-        path: impl Into<String>,
-        column: Column,
-        find: impl Fn(&T) -> Cell + Send + Sync + 'a,
-    ) -> Self {
-        self.with(Some(column), Some(path.into()), Box::new(find))
+    pub fn at(self, path: &str, column: Column, find: impl Fn(&T) -> Cell + Send + Sync + 'a) -> Self {
+        self.with(Some(column), Some(path), Find::Cell(Box::new(find)))
     }
 
     /// One more entry of JSON alone.
     #[must_use]
-    pub fn json(self, path: impl Into<String>, find: impl Fn(&T) -> Cell + Send + Sync + 'a) -> Self {
-        self.with(None, Some(path.into()), Box::new(find))
+    pub fn json(self, path: &str, find: impl Fn(&T) -> Cell + Send + Sync + 'a) -> Self {
+        self.with(None, Some(path), Find::Cell(Box::new(find)))
+    }
+
+    /// One more entry of JSON alone, which has parts of its own.
+    #[must_use]
+    pub fn value(self, path: &str, find: fn(&T) -> Value) -> Self {
+        self.with(None, Some(path), Find::Value(find))
+    }
+
+    /// One more entry of JSON alone, which is not there where there is none.
+    #[must_use]
+    pub fn optional(self, path: &str, find: fn(&T) -> Option<Value>) -> Self {
+        self.with(None, Some(path), Find::Optional(find))
     }
 
     /// One more column of tables alone.
     #[must_use]
     pub fn column(self, column: Column, find: impl Fn(&T) -> Cell + Send + Sync + 'a) -> Self {
-        self.with(Some(column), None, Box::new(find))
+        self.with(Some(column), None, Find::Cell(Box::new(find)))
+    }
+
+    /// Says what the last field is: its shape, and a sentence for people.
+    #[must_use]
+    pub fn says(mut self, shape: Shape, sentence: impl Into<Cow<'static, str>>) -> Self {
+        if let Some(field) = self.fields.last_mut() {
+            field.says = Some((shape, sentence.into()));
+        }
+        self
+    }
+
+    /// The keys of its entries.
+    ///
+    /// # Panics
+    /// Where a field does not say what it is: its schema could not be written.
+    pub fn keys(&self) -> Keys {
+        let entries = self.fields.iter().filter_map(|field| Some((field.path.clone()?, field)));
+        entries.fold(Keys::new(), |keys, (path, field)| {
+            let says = field.says.clone();
+            let (shape, sentence) = says.unwrap_or_else(|| panic!("{path} does not say what it is"));
+            keys.with(path, shape, sentence, !matches!(field.find, Find::Optional(_)))
+        })
     }
 
     /// The columns, in order.
@@ -91,7 +135,12 @@ impl<'a, T> Record<'a, T> {
 
     /// The row of one thing: a cell for each column.
     pub fn row(&self, number: &T) -> Vec<Cell> {
-        self.fields.iter().filter(|field| field.column.is_some()).map(|field| (field.find)(number)).collect()
+        let columns = self.fields.iter().filter(|field| field.column.is_some());
+        let cell = |field: &Field<'a, T>| match &field.find {
+            Find::Cell(find) => Some(find(number)),
+            Find::Value(_) | Find::Optional(_) => None,
+        };
+        columns.filter_map(cell).collect()
     }
 
     /// The rows of many things.
@@ -108,9 +157,13 @@ impl<'a, T> Record<'a, T> {
     pub fn entries(&self, number: &T) -> Value {
         let mut entries = Map::new();
         for field in &self.fields {
-            if let Some(path) = &field.path {
-                put(&mut entries, path, serde_json::to_value((field.find)(number)).expect("a cell is JSON"));
-            }
+            let Some(path) = &field.path else { continue };
+            let value = match &field.find {
+                Find::Cell(find) => Some(serde_json::to_value(find(number)).expect("a cell is JSON")),
+                Find::Value(find) => Some(find(number)),
+                Find::Optional(find) => find(number),
+            };
+            value.map(|value| put(&mut entries, path, value));
         }
         entries.into()
     }

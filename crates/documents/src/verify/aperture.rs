@@ -17,7 +17,7 @@ impl Verify for Aperture {
     fn check(&self, measured: &Measured, context: &Context) -> Result<Outcome> {
         let slow = self.slow.as_ref().map(|slow| &slow.value);
         let plain = Plain::of(&self.bond, &self.integrator()?, &self.temperature.value, slow);
-        context.each(ROUTE, Ok(()), &measured.steps, |step| plain.holds(step))
+        context.outcome(ROUTE, Ok(()), &measured.steps, |step| plain.holds(step))
     }
 }
 

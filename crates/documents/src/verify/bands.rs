@@ -31,7 +31,7 @@ impl Verify for Bands {
         let sectors: Vec<&Sector> = chosen.iter().map(|&n| &bands.certified[n as usize]).collect();
         let is_sound =
             |sector: &&Sector| is_inside(sector, &bands.window).and_then(|()| self.grows(sector, context));
-        let outcome = context.each(ROUTE, whole(bands), &sectors, is_sound)?;
+        let outcome = context.outcome(ROUTE, whole(bands), &sectors, is_sound)?;
         let row = |failure: Failure| match failure.row {
             0 => failure,
             row => Failure { row: chosen[row as usize - 1] + 1, ..failure },

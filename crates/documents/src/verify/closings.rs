@@ -23,9 +23,10 @@ impl Verify for Closings {
         let limits = context.limits();
         let counted = |found: &Found| located(found.ratio, self.counted(found, &limits));
         let closings: Vec<&Closing> = found.iter().flat_map(|found| &found.closings).collect();
-        let mut outcome = context.each(ROUTE, found.iter().try_for_each(counted), &closings, |closing| {
-            self.is_in_range(closing).and_then(|()| closes(closing, &limits))
-        })?;
+        let mut outcome =
+            context.outcome(ROUTE, found.iter().try_for_each(counted), &closings, |closing| {
+                self.is_in_range(closing).and_then(|()| closes(closing, &limits))
+            })?;
         if found.iter().any(|found| !found.complete) {
             let remark = "ratios that are not complete: that a tongue closes there as often as it is listed, but for pairs";
             outcome.not_rechecked.push(remark.into());

@@ -33,7 +33,7 @@ impl Verify for Compare {
             same("the counts", format!("{:?}", answer.tally), format!("{:?}", truth.tally)).and_then(|()| {
                 holds(names(answer) == names(&truth), || "by the filter the offenders are others".into())
             });
-        context.each(ROUTE, whole, &answer.offenders, |offender| self.offends(offender, context))
+        context.outcome(ROUTE, whole, &answer.offenders, |offender| self.offends(offender, context))
     }
 }
 

@@ -126,20 +126,24 @@ impl Watch for Context<'_> {
     fn announce(&self, _: &str, _: f64) {}
 
     fn count(&self, length: u64, _: &str) -> Box<dyn Counter + '_> {
-        Box::new(Done { progress: self.progress, done: AtomicU64::new(0), count: length })
+        Box::new(Done { progress: self.progress, done: AtomicU64::new(0), total: AtomicU64::new(length) })
     }
 }
 
 struct Done<'a> {
     progress: Option<Progress<'a>>,
     done: AtomicU64,
-    count: u64,
+    total: AtomicU64,
 }
 
 impl Counter for Done<'_> {
+    fn expect(&self, total: u64) {
+        self.total.store(total, Ordering::Relaxed);
+    }
+
     fn advance(&self, more: u64) {
         let done = self.done.fetch_add(more, Ordering::Relaxed) + more;
-        self.progress.inspect(|progress| progress(done, self.count));
+        self.progress.inspect(|progress| progress(done, self.total.load(Ordering::Relaxed)));
     }
 }
 
@@ -170,11 +174,10 @@ impl Context<'_> {
 
     /// Checks all rows, side by side: what does not hold, in their order.
     pub fn rows<T: Sync>(&self, rows: &[T], check: impl Fn(&T) -> Checked + Sync) -> Result<Vec<Failure>> {
-        let (done, count) = (AtomicU64::new(0), rows.len() as u64);
+        let counter = self.count(rows.len() as u64, "rows");
         let one = |(row, item): &(u64, &T)| {
             let failure = failure(*row, check(item));
-            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-            self.progress.inspect(|progress| progress(done, count));
+            counter.advance(1);
             failure
         };
         let found: Vec<_> = try_map(&(1..).zip(rows).collect::<Vec<_>>(), one)?;
@@ -182,7 +185,7 @@ impl Context<'_> {
     }
 
     /// The outcome of a whole document (`whole`) and of its rows.
-    pub fn each<T: Sync>(
+    pub fn outcome<T: Sync>(
         &self,
         route: &'static str,
         whole: Checked,
@@ -202,5 +205,24 @@ pub fn failure(row: u64, checked: Checked) -> Result<Option<Failure>> {
         Ok(()) => Ok(None),
         Err(Fault::Wrong(why)) => Ok(Some(Failure { row, place: String::new(), why })),
         Err(Fault::Error(error)) => Err(error),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Mutex;
+
+    use super::*;
+
+    #[test]
+    fn progress_counts_to_the_total_that_is_known_in_the_end() {
+        let (options, told) = (Options::default(), Mutex::new(Vec::new()));
+        let progress = |done: u64, total: u64| told.lock().unwrap().push((done, total));
+        let context = Context::new(&options, Some(&progress));
+        let counter = context.count(5, "tongues");
+        counter.advance(2);
+        counter.expect(3);
+        counter.advance(1);
+        assert_eq!(*told.lock().unwrap(), [(2, 5), (3, 3)]);
     }
 }

@@ -30,7 +30,7 @@ impl Verify for Curves {
     fn check(&self, curves: &Vec<Curve>, context: &Context) -> Result<Outcome> {
         let window = Window::new(self);
         let shown: Vec<&Curve> = curves.iter().filter(|curve| !curve.pieces.is_empty()).collect();
-        context.each(ROUTE, complete(self, &window, &shown), &shown, |curve| {
+        context.outcome(ROUTE, complete(self, &window, &shown), &shown, |curve| {
             window.pieces(curve)?;
             curve.pieces.iter().flatten().try_for_each(|point| is_on(point, curve, &self.lambda1))
         })

@@ -20,7 +20,8 @@ type Forgery<Q> = fn(&mut <Q as crate::question::Question>::Answer);
 fn finds<Q: Verify>(input: Value, forgeries: &[Forgery<Q>]) {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/cli/data").into();
     let options = Options { folder, ..Options::default() };
-    let (question, context): (Q, _) = (serde_json::from_value(input).unwrap(), Context::new(&options, None));
+    let (question, context): (Q, _) =
+        (Q::read(input.as_object().unwrap()).unwrap(), Context::new(&options, None));
     let failures = |forge: Forgery<Q>| {
         let mut answer = question.answer(&context.work()).unwrap();
         forge(&mut answer);

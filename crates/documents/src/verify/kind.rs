@@ -1,18 +1,14 @@
 //! A kind of documents: how its question is read and answered again, and the other route to the answer.
 
-use serde::Deserialize;
-use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
-use serde_path_to_error::{Path, Segment};
 
 use super::again::Excluded;
 use super::context::{Context, Outcome, REMEDY};
-use crate::input::json;
-use crate::question::Question;
+use crate::question::{Fields, Question};
 use number::error::{Error, Result};
 
 /// A question whose answers are held against another route.
-pub trait Verify: Question + DeserializeOwned {
+pub trait Verify: Question {
     /// Values of its documents that the input does not determine.
     const EXCLUDED: &'static [Excluded] = &[];
 
@@ -60,36 +56,31 @@ impl Kind {
 }
 
 /// The question in a document.
-pub fn asked<Q: DeserializeOwned>(document: &Map<String, Value>) -> Result<Q> {
-    #[derive(Deserialize)]
-    struct Input<Q> {
-        input: Q,
-    }
-    let input = document.iter().filter(|(key, _)| *key == "input");
-    typed(input.map(|(key, value)| (key.clone(), value.clone())).collect()).map(|Input { input }| input)
+pub fn asked<Q: Fields>(document: &Map<String, Value>) -> Result<Q> {
+    Q::read(input(document)?).map_err(|error| not_as_written("input", &error.to_string()))
 }
 
-/// All fields by their types; one that is wrong is named by its path.
-pub fn typed<T: DeserializeOwned>(document: Map<String, Value>) -> Result<T> {
-    let whole = Value::Object(document);
-    serde_path_to_error::deserialize(&whole).map_err(|fault| {
-        let path = fault.path().to_string();
-        let why = format!("{}; {REMEDY}", json::plain(fault.inner()));
-        match at(&whole, fault.path()) {
-            Some(value) if !value.is_object() && !value.is_array() => Error::input(&path, value, why),
-            _ => {
-                let field = if path == "." { "document" } else { &path };
-                Error::input(field, "not as kickdrift writes it", why)
-            }
+/// The `input` of a document.
+fn input(document: &Map<String, Value>) -> Result<&Map<String, Value>> {
+    match document.get("input") {
+        None => Err(not_as_written("document", "missing field `input`")),
+        Some(Value::Object(input)) => Ok(input),
+        Some(Value::Array(_)) => Err(not_as_written("input", "found a list where an object belongs")),
+        Some(other) => {
+            let name = match other {
+                Value::String(_) => "the text ",
+                Value::Number(_) => "the number ",
+                _ => "",
+            };
+            Err(Error::input(
+                "input",
+                other,
+                format!("found {name}{other} where an object belongs; {REMEDY}"),
+            ))
         }
-    })
+    }
 }
 
-/// The value at a path.
-fn at<'a>(whole: &'a Value, path: &Path) -> Option<&'a Value> {
-    path.iter().try_fold(whole, |value, step| match step {
-        Segment::Map { key } => value.get(key),
-        Segment::Seq { index } => value.get(index),
-        _ => None,
-    })
+fn not_as_written(field: &str, why: &str) -> Error {
+    Error::input(field, "not as kickdrift writes it", format!("{why}; {REMEDY}"))
 }

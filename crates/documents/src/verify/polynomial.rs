@@ -16,7 +16,7 @@ type Bivariate = number::Polynomial<number::Polynomial<Rational>>;
 impl Verify for Polynomial {
     fn check(&self, polynomials: &Polynomials, context: &Context) -> Result<Outcome> {
         let is_affordable = check_ratio(self.ratio.p(), self.ratio.q(), &context.limits()).map(drop);
-        let mut outcome = context.each(ROUTE, is_affordable, polynomials, |(name, polynomial)| {
+        let mut outcome = context.outcome(ROUTE, is_affordable, polynomials, |(name, polynomial)| {
             located(name, equals(self.ratio, name, polynomial))
         })?;
         // A row is a term.

@@ -13,7 +13,7 @@ const ROUTE: &str =
 
 impl Verify for Proposition {
     fn check(&self, (check, witnesses): &(Check, Vec<Witness>), context: &Context) -> Result<Outcome> {
-        context.each(ROUTE, whole(self.max, check, witnesses), witnesses, passes)
+        context.outcome(ROUTE, whole(self.max, check, witnesses), witnesses, passes)
     }
 }
 

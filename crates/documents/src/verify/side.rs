@@ -20,7 +20,7 @@ impl Verify for CompareMethods {
         // (h² Λ1, Λ2/Λ1), row by row.
         let row = |up| steps.iter().zip(&squares).map(|(h, s)| (s.to_f64(), to_f64(&ratio(h, up)))).collect();
         let rows: Vec<Vec<(f64, f64)>> = ups.iter().map(row).collect();
-        context.each(ROUTE, Ok(()), sides, |side| is_so_at(side, &rows))
+        context.outcome(ROUTE, Ok(()), sides, |side| is_so_at(side, &rows))
     }
 }
 

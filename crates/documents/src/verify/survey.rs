@@ -22,7 +22,7 @@ impl Verify for Survey {
     fn check(&self, survey: &tongue::Survey, context: &Context) -> Result<Outcome> {
         let (list, rho): (Vec<Ratio>, _) = (Ratio::up_to(self.max_sum).collect(), &self.rho);
         let is_thin = |thin: &Thin| is_thin(thin, rho, &context.limits());
-        let mut outcome = context.each(ROUTE, Ok(()), &survey.thinnest, is_thin)?;
+        let mut outcome = context.outcome(ROUTE, Ok(()), &survey.thinnest, is_thin)?;
         // One tongue each of a sample of ratios, with all that the survey counts of it.
         let most = if context.options.all { list.len() as u64 } else { SAMPLE };
         let name = format!("{} {rho}", self.max_sum);

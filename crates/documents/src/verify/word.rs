@@ -74,11 +74,11 @@ impl Verify for Word {
         let (word, rho) = (&linted.word, linted.rho.clone().unwrap_or_default());
         let spans = linted.spans(self.lambda1.as_ref());
         let Some(pieces) = &linted.pieces else {
-            return context.each(ROUTE, has_order(linted), &spans, |span| is_so(span, word, &rho));
+            return context.outcome(ROUTE, has_order(linted), &spans, |span| is_so(span, word, &rho));
         };
         let friction = self.friction.as_ref().map_or(0.0, |rate| rate.to_f64()) / pieces.root.mid_f64();
         let rho = rational::to_f64(&rho);
-        context.each(ROUTE, Ok(()), &spans, |span| is_so_in_doubles(span, word, rho, friction))
+        context.outcome(ROUTE, Ok(()), &spans, |span| is_so_in_doubles(span, word, rho, friction))
     }
 }
 
@@ -170,7 +170,7 @@ fn verdict_at(omega_h: f64, stable: bool) -> String {
 
 impl Verify for Methods {
     fn check(&self, methods: &&'static [Listed], context: &Context) -> Result<Outcome> {
-        context.each(ROUTE, Ok(()), methods, has_edges)
+        context.outcome(ROUTE, Ok(()), methods, has_edges)
     }
 }
 

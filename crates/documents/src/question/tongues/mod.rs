@@ -7,7 +7,8 @@ use super::asking::{Fields, Question, Work, question};
 use super::field::{flag, notation};
 use super::ratios::{MOST_SUM, Ratios};
 use crate::report::document::{Document, Layout};
-use crate::report::tongues::{CAPTION, CAPTION_LATEX, TongueTally, needed, record};
+use crate::report::shape::{Keys, Schema, Shape};
+use crate::report::tongues::{CAPTION, CAPTION_LATEX, TongueTally, keys, needed, record};
 use atlas::Atlas;
 pub use atlas::Colour;
 use clocks::resonance::Families;
@@ -93,11 +94,18 @@ impl Columns {
     }
 }
 
+const COLUMNS: Shape = Shape::Plain(
+    r#"{
+        "type": "string",
+        "pattern": "^(edges|(exact|growth|predicted|first-order)(,(growth|predicted|first-order))*)$"
+    }"#,
+);
+
 notation! {
     Columns: |_, text: &str| {
             Ok::<_, Error>(Columns(text.split(',').map(|name| name.trim().into()).collect()))
         },
-        |columns: &Columns| columns.0.join(",");
+        |columns: &Columns| columns.0.join(","), COLUMNS;
 }
 
 /// Digits beyond this are a slip of the keyboard.
@@ -278,6 +286,21 @@ impl Question for Tongues {
     const USAGE: Option<&'static str> =
         Some("(--ratio <P/Q> | --max-sum <N>) (--rho <R> | --lambda1 <X> --lambda2 <Y>)");
     type Answer = FoundTongues;
+
+    fn schema() -> Option<Schema> {
+        let body = Keys::new()
+            .key("tongues", Shape::List(&Shape::Object(keys)), "The tongues, one a row.")
+            .and(TongueTally::keys());
+        let says = "By p + q, then p, then m. What was not asked for (--columns, --digits, lambda1) is absent; null says that a tongue has none of it.";
+        // One ratio or all up to a sum, at a rho that is not below 0.
+        let rules = r#"{"allOf": [{"properties": {"input": {
+            "required": ["rho"],
+            "oneOf": [{"required": ["ratio"]}, {"required": ["max_sum"]}],
+            "properties": {"rho": {"pattern": "^[0-9]"}}
+        }}}]}"#;
+        let title = "Unstable intervals (tongues) in s = h1^2 lambda1, with certified edges";
+        Some(Schema::new(title, body).about(says).rules(rules))
+    }
 
     fn answer(&self, work: &Work) -> Result<FoundTongues> {
         self.first(u64::MAX, work)

@@ -9,6 +9,7 @@ use crate::question::asking::{Question, Work, question};
 use crate::question::field::StepRange;
 use crate::report::document::Document;
 use crate::report::record::Record;
+use crate::report::shape::{FLAG, INTEGER, Keys, Schema, Shape, TEXT, WIDE_ENCLOSURE};
 use crate::report::table::{Cell, Column};
 use num_traits::Zero;
 use number::error::Result;
@@ -23,6 +24,13 @@ question! {
 impl Question for Methods {
     const NAME: &'static str = "methods";
     type Answer = &'static [Listed];
+
+    fn schema() -> Option<Schema> {
+        const METHODS: Shape =
+            Shape::With(&Shape::List(&Shape::Object(|| record().keys())), r#"{"minItems": 1}"#);
+        let body = Keys::new().key("methods", METHODS, "The integrators.");
+        Some(Schema::new("The catalogue of integrators", body))
+    }
 
     fn answer(&self, work: &Work) -> Result<Self::Answer> {
         // It is the same whenever it is asked for.
@@ -55,47 +63,11 @@ impl Question for Methods {
     }
 
     fn show(&self, all: &Self::Answer) -> Document {
-        type Of<'a> = &'a Listed;
-        let exact =
-            |listed: Of| listed.linted.edge().and_then(Edge::rational).map_or(Cell::Missing, Cell::exact);
-        let of = |edge: Option<Ball>| -> Cell { edge.map(|edge| edge.to_f64_enclosure()).into() };
-        let engines = |listed: Of| match listed.method.engines {
-            [] => Cell::Missing,
-            all => Cell::Text(all.join("; ")),
-        };
-        let table = Record::new()
-            .field(Column::new("name").left(), |listed: Of| listed.method.name.into())
-            .field(Column::new("order"), |listed| listed.linted.order.nominal.into())
-            .field(Column::new("general_order").in_words("general"), |listed| {
-                listed.linted.general.as_ref().ok().map(|orders| orders.general.nominal).into()
-            })
-            .field(Column::new("nystrom_order").in_words("Nystrom"), |listed| {
-                listed.linted.general.as_ref().ok().map(|orders| orders.nystrom.nominal).into()
-            })
-            .field(Column::new("evaluations").in_words("cost"), |listed| listed.linted.cost.total().into())
-            .field(Column::new("palindrome").left(), |listed| listed.linted.word.asymmetry().is_none().into())
-            .field(
-                Column::new("edge").titled("omega h below", "$\\omega h$ below").enclosure(),
-                move |listed| of(listed.linted.edge_omega_h()),
-            )
-            .field(Column::new("nominal_edge").in_words("nominally").enclosure(), move |listed| {
-                of(listed.linted.nominal_edge())
-            })
-            .field(Column::new("edge_s").in_words("(omega h)^2").aside(), exact)
-            .field(Column::new("efficiency").enclosure(), |listed| listed.linted.efficiency().into())
-            .field(
-                Column::new("coupled_edge").titled("omega1 h below", "$\\omega_1 h$ below").enclosure(),
-                move |listed| of(listed.two.as_ref().and_then(Linted::edge_omega_h)),
-            )
-            .field(Column::new("free").titled("free", "free").left(), |listed| listed.is_free().into())
-            .field(Column::new("engines").left(), engines)
-            .field(Column::new("word").left().aside(), |listed| Cell::exact(&listed.linted.word))
-            .field(Column::new("source").left().aside(), |listed| listed.method.source.into())
-            .table(
-                "methods",
-                "Published integrators: order on oscillators, cost a step, stable steps, efficiency, engines",
-                all.iter(),
-            );
+        let table = record().table(
+            "methods",
+            "Published integrators: order on oscillators, cost a step, stable steps, efficiency, engines",
+            all.iter(),
+        );
         let lines = [
             format!("{} integrators; kickdrift word --method NAME shows one in full", all.len()),
             "order on oscillators; general: on all problems; Nystrom: where the kinetic energy is quadratic"
@@ -122,6 +94,68 @@ impl Question for Methods {
         );
         Document::new(Self::NAME).rows(table).for_people(people).summary(&lines)
     }
+}
+
+const EDGE: Shape = Shape::OrNull(&WIDE_ENCLOSURE);
+
+/// The row of an entry of the catalogue.
+fn record() -> Record<'static, Listed> {
+    type Of<'a> = &'a Listed;
+    let exact = |listed: Of| listed.linted.edge().and_then(Edge::rational).map_or(Cell::Missing, Cell::exact);
+    let of = |edge: Option<Ball>| -> Cell { edge.map(|edge| edge.to_f64_enclosure()).into() };
+    let engines = |listed: Of| match listed.method.engines {
+        [] => Cell::Missing,
+        all => Cell::Text(all.join("; ")),
+    };
+    Record::new()
+        .field(Column::new("name").left(), |listed: Of| listed.method.name.into())
+        .says(TEXT, "The name that --method takes.")
+        .field(Column::new("order"), |listed| listed.linted.order.nominal.into())
+        .says(INTEGER, "The order on oscillators when error coefficients below 2^-30 count as 0, friction aside.")
+        .field(Column::new("general_order").in_words("general"), |listed| {
+            listed.linted.general.as_ref().ok().map(|orders| orders.general.nominal).into()
+        })
+        .says(
+            Shape::OrNull(&INTEGER),
+            "The order on all problems that split into drifts and kicks, when coefficients below 2^-30 count as 0; null where a letter is no exponential of commutators.",
+        )
+        .field(Column::new("nystrom_order").in_words("Nystrom"), |listed| {
+            listed.linted.general.as_ref().ok().map(|orders| orders.nystrom.nominal).into()
+        })
+        .says(
+            Shape::OrNull(&INTEGER),
+            "The same where the kinetic energy is quadratic and the forces are those of a potential.",
+        )
+        .field(Column::new("evaluations").in_words("cost"), |listed| listed.linted.cost.total().into())
+        .says(INTEGER, "Evaluations, gradients, solves and exact flows of a step.")
+        .field(Column::new("palindrome").left(), |listed| listed.linted.word.asymmetry().is_none().into())
+        .says(FLAG, "Whether it is symmetric in time.")
+        .field(
+            Column::new("edge").titled("omega h below", "$\\omega h$ below").enclosure(),
+            move |listed| of(listed.linted.edge_omega_h()),
+        )
+        .says(EDGE, "The end of the stable interval of omega h that begins at 0; null for two forces and where there is no end.")
+        .field(Column::new("nominal_edge").in_words("nominally").enclosure(), move |listed| {
+            of(listed.linted.nominal_edge())
+        })
+        .says(EDGE, "The same edge, in omega h, when unstable intervals below 2^-30 of their size do not count, as rounded coefficients open them.")
+        .field(Column::new("edge_s").in_words("(omega h)^2").aside(), exact)
+        .says(Shape::OrNull(&TEXT), "Its square where it is rational.")
+        .field(Column::new("efficiency").enclosure(), |listed| listed.linted.efficiency().into())
+        .says(EDGE, "omega h at the nominal edge per evaluation, gradient and solve.")
+        .field(
+            Column::new("coupled_edge").titled("omega1 h below", "$\\omega_1 h$ below").enclosure(),
+            move |listed| of(listed.two.as_ref().and_then(Linted::edge_omega_h)),
+        )
+        .says(EDGE, "For two forces with lambda2/lambda1 = 1/16: sqrt(lambda1) h below which every step is stable; null for one force and where there is no such end.")
+        .field(Column::new("free").titled("free", "free").left(), |listed| listed.is_free().into())
+        .says(Shape::OrNull(&FLAG), "For two forces with lambda2/lambda1 = 1/16: whether no step is unstable before sqrt(lambda2) h = 2; null for one force.")
+        .field(Column::new("engines").left(), engines)
+        .says(Shape::OrNull(&TEXT), "Programs that have it, each with what to write there; null where none is known here.")
+        .field(Column::new("word").left().aside(), |listed| Cell::exact(&listed.linted.word))
+        .says(TEXT, "The word, its coefficients exact.")
+        .field(Column::new("source").left().aside(), |listed| listed.method.source.into())
+        .says(TEXT, "Where the coefficients come from.")
 }
 
 /// An entry of the catalogue.

@@ -11,6 +11,7 @@ pub use linted::{Linted, Span};
 
 use super::asking::{Question, Work};
 use crate::report::document::Document;
+use crate::report::shape::Schema;
 use linted::{BITS, Pieces};
 use num_traits::Zero;
 use number::error::{Error, Result};
@@ -36,6 +37,10 @@ impl Question for Word {
         "word --list",
     ];
     type Answer = Linted;
+
+    fn schema() -> Option<Schema> {
+        Some(shown::schema())
+    }
 
     fn answer(&self, work: &Work) -> Result<Linted> {
         let word = self.word()?;

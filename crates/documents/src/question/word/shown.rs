@@ -4,6 +4,7 @@ use super::asked::Word;
 use super::linted::{BITS, Linted, Span, omega_h};
 use crate::report::decimal;
 use crate::report::record::Record;
+use crate::report::shape::{FLAG, GROUP, GROUP_OR_NULL, INTEGER, SIGN, Schema, Shape, TEXT, WIDE_ENCLOSURE};
 use crate::report::table::{Cell, Column, Table};
 use num_traits::Zero;
 use number::{Ball, Laurent, Radical, Rational, Real};
@@ -15,38 +16,9 @@ type Line = (&'static str, String);
 impl Linted {
     /// Every interval with one answer.
     pub(super) fn rows(&self, lambda1: Option<&Laurent>) -> Table {
-        type Of<'a> = &'a Span;
-        let exact = |square: &Option<Rational>| square.as_ref().map_or(Cell::Missing, Cell::exact);
-        let record = Record::new()
-            .field(Column::new("stable").left(), |span: Of| span.stable.into())
-            .field(
-                Column::new("lower")
-                    .titled(
-                        &format!("{} from", self.unit()),
-                        if self.word.names_forces() {
-                            "$\\sqrt{\\Lambda_1}\\,h$ from"
-                        } else {
-                            "$\\omega h$ from"
-                        },
-                    )
-                    .enclosure(),
-                |span| span.enclosed()[0].into(),
-            )
-            .field(Column::new("upper").titled("to", "to").enclosure(), |span| span.enclosed()[1].into())
-            .field(Column::new("lower_s").in_words("lower (omega h)^2 exactly").aside(), move |span| {
-                exact(&span.squares[0])
-            })
-            .field(Column::new("upper_s").in_words("upper (omega h)^2 exactly").aside(), move |span| {
-                exact(&span.squares[1])
-            })
-            .field(Column::new("lower_included").in_words("with lower end").aside(), |span| {
-                span.includes[0].into()
-            })
-            .field(Column::new("upper_included").in_words("with upper end").aside(), |span| {
-                span.includes[1].into()
-            })
-            .field(Column::new("h_lower").titled("h from", "$h$ from").enclosure(), |span| span.h[0].into())
-            .field(Column::new("h_upper").titled("h to", "$h$ to").enclosure(), |span| span.h[1].into());
+        let formula =
+            if self.word.names_forces() { "$\\sqrt{\\Lambda_1}\\,h$ from" } else { "$\\omega h$ from" };
+        let record = spans(&format!("{} from", self.unit()), formula);
         record.table("intervals", "Stable and unstable steps of the word", &self.spans(lambda1))
     }
 
@@ -286,79 +258,176 @@ pub(super) fn record(question: &Word) -> Record<'_, Linted> {
     };
     let mut record = Record::new()
         .json("word", |linted: Of| Cell::exact(&linted.word))
-        .json("consistent", |linted| linted.word.is_consistent().into());
+        .says(TEXT, "The word that is asked about, its coefficients exact.")
+        .json("consistent", |linted| linted.word.is_consistent().into())
+        .says(FLAG, "Whether every sum of coefficients is 1.");
     for name in ["D", "K", "K1", "K2", "O"] {
-        record = record.json(format!("sums.{name}"), move |linted| sum(linted, name));
+        record = record
+            .json(&format!("sums.{name}"), move |linted| sum(linted, name))
+            .says(TEXT_OR_NULL, format!("Of {name}."));
     }
     record = record
         .json("palindrome", |linted| linted.word.asymmetry().is_none().into())
+        .says(FLAG, "Whether the word reads the same backwards, so that the method is symmetric in time.")
         .json("differs.letter", |linted| linted.word.asymmetry().map(|place| place.letter as u64).into())
+        .says(INTEGER, "The letter, counted from 1 when letters that touch are joined.")
         .json("differs.there", |linted| {
             linted.word.asymmetry().map_or(Cell::Missing, |place| Cell::Text(place.there))
         })
+        .says(TEXT, "That letter.")
         .json("differs.mirrored", |linted| {
             linted.word.asymmetry().map_or(Cell::Missing, |place| Cell::Text(place.mirrored))
         })
+        .says(TEXT, "The letter as far from the end.")
         .json("order", |linted| linted.order.order.into())
-        .json("nominal_order", |linted| linted.order.nominal.into());
+        .says(INTEGER, "The order on oscillators, exactly; 0 where the word is not consistent.")
+        .json("nominal_order", |linted| linted.order.nominal.into())
+        .says(
+            INTEGER,
+            "The order when error coefficients below 2^-30 count as 0, as rounded coefficients leave them.",
+        );
     type OfOrder = fn(&GeneralOrder) -> &FormalOrder;
-    let orders: [([&'static str; 4], OfOrder); 2] = [
-        (["general_order", "nominal_general_order", "general_error", "general_rounding"], |all| &all.general),
-        (["nystrom_order", "nominal_nystrom_order", "nystrom_error", "nystrom_rounding"], |all| &all.nystrom),
+    let orders: [(&'static str, &'static str, OfOrder); 2] = [
+        ("general", "all problems that split into drifts and kicks", |all| &all.general),
+        ("nystrom", "problems with a quadratic kinetic energy and the forces of a potential", |all| {
+            &all.nystrom
+        }),
     ];
-    for ([order, nominal, error, rounding], which) in orders {
+    for (name, problems, which) in orders {
         let of = move |linted: Of| linted.general.as_ref().ok().map(which).cloned();
         let terms = |terms: &[ErrorTerm]| Cell::Text(commutators(terms, usize::MAX));
         record = record
-            .json(order, move |linted| of(linted).map(|found| found.order).into())
-            .json(nominal, move |linted| of(linted).map(|found| found.nominal).into())
-            .json(error, move |linted| of(linted).map_or(Cell::Missing, |found| terms(&found.nominal_error)))
-            .json(rounding, move |linted| {
+            .json(&format!("{name}_order"), move |linted| of(linted).map(|found| found.order).into())
+            .says(
+                Shape::OrNull(&INTEGER),
+                format!(
+                    "The order on {problems}, exactly, by the commutators in the word's error; 9 (7 for two forces) stands for this order or a higher one. null where a letter is no exponential of commutators."
+                ),
+            )
+            .json(&format!("nominal_{name}_order"), move |linted| of(linted).map(|found| found.nominal).into())
+            .says(
+                Shape::OrNull(&INTEGER),
+                "The same when coefficients below 2^-30 count as 0, as rounded coefficients leave them.",
+            )
+            .json(&format!("{name}_error"), move |linted| {
+                of(linted).map_or(Cell::Missing, |found| terms(&found.nominal_error))
+            })
+            .says(
+                Shape::OrNull(&TEXT),
+                "The commutators of degree (nominal order + 1) in the error, drifts being A and kicks B, or B1 and B2; coefficients of more than 24 characters with seven digits.",
+            )
+            .json(&format!("{name}_rounding"), move |linted| {
                 let rounded = of(linted).filter(|found| found.nominal > found.order);
                 rounded.map_or(Cell::Missing, |found| terms(&found.error))
-            });
+            })
+            .says(
+                Shape::OrNull(&TEXT),
+                "The commutators of degree (order + 1) that the nominal order leaves out; null where both orders are equal.",
+            );
     }
     for (i, name) in ["A", "B", "C", "D"].into_iter().enumerate() {
-        record = record.json(format!("error.{name}"), move |linted| in_rho(&linted.order.error[i]));
+        record = record
+            .json(&format!("error.{name}"), move |linted| in_rho(&linted.order.error[i]))
+            .says(TEXT, format!("Of {name}."));
     }
     record
         .json("frequency.power", move |linted| term(&linted.order.frequency, true))
+        .says(INTEGER, "The power k of omega h.")
         .json("frequency.coefficient", move |linted| term(&linted.order.frequency, false))
+        .says(TEXT, "The coefficient c, exactly.")
         .json("impedance.power", move |linted| term(&linted.order.impedance, true))
+        .says(INTEGER, "The power k of omega h.")
         .json("impedance.coefficient", move |linted| term(&linted.order.impedance, false))
+        .says(TEXT, "The coefficient c, exactly.")
         .json("edge.omega_h", |linted| linted.edge_omega_h().map(|edge| edge.to_f64_enclosure()).into())
+        .says(WIDE_ENCLOSURE, "In omega h.")
         .json("edge.s", |linted| {
             linted
                 .edge_omega_h()
                 .map(|edge| linted.edge().map_or_else(|| edge.square(BITS), Edge::s).to_f64_enclosure())
                 .into()
         })
+        .says(WIDE_ENCLOSURE, "In s = lambda1 h^2.")
         .json("edge.exact", |linted| {
             linted.edge().and_then(Edge::rational).map_or(Cell::Missing, Cell::exact)
         })
+        .says(TEXT_OR_NULL, "s = lambda1 h^2 where it is rational.")
         .json("edge.side", |linted| linted.edge().map(|edge| i64::from(edge.side)).into())
+        .says(SIDE_OR_NULL, "The trace there is twice this; null where balls enclose the edge.")
         .json("edge.polynomial", |linted| {
             linted.edge().map_or(Cell::Missing, |edge| Cell::Text(polynomial(edge)))
         })
+        .says(TEXT_OR_NULL, "s is its only zero in the enclosure; squarefree, exact. Null where balls enclose the edge.")
         .json("free", |linted| linted.pieces.as_ref().map(|pieces| pieces.is_free).into())
+        .says(Shape::OrNull(&FLAG), "Whether no step at all is unstable, by theorem; null where the word has neither exact flows nor friction.")
         .json("nominal_edge", |linted| linted.nominal_edge().map(|ball| ball.to_f64_enclosure()).into())
+        .says(ENDS_OR_NULL, "The same edge, in omega h, when unstable intervals below 2^-30 of their size do not count, as rounded coefficients open them.")
         .json("evaluations.first", |linted| linted.cost.evaluations[0].into())
+        .says(INTEGER, "Evaluations of K1's force, or of the whole one.")
         .json("evaluations.second", |linted| linted.cost.evaluations[1].into())
+        .says(INTEGER, "Of K2's.")
         .json("evaluations.gradients", |linted| linted.cost.gradients.into())
+        .says(INTEGER, "Kicks with a higher power of the force.")
         .json("evaluations.solves", |linted| linted.cost.solves.into())
+        .says(INTEGER, "Implicit midpoints.")
         .json("evaluations.flows", |linted| linted.cost.flows.into())
+        .says(INTEGER, "Exact flows.")
         .json("per_unit", |linted| linted.per_unit().into())
+        .says(ENDS_OR_NULL, "Evaluations, gradients and solves per unit of omega h at the nominal edge.")
         .json("efficiency", |linted| linted.efficiency().into())
+        .says(ENDS_OR_NULL, "omega h at the nominal edge per evaluation, gradient and solve.")
         .json("verdict.kind", |linted| linted.at.as_ref().map(|found| found.kind).into())
+        .says(VERDICT, "The verdict, decided; edge where balls of 128 bits do not tell it, damped where friction draws every start to 0.")
         .json("verdict.stable", |linted| {
             linted.at.as_ref().filter(|place| place.kind != "edge").map(At::is_stable).into()
         })
+        .says(Shape::OrNull(&FLAG), "Whether powers are bounded; null on an edge.")
         .json("verdict.side", |linted| linted.at.as_ref().map(|found| i64::from(found.side)).into())
+        .says(SIGN, "1 where the trace is at least 2, -1 where it is at most -2.")
         .json("verdict.trace", |linted| linted.at.as_ref().map(|found| found.trace.to_f64_enclosure()).into())
+        .says(WIDE_ENCLOSURE, "The trace.")
         .json("verdict.growth_rate", move |linted| at(linted, |found| &found.ln_multiplier))
+        .says(ENDS_OR_NULL, "The logarithm of the largest eigenvalue's size per unit time, where it is hyperbolic or damped.")
         .json("verdict.frequency", move |linted| at(linted, |found| &found.angle))
+        .says(ENDS_OR_NULL, "The effective frequency, where it is elliptic.")
         .json("verdict.impedance", move |linted| at(linted, |found| &found.impedance))
+        .says(ENDS_OR_NULL, "The effective impedance, where it is elliptic and A = D.")
 }
+
+/// The schema of a word's document.
+pub(super) fn schema() -> Schema {
+    let none = Word {
+        word: None,
+        method: None,
+        lambda1: None,
+        lambda2: None,
+        h: None,
+        h_range: None,
+        friction: None,
+    };
+    let body = record(&none)
+        .keys()
+        .key("sums", GROUP, "The coefficients of the drifts and of the kicks of each force, added up exactly; null where the word does not name the force.")
+        .key("differs", GROUP_OR_NULL, "The first place where it does not; null for a palindrome.")
+        .key("error", GROUP, "The errors of the four entries of a step to leading order: the coefficients of (sqrt(lambda1) h)^(order + 1) in the time unit 1/sqrt(lambda1), exactly, rho = lambda2/lambda1.")
+        .key("frequency", GROUP_OR_NULL, "The effective frequency is omega (1 + c (omega h)^k + ...); null for two forces and where it is exact.")
+        .key("impedance", GROUP_OR_NULL, "The effective impedance sqrt(-C/B) is omega (1 + c (omega h)^k + ...); null for two forces, unless A = D, and where it is exact.")
+        .key("edge", GROUP_OR_NULL, "The end of the stable interval that begins at 0; null where there is no such interval or no end, or the stiffnesses of two forces are not given.")
+        .key("evaluations", GROUP, "The cost of a step; kicks without a drift between them share an evaluation, those at both ends of a step too.")
+        .key("verdict", GROUP_OR_NULL, "The verdict at the step h; null where none is given.")
+        .key("intervals", Shape::List(&Shape::Object(|| spans("", "").keys())), INTERVALS);
+    Schema::new(
+        "An integrator as its author writes it: consistency, symmetry, order, stable steps, cost",
+        body,
+    )
+}
+
+const INTERVALS: &str = "Every largest interval of omega h = sqrt(lambda1) h with one answer, or those that meet the range; empty where the stiffnesses of two forces are not given. Of words with exact flows, filters or friction those within the range (by default two periods of the fast force), each end enclosed; two that touch with one answer leave it open between the ends that they share.";
+const TEXT_OR_NULL: Shape = Shape::OrNull(&TEXT);
+const ENDS_OR_NULL: Shape = Shape::OrNull(&WIDE_ENCLOSURE);
+const SIDE_OR_NULL: Shape = Shape::Plain(r#"{"enum": [-1, 1, null]}"#);
+const VERDICT: Shape =
+    Shape::OneOf(&["elliptic", "hyperbolic", "parabolic", "coexistence", "damped", "edge"]);
 
 /// The polynomial of an edge, its coefficients exact.
 fn polynomial(edge: &Edge) -> String {
@@ -368,4 +437,46 @@ fn polynomial(edge: &Edge) -> String {
     let term = |(k, c): (usize, &Radical)| format!("({})*s^{k}", c.text(ToString::to_string));
     let terms = edge.polynomial.coefficients().iter().enumerate().filter(|(_, c)| !c.is_zero()).map(term);
     terms.collect::<Vec<_>>().join(" + ")
+}
+
+/// The row of an interval; its lower end has this title, and this one in LaTeX.
+fn spans(title: &str, formula: &str) -> Record<'static, Span> {
+    type Of<'a> = &'a Span;
+    let exact = |square: &Option<Rational>| square.as_ref().map_or(Cell::Missing, Cell::exact);
+    Record::new()
+        .field(Column::new("stable").left(), |span: Of| span.stable.into())
+        .says(FLAG, "Whether powers are bounded in it.")
+        .field(Column::new("lower").titled(title, formula).enclosure(), |span| span.enclosed()[0].into())
+        .says(ENDS_OR_NULL, "Its lower end; 0 for the first one.")
+        .field(Column::new("upper").titled("to", "to").enclosure(), |span| span.enclosed()[1].into())
+        .says(
+            ENDS_OR_NULL,
+            "Its upper end; null where there is none, or none in the range that was looked at.",
+        )
+        .field(Column::new("lower_s").in_words("lower (omega h)^2 exactly").aside(), move |span| {
+            exact(&span.squares[0])
+        })
+        .says(TEXT_OR_NULL, "The square of the lower end where it is rational.")
+        .field(Column::new("upper_s").in_words("upper (omega h)^2 exactly").aside(), move |span| {
+            exact(&span.squares[1])
+        })
+        .says(TEXT_OR_NULL, "The square of the upper end where it is rational.")
+        .field(Column::new("lower_included").in_words("with lower end").aside(), |span| {
+            span.includes[0].into()
+        })
+        .says(
+            Shape::OrNull(&FLAG),
+            "Whether the answer holds at the lower end; null where balls do not tell.",
+        )
+        .field(Column::new("upper_included").in_words("with upper end").aside(), |span| {
+            span.includes[1].into()
+        })
+        .says(
+            Shape::OrNull(&FLAG),
+            "Whether the answer holds at the upper end; null where balls do not tell.",
+        )
+        .field(Column::new("h_lower").titled("h from", "$h$ from").enclosure(), |span| span.h[0].into())
+        .says(ENDS_OR_NULL, "The lower step; null where no stiffness is given.")
+        .field(Column::new("h_upper").titled("h to", "$h$ to").enclosure(), |span| span.h[1].into())
+        .says(ENDS_OR_NULL, "The upper step; null where no stiffness is given, or there is none.")
 }

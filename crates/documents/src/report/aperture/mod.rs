@@ -5,6 +5,7 @@ mod chart;
 use super::decimal::few;
 use super::document::Document;
 use super::record::Record;
+use super::shape::{FLAG, Keys, ROUNDED, Shape, TEXT};
 use super::table::{Cell, Column};
 pub use chart::figure;
 use molecules::aperture::{EARLY, LATE, Measured, PHASES, Resonance, Step, rungs};
@@ -19,43 +20,119 @@ const DIGITS: u32 = 5;
 
 /// The document `kickdrift/aperture/1`; the caller adds the input.
 pub fn document(measured: &Measured) -> Document {
-    let Measured { measurement, resonances, steps, level, .. } = measured;
-    let table = record(measured).table("steps", "How hot a bond may be at each step, as measured", steps);
-    Document::new("aperture")
-        .entry("kind", MEASURED)
-        .entry("integrator", measured.word.to_string())
-        .entry("period", measurement.period())
-        .entry("thermal_energy", measurement.thermal())
-        .entry("limit", measurement.limit)
-        .entry("depth", measurement.depth)
-        .entry("level", *level)
-        .entry("resonances", resonance().all(resonances))
+    let rows: Vec<Row> = measured.steps.iter().map(|step| (step, measured.is_enough(step))).collect();
+    let table = record().table("steps", "How hot a bond may be at each step, as measured", &rows);
+    head()
+        .document(Document::new("aperture"), measured)
         .for_people(table.shortened(DIGITS))
         .rows(table)
         .summary(&lines(measured))
 }
 
-/// The record of a step.
-fn record(measured: &Measured) -> Record<'_, Step> {
+/// The keys of the document.
+pub fn keys() -> Keys {
+    const STEPS: Shape = Shape::With(&Shape::List(&Shape::Object(|| record().keys())), r#"{"minItems": 1}"#);
+    let says = "By steps. Starts of energy E = 1/16, 2/16, ... 1, 5/4, ... 40 kT in 48 phases; a bond is lost where it is longer or shorter by more than 1 nm at a kick.";
+    head().keys().key("steps", STEPS, says)
+}
+
+/// A double, measured or computed, that may be missing.
+const ROUNDED_OR_NULL: Shape = Shape::OrNull(&ROUNDED);
+const ABOVE_0: Shape = Shape::With(&ROUNDED, r#"{"exclusiveMinimum": 0}"#);
+const NOT_BELOW_0: Shape = Shape::With(&ROUNDED, r#"{"minimum": 0}"#);
+
+/// All but the steps.
+fn head() -> Record<'static, Measured> {
+    const K: Shape =
+        Shape::Plain(r#"{"const": "a measurement of the method on one bond in doubles, no proof"}"#);
     Record::new()
-        .field(Column::math("h", "h").in_unit("fs"), |step: &Step| to_f64(&step.step).into())
-        .field(Column::new("turn"), |step| step.turn.into())
-        .field(Column::math("k", "k"), |step| step.nearest.map(|(k, _)| k).into())
-        .field(Column::new("resonance").in_words("its step").in_unit("fs"), |step| {
+        .json("kind", |_: &Measured| MEASURED.into())
+        .says(K, "What every number here is.")
+        .json("integrator", |measured| Cell::exact(&measured.word))
+        .says(TEXT, "The word that was run.")
+        .json("period", |measured| measured.measurement.period().into())
+        .says(ABOVE_0, "The period of the smallest oscillations in fs; a rounded double.")
+        .json("thermal_energy", |measured| measured.measurement.thermal().into())
+        .says(ABOVE_0, "kT in kJ/mol; a rounded double.")
+        .json("limit", |measured| measured.measurement.limit.into())
+        .says(
+            Shape::OrNull(&NOT_BELOW_0),
+            "The step in fs at which linear stability ends; null where a slow force has steps of its own, or where there is no end; a rounded double.",
+        )
+        .json("depth", |measured| measured.measurement.depth.into())
+        .says(
+            ROUNDED_OR_NULL,
+            "The energy in kT at which the bond breaks by itself, whatever the step; null where it does not; a rounded double.",
+        )
+        .json("level", |measured| measured.level.into())
+        .says(
+            NOT_BELOW_0,
+            "The logarithm of bonds times picoseconds: about the energy in kT of the hottest of them; a rounded double.",
+        )
+        .value("resonances", |measured| resonance().all(&measured.resonances).into())
+        .says(
+            Shape::List(&Shape::Object(|| resonance().keys())),
+            "The first steps at which the method turns by the k-th part of a full turn.",
+        )
+}
+
+/// A step, and whether it is enough.
+type Row<'a> = (&'a Step, bool);
+
+/// The record of a step.
+fn record<'a>() -> Record<'a, Row<'a>> {
+    const TURN: Shape = Shape::OrNull(&Shape::With(&ROUNDED, r#"{"minimum": 0, "maximum": 0.5}"#));
+    const SHARE: Shape = Shape::With(&ROUNDED, r#"{"minimum": 0, "maximum": 1}"#);
+    Record::new()
+        .field(Column::math("h", "h").in_unit("fs"), |(step, _): &Row| to_f64(&step.step).into())
+        .says(ABOVE_0, "The step in fs; a rounded double.")
+        .field(Column::new("turn"), |(step, _)| step.turn.into())
+        .says(
+            TURN,
+            "The share of a full turn that the method makes in a step, for small oscillations; null where the step is linearly unstable; a rounded double.",
+        )
+        .field(Column::math("k", "k"), |(step, _)| step.nearest.map(|(k, _)| k).into())
+        .says(
+            Shape::OrNull(&Shape::Plain(r#"{"type": "integer", "minimum": 2}"#)),
+            "The k for which 2 pi/k is nearest to the turn; null where the step is linearly unstable.",
+        )
+        .field(Column::new("resonance").in_words("its step").in_unit("fs"), |(step, _)| {
             step.nearest.and_then(|(_, h)| h).into()
         })
-        .field(Column::new("aperture").titled("E*", "$E^*$").in_unit("kT"), |step| step.aperture.into())
-        .field(Column::new("half_aperture").titled("half", "half").in_unit("kT"), |step| step.half.into())
-        .field(Column::new("share_lost").in_words("share lost"), |step| step.share.into())
-        .field(Column::new("enough_for").in_words("enough for"), |step| step.enough.into())
-        .field(Column::new("enough"), move |step| measured.is_enough(step).into())
+        .says(
+            ROUNDED_OR_NULL,
+            "The step in fs nearest to this one at which the method turns by 2 pi/k; null where there is none from 0 to three times this step; a rounded double.",
+        )
+        .field(Column::new("aperture").titled("E*", "$E^*$").in_unit("kT"), |(step, _)| step.aperture.into())
+        .says(
+            ROUNDED_OR_NULL,
+            "The least energy in kT at which some phase is lost within 20000 steps; null where none is up to 40 kT; a rounded double.",
+        )
+        .field(Column::new("half_aperture").titled("half", "half").in_unit("kT"), |(step, _)| step.half.into())
+        .says(
+            ROUNDED_OR_NULL,
+            "The least energy in kT at which at least half of all phases are lost within 20000 steps; null where they are at none up to 40 kT; a rounded double.",
+        )
+        .field(Column::new("share_lost").in_words("share lost"), |(step, _)| step.share.into())
+        .says(SHARE, "The share of a thermal ensemble of starts that is lost within 3000 steps; a rounded double.")
+        .field(Column::new("enough_for").in_words("enough for"), |(step, _)| step.enough.into())
+        .says(
+            ROUNDED_OR_NULL,
+            "exp(aperture): about one of so many bonds times picoseconds is as hot; null above 40 kT; a rounded double.",
+        )
+        .field(Column::new("enough"), |(_, enough)| (*enough).into())
+        .says(FLAG, "Whether the step is linearly stable and its aperture not below the level.")
 }
 
 fn resonance() -> Record<'static, Resonance> {
-    let step = |resonance: &Resonance| resonance.step.map_or(Cell::Missing, Cell::Float);
     Record::new()
         .field(Column::new("k"), |resonance: &Resonance| resonance.k.into())
-        .field(Column::new("h"), step)
+        .says(Shape::Plain(r#"{"type": "integer", "minimum": 3, "maximum": 8}"#), "The part of a full turn.")
+        .field(Column::new("h"), |resonance| resonance.step.into())
+        .says(
+            ROUNDED_OR_NULL,
+            "The step in fs; null where there is none up to the linear limit, or to 5/4 of the longest step asked for; a rounded double.",
+        )
 }
 
 fn lines(measured: &Measured) -> Vec<String> {

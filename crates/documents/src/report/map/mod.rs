@@ -5,14 +5,14 @@ mod arrays;
 mod rows;
 mod tally;
 
-use serde_json::json;
-
 pub use arrays::MapArrays;
 pub use rows::{Found, Marked, Rows, marked, needed};
 pub(crate) use tally::Fastest;
 pub use tally::{Counts, MapTally};
 
 use super::document::Document;
+use super::record::Record;
+use super::shape::{COUNT, GROUP, POSITIVE, Schema};
 use super::table::Table;
 use clocks::verdict::Tier;
 
@@ -30,21 +30,56 @@ pub fn document(tally: &MapTally, rows: Option<Table>) -> Document {
         format!("  decided by {} {filter}, {} {refine}, {} {exact}", tiers[0], tiers[1], tiers[2]),
     ];
     lines.extend(tally.lines());
-    let document = Document::new("map")
-        .entry("pairs", counts.pairs)
-        .entry("stable", counts.stable)
-        .entry("unstable", counts.unstable)
-        .entry("parabolic", counts.parabolic)
-        .entry("coexistence", counts.coexistence)
-        .entry("decided_by", json!({tiers[0]: filter, tiers[1]: refine, tiers[2]: exact}))
-        // The kicks composed: the cost of the map, the same on every machine.
-        .entry("work.kicks", tally.counters.kicks)
-        .entry("work.kicks_again", tally.counters.kicks_again)
-        .entry("work.escalated", tally.counters.escalated)
-        .entries(tally.entries());
+    let document = record().document(Document::new("map"), tally);
     match rows {
         Some(table) => document.long_rows(table),
         None => document,
     }
     .summary(&lines)
+}
+
+/// The schema of the document.
+pub fn schema() -> Schema {
+    let says = "Every pair is decided, so stable + unstable = pairs = filter + refine + exact. The pairs themselves are in the CSV form.";
+    let body = record()
+        .keys()
+        .key("decided_by", GROUP, "The pairs that each tier of arithmetic decided.")
+        .key("work", GROUP, "The cost of the map, the same on every machine.");
+    Schema::new("The verdicts of a grid of step pairs, counted", body).about(says)
+}
+
+/// The record of the counts.
+fn record() -> Record<'static, MapTally> {
+    let mut record = Record::new()
+        .json("pairs", |tally: &MapTally| tally.counts.pairs.into())
+        .says(POSITIVE, "All pairs of the grid, or of its part.")
+        .json("stable", |tally| tally.counts.stable.into())
+        .says(COUNT, "Elliptic or coexistence.")
+        .json("unstable", |tally| tally.counts.unstable.into())
+        .says(COUNT, "Hyperbolic or parabolic.")
+        .json("parabolic", |tally| tally.counts.parabolic.into())
+        .says(COUNT, "")
+        .json("coexistence", |tally| tally.counts.coexistence.into())
+        .says(COUNT, "");
+    for (k, tier) in Tier::ALL.into_iter().enumerate() {
+        let path = format!("decided_by.{}", tier.name());
+        record = record.json(&path, move |tally| tally.counts.decided_by[k].into()).says(COUNT, "");
+    }
+    record
+        .json("work.kicks", |tally| tally.counters.kicks.into())
+        .says(COUNT, "Kicks composed by the filter.")
+        .json("work.kicks_again", |tally| tally.counters.kicks_again.into())
+        .says(COUNT, "Kicks composed again for labels and growth.")
+        .json("work.escalated", |tally| tally.counters.escalated.into())
+        .says(COUNT, "Pairs that the filter sent up the ladder.")
+        .optional("families", MapTally::families)
+        .says(
+            tally::FAMILIES,
+            "Growing pairs by the a of their dominant family; only where labels were asked for and some pair grows.",
+        )
+        .optional("fastest", MapTally::fastest)
+        .says(
+            tally::FASTEST,
+            "The pair that grows fastest: no other one is proven to grow faster. Only where growth was asked for and some pair grows.",
+        )
 }

@@ -6,6 +6,9 @@ use serde_json::{Value, json};
 
 use super::rows::{Found, marked};
 use crate::report::decimal::enclosure;
+use crate::report::record::Record;
+use crate::report::shape::{EXACT, INTEGER, Keys, POSITIVE, POSITIVE_ENCLOSURE, Shape};
+use crate::report::table::Cell;
 use clocks::map::{Band, Counters, Enclosure, Grid};
 use clocks::verdict::{Kind, Verdict};
 
@@ -67,6 +70,28 @@ pub struct Fastest {
     pub tenfold: Enclosure,
 }
 
+pub(super) const FAMILIES: Shape = Shape::List(&Shape::Object(|| {
+    Keys::new().key("a", INTEGER, "a of the dominant family.").key(
+        "pairs",
+        POSITIVE,
+        "So many pairs grow with it.",
+    )
+}));
+pub(super) const FASTEST: Shape = Shape::Object(|| fastest_record().keys());
+
+/// The entries of the pair that grows fastest.
+fn fastest_record() -> Record<'static, Fastest> {
+    Record::new()
+        .json("h1", |fastest: &Fastest| Cell::exact(&fastest.steps[0]))
+        .says(EXACT, "")
+        .json("h2", |fastest| Cell::exact(&fastest.steps[1]))
+        .says(EXACT, "")
+        .json("growth_rate", |fastest| (fastest.rate.lo, fastest.rate.hi).into())
+        .says(POSITIVE_ENCLOSURE, "Per unit time.")
+        .json("steps_until_tenfold", |fastest| (fastest.tenfold.lo, fastest.tenfold.hi).into())
+        .says(POSITIVE_ENCLOSURE, "Slow steps until the amplitude has grown tenfold.")
+}
+
 impl MapTally {
     /// Counts a band in.
     pub fn add(&mut self, grid: &Grid, band: &Band) {
@@ -89,20 +114,15 @@ impl MapTally {
         }
     }
 
-    /// The entries beside the verdicts, where some pair grows.
-    pub(super) fn entries(&self) -> Vec<(&'static str, Value)> {
-        let mut entries = Vec::new();
-        if !self.families.is_empty() {
-            let count = |(a, pairs): (&i64, &u64)| json!({"a": a, "pairs": pairs});
-            entries.push(("families", self.families.iter().map(count).collect()));
-        }
-        if let Some(Fastest { steps: [h1, h2], rate, tenfold, .. }) = &self.fastest {
-            let enclosure = |x: &Enclosure| json!({"lo": x.lo, "hi": x.hi});
-            let (rate, tenfold) = (enclosure(rate), enclosure(tenfold));
-            let value = json!({"h1": h1, "h2": h2, "growth_rate": rate, "steps_until_tenfold": tenfold});
-            entries.push(("fastest", value));
-        }
-        entries
+    /// The entry `families`, where labels were asked for and some pair grows.
+    pub(super) fn families(&self) -> Option<Value> {
+        let count = |(a, pairs): (&i64, &u64)| json!({"a": a, "pairs": pairs});
+        (!self.families.is_empty()).then(|| self.families.iter().map(count).collect())
+    }
+
+    /// The entry `fastest`, where growth was asked for and some pair grows.
+    pub(super) fn fastest(&self) -> Option<Value> {
+        self.fastest.as_ref().map(|fastest| fastest_record().entries(fastest))
     }
 
     pub(super) fn lines(&self) -> Vec<String> {

@@ -6,6 +6,7 @@ mod chart;
 use crate::report::decimal::few;
 use crate::report::document::Document;
 use crate::report::record::Record;
+use crate::report::shape::{FLAG, Keys, ROUNDED, Shape};
 use crate::report::table::Column;
 pub use chart::figure;
 use systems::avi::{Run, Sample};
@@ -38,21 +39,53 @@ pub fn document(run: &Run) -> Document {
     if let Some(off) = run.displacement {
         lines.push(format!("  growth, about the integrator's own orbit, {off:.3e} from the equilibrium"));
     }
-    Document::new("simulate")
-        .entry("growth_rate_predicted", run.predicted)
-        .entry("growth_rate_measured", run.measured)
-        .entry("linear", run.linear)
-        .entry("irreversibility", run.irreversibility)
-        .entries(run.displacement.map(|off| ("own_orbit", serde_json::json!({"displacement": off}))))
+    head()
+        .document(Document::new("simulate"), run)
         .rows(record().table("series", "Energy, momentum and amplitude over time", &run.series))
         .summary_alone(&lines)
+}
+
+/// The keys of the document.
+pub fn keys() -> Keys {
+    let says = "The state at every multiple of the synchronization period.";
+    head().keys().key("series", Shape::List(&Shape::Object(|| record().keys())), says)
+}
+
+/// All but the series.
+fn head() -> Record<'static, Run> {
+    Record::new()
+        .json("growth_rate_predicted", |run: &Run| run.predicted.into())
+        .says(
+            Shape::OrNull(&ROUNDED),
+            "The middle of the enclosure that a verdict holds, a rounded double; null where none is proven.",
+        )
+        .json("growth_rate_measured", |run| run.measured.into())
+        .says(Shape::OrNull(&ROUNDED), "Of small deviations; rounded double; null where the run overflows.")
+        .json("linear", |run| run.linear.into())
+        .says(FLAG, "Whether deviations of any size move like small ones.")
+        .json("irreversibility", |run| run.irreversibility.into())
+        .says(
+            Shape::OrNull(&ROUNDED),
+            "Rounded double: forward one period and back, the largest difference relative to the start; null where it overflows.",
+        )
+        .optional("own_orbit", |run| Some(serde_json::json!({"displacement": run.displacement?})))
+        .says(
+            Shape::Object(|| {
+                Keys::new().key("displacement", ROUNDED, "Rounded double: how far it is from the equilibrium.")
+            }),
+            "Growth is predicted and measured about the integrator's own orbit, where it is not the equilibrium.",
+        )
 }
 
 /// The record of a sample.
 fn record() -> Record<'static, Sample> {
     Record::new()
         .field(Column::new("time"), |sample: &Sample| sample.time.into())
+        .says(ROUNDED, "")
         .field(Column::new("energy"), |sample| sample.energy.into())
+        .says(ROUNDED, "")
         .field(Column::new("momentum"), |sample| sample.momentum.into())
+        .says(ROUNDED, "")
         .field(Column::new("amplitude"), |sample| sample.amplitude.into())
+        .says(ROUNDED, "")
 }

@@ -14,5 +14,5 @@ mod rows;
 mod tally;
 pub mod trace;
 
-pub use rows::{CAPTION, CAPTION_LATEX, needed, record};
+pub use rows::{CAPTION, CAPTION_LATEX, keys, needed, record};
 pub use tally::TongueTally;

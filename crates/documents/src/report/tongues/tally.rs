@@ -4,6 +4,7 @@ use serde_json::{Value, json};
 
 use super::rows::side;
 use crate::report::decimal::{self, few};
+use crate::report::shape::{COUNT, Keys, Shape};
 use clocks::tongue::Tongue;
 
 /// Counts and extremes, in the order in which the tongues come.
@@ -58,6 +59,22 @@ impl TongueTally {
             ));
         }
         entries
+    }
+
+    /// What they are.
+    pub fn keys() -> Keys {
+        Keys::new()
+            .key("count", COUNT, "The rows above.")
+            .key("open", COUNT, "Tongues whose two edges are proven different.")
+            .key("closed", COUNT, "Tongues whose two edges are proven equal: Q = I or -I there.")
+            .optional(
+                "predicted_points",
+                Shape::Object(|| {
+                    let keys = ["inside", "on_edge", "outside"].into_iter();
+                    keys.fold(Keys::new(), |keys, place| keys.key(place, COUNT, ""))
+                }),
+                "The points p theta = m pi among the rows, by where they lie.",
+            )
     }
 
     /// For people; `what` says of which ratios the tongues are.

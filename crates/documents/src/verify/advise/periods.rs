@@ -18,7 +18,7 @@ pub fn check(advice: &Advice, context: &Context) -> Result<Outcome> {
     let periods = Periods { advice };
     let rows: Vec<(&Answer, &Row)> =
         advice.schemes.iter().flat_map(|answer| answer.rows.iter().map(move |row| (answer, row))).collect();
-    context.each(ROUTE, periods.whole(), &rows, |(answer, row)| periods.row(answer, row))
+    context.outcome(ROUTE, periods.whole(), &rows, |(answer, row)| periods.row(answer, row))
 }
 
 /// Advice, its modes as masses on clocks.

@@ -23,7 +23,7 @@ use number::rational::{from_f64_exact, to_f64};
 use systems::levels::Method;
 use systems::stretches::Stretch;
 use systems::vary::Intervals;
-use systems::{Holds, Limits, Model, Route, half_period};
+use systems::{Holds, Limits, Model, Route, eigen, half_period};
 
 /// Stretches that are looked at, unless all are asked for; all of measured levels where it costs no more than
 /// is allowed.
@@ -195,8 +195,7 @@ impl<'a> Places<'a> {
         let (a, c) = (block(0, 0), block(1, 0));
         let s = block(0, 1).transpose() * &c;
         let is_finite = (0..n).all(|j| (0..n).all(|i| s[(i, j)].is_finite()));
-        let Some(eigen) = is_finite.then(|| s.eigen().ok()).flatten() else { return Ok(Motion::Unclear) };
-        let mu: Vec<_> = (0..n).map(|k| eigen.S()[k]).collect();
+        let Some((mu, v)) = is_finite.then(|| eigen(&s)).flatten() else { return Ok(Motion::Unclear) };
         // 1 + 2 μ = cosh ln λ; see `system::spectrum::rate`.
         let excess = mu.iter().map(|mu| (mu.norm() + (mu + 1.0).norm() - 1.0) / 2.0).fold(0.0, f64::max);
         let growth = 2.0 * excess.sqrt().asinh();
@@ -207,7 +206,6 @@ impl<'a> Places<'a> {
         if mu.iter().any(|mu| mu.im != 0.0) {
             return Ok(Motion::Unclear);
         }
-        let v = Mat::from_fn(n, n, |i, k| eigen.U()[(i, k)].re);
         let (av, cv) = (&a * &v, &c * &v);
         let sign = |k: usize| (0..n).map(|i| av[(i, k)] * cv[(i, k)]).sum::<f64>() > 0.0;
         // μ = −sin² θ/2 for λ = e^(iθ).

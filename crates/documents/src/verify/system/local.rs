@@ -1,12 +1,11 @@
 //! A scheme of local time steps run as codes run it, substep by substep, against the stiffness that stands
 //! for it.
 
-use faer::{Mat, Side};
 use num_traits::{Num, One, Zero};
 
 use crate::verify::context::{Checked, holds};
 use number::Rational;
-use systems::{Analysis, Holds, Level, LocalSteps, SchemeSummary, SparseSteps};
+use systems::{Analysis, Holds, Level, LocalSteps, SchemeSummary, SparseSteps, symmetric_eigenvalues};
 
 /// Degrees of freedom of which one is displaced, at most.
 const MOST: usize = 16;
@@ -168,7 +167,7 @@ fn extremes(n: usize, of: impl Fn(&[f64]) -> Vec<f64>) -> [f64; 2] {
         _ => 0.0,
     };
     let k = diagonal.len();
-    let all = Mat::from_fn(k, k, entry).self_adjoint_eigenvalues(Side::Lower).unwrap_or(diagonal.clone());
+    let all = symmetric_eigenvalues(k, &entry).unwrap_or(diagonal.clone());
     [all.iter().copied().fold(f64::INFINITY, f64::min), all.into_iter().fold(f64::NEG_INFINITY, f64::max)]
 }
 

@@ -21,7 +21,7 @@ impl Verify for Question {
         let (limits, given) = (context.limits(), self.stiffness()?);
         let whole = complete(self, &found.tongues, &given.rho, &limits);
         let has_closed_forms = found.request.wanted.exact;
-        context.each(ROUTE, whole, &found.tongues, |tongue| {
+        context.outcome(ROUTE, whole, &found.tongues, |tongue| {
             Row { tongue, given: &given, has_closed_forms, limits: &limits }.holds()
         })
     }
