@@ -89,7 +89,10 @@ impl Map {
         let bar = work.count(shard.pairs(grid), "pairs");
         let resources = Resources { threads: work.threads, limits: work.limits(), ..Resources::default() };
         let task = map::Map::of(grid).with(self.products()).shard(shard).within(resources);
-        let task = store.map_or(task.clone(), |store| task.kept_in(store));
+        let task = match store {
+            Some(store) => task.kept_in(store),
+            None => task,
+        };
         let see = |_, band: Band| {
             let pairs = band.counters.pairs;
             see(band)?;

@@ -37,7 +37,7 @@ question! {
         displace: Displacement = "1/10",
         /// Algorithm 1 as printed: whole kicks at the start of a period, none at its end [default: half a
         /// kick at both]
-        #[arg(long = "staggered", action = clap::ArgAction::SetTrue, hide_default_value = true, value_parser = staggered)]
+        #[arg(long = "staggered", action = clap::ArgAction::SetTrue, value_parser = staggered)]
         form: Ends = "symmetric",
     }
 }
