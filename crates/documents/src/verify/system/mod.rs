@@ -93,6 +93,10 @@ fn verdict(
                 Some(_) => {
                     "the scheme substep by substep, the kind in exact arithmetic, multipliers by the traces of the full period"
                 }
+                None if of_any.is_some() => {
+                    "the kind in exact arithmetic, multipliers by the traces of the dense full period and of its square, both sides of the \
+                     first unstable step by half periods of a rational system of the doubles given"
+                }
                 _ => {
                     "the kind in exact arithmetic, multipliers by the traces of the dense full period and of its square"
                 }
