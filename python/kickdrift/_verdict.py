@@ -114,6 +114,24 @@ class Verdict:
         return _ends(self.document.data["growth_rate"])
 
     @property
+    def bias(self) -> tuple[tuple[float, float], tuple[float, float]] | None:
+        """By how much the potential energy of a stable pair is off, 1 being right: doubles that enclose it where
+        velocities are thermal at the kicks (constant energy, OBABO), and in the drifts (BAOAB, LangevinMiddle).
+        None unless elliptic, and beyond 1,000 kicks a period.
+
+        Examples
+        --------
+        >>> import kickdrift as kd
+        >>> kicks, drifts = kd.decide(lambda1=1, lambda2=0, h1=1, h2=1).bias
+        >>> round(kicks[0], 6), round(drifts[0], 6)
+        (1.333333, 1.0)
+        """
+        found = self.document.data["bias"]
+        if found["at_kicks"] is None:
+            return None
+        return _ends(found["at_kicks"]), _ends(found["in_drifts"])
+
+    @property
     def m(self) -> int | None:
         """The half turns of the growing solution in a period, where it grows."""
         m: int | None = (self.document.data["resonance"] or {}).get("m")

@@ -160,7 +160,8 @@ impl Pair {
         let oscillator = self.oscillator.clone();
         let asked =
             Verdict { friction: self.friction.clone(), exact: self.exact, ..Verdict::of(&oscillator) };
-        Ok(asked.document(&Report { oscillator, decision, growth, exact_trace, friction }))
+        let bias = Report::bias(&oscillator, decision);
+        Ok(asked.document(&Report { oscillator, decision, growth, exact_trace, friction, bias }))
     }
 }
 

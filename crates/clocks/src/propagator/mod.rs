@@ -22,6 +22,7 @@
 //! assert_eq!(half.trace(), rational(2, 1)); // Q = I: the tongue is closed here
 //! ```
 
+mod bias;
 mod builder;
 mod clocks;
 mod elementary;
@@ -29,6 +30,7 @@ mod half;
 pub mod methods;
 mod signs;
 
+pub use bias::{Bias, MAX_BIAS_KICKS, bias, enclosed_bias};
 pub use builder::OscillatorBuilder;
 pub use clocks::{LongClocks, Oscillator, TwoClocks};
 pub use elementary::{apply_drift, apply_kick, drift, kick};

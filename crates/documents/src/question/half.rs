@@ -6,7 +6,7 @@ use crate::report::document::Document;
 use crate::report::record::Record;
 use crate::report::shape::{Keys, RATIONAL, SIGN, Schema, Shape, WIDE_ENCLOSURE};
 use crate::report::table::{Cell, Column};
-use clocks::propagator::{HalfPeriod, TwoClocks, half_period};
+use clocks::propagator::{Bias, HalfPeriod, TwoClocks, bias, half_period};
 use clocks::schedule::Schedule;
 use number::error::{Error, Result};
 use number::{ExactSign, Ratio, Rational, rational};
@@ -50,6 +50,17 @@ fn record<'a>() -> Record<'a, Entry<'a>> {
         .says(RATIONAL, "The entry, exactly.")
 }
 
+impl Half {
+    pub(crate) fn clocks(&self) -> TwoClocks<Rational> {
+        TwoClocks::with_rho(self.ratio, self.s.clone(), self.rho.clone())
+    }
+
+    /// By how much the potential energy of a stable pair is off.
+    pub(crate) fn bias(&self) -> Option<Bias<Rational>> {
+        bias(&self.clocks())
+    }
+}
+
 impl Question for Half {
     const NAME: &'static str = "half";
     const EXAMPLES: &'static [&'static str] = &["half --ratio 5/3 --s 11/4 --rho 1/25"];
@@ -60,7 +71,11 @@ impl Question for Half {
             &Shape::List(&Shape::Object(|| record().keys())),
             r#"{"minItems": 4, "maxItems": 4}"#,
         );
-        let body = Keys::new().key("entries", ENTRIES, "A, B, C, D in the time unit h1: B in h1, C in 1/h1.");
+        const BIAS: Shape = Shape::OrNull(&RATIONAL);
+        let says = "(lambda1 + lambda2) <x^2>/kT where both clocks kick, velocities thermal at the kicks (constant energy, OBABO), exactly; null unless elliptic.";
+        let drifts = "The same with a weak thermostat in the middle of every drift (BAOAB, LangevinMiddle).";
+        let body = Keys::new().key("bias.at_kicks", BIAS, says).key("bias.in_drifts", BIAS, drifts);
+        let body = body.key("entries", ENTRIES, "A, B, C, D in the time unit h1: B in h1, C in 1/h1.");
         let title = "The half period of two clocks in numbers: A, B, C, D at rational s and rho";
         Some(Schema::new(title, body))
     }
@@ -73,7 +88,7 @@ impl Question for Half {
         }
         // That its ticks can be counted.
         Schedule::two_clocks(self.ratio)?;
-        Ok(half_period(&TwoClocks::with_rho(self.ratio, self.s.clone(), self.rho.clone())))
+        Ok(half_period(&self.clocks()))
     }
 
     fn show(&self, half: &HalfPeriod<Rational>) -> Document {
@@ -89,6 +104,14 @@ impl Question for Half {
         let table =
             record().table("entries", "The half period [[A, B], [C, D]] in the time unit h1", &entries);
         let caption = format!("The entries of the half period at $s = {}$ in the time unit $h_1$", self.s);
-        Document::new(Self::NAME).rows(table.captioned(&caption)).summary(&[summary])
+        let (at_kicks, in_drifts) = match self.bias() {
+            Some(Bias { at_kicks, in_drifts }) => (Some(at_kicks.to_string()), Some(in_drifts.to_string())),
+            None => (None, None),
+        };
+        Document::new(Self::NAME)
+            .entry("bias.at_kicks", at_kicks)
+            .entry("bias.in_drifts", in_drifts)
+            .rows(table.captioned(&caption))
+            .summary(&[summary])
     }
 }

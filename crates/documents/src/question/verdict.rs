@@ -9,10 +9,10 @@ use crate::report::document::Document;
 use crate::report::friction;
 use crate::report::record::Record;
 use crate::report::shape::{
-    COUNT, EXACT, FLAG, GROUP_OR_NULL, INTEGER, KIND, SIGN, Schema, Shape, WIDE_ENCLOSURE,
+    COUNT, ENCLOSURE, EXACT, FLAG, GROUP_OR_NULL, INTEGER, KIND, SIGN, Schema, Shape, WIDE_ENCLOSURE,
 };
 use crate::report::table::{Cell, Column};
-use clocks::propagator::Oscillator;
+use clocks::propagator::{Bias, Oscillator, enclosed_bias};
 use clocks::resonance::dominant_family;
 use clocks::verdict::{
     Decision, Growth, Kind, Limits, Tier, decide_from, decide_steps, decide_with_growth, exact_trace,
@@ -118,6 +118,7 @@ impl Question for Verdict {
             growth,
             exact_trace: Decided::exact_trace(&oscillator, self.exact),
             friction: self.damped(&oscillator, work)?,
+            bias: Decided::bias(&oscillator, decision),
             oscillator,
         })
     }
@@ -141,6 +142,8 @@ pub struct Decided {
     pub exact_trace: Option<Rational>,
     /// The verdict with friction, where that was asked for.
     pub friction: Option<systems::friction::Friction>,
+    /// By how much the potential energy of a stable pair is off.
+    pub bias: Option<Bias<Ball>>,
 }
 
 const CAPTION: &str = "Stability of one pair of steps";
@@ -169,6 +172,12 @@ impl Decided {
         }
         let trace = exact_trace(&clocks);
         (wanted || trace.to_string().len() <= SHORT_TEXT).then_some(trace)
+    }
+
+    /// The bias of an elliptic pair with a period of at most [`MAX_BIAS_KICKS`](clocks::propagator::MAX_BIAS_KICKS).
+    pub fn bias(oscillator: &Oscillator, decision: Decision) -> Option<Bias<Ball>> {
+        let is_elliptic = decision.verdict.kind() == Kind::Elliptic;
+        oscillator.clocks().ok().filter(|_| is_elliptic).and_then(|clocks| enclosed_bias(&clocks))
     }
 
     /// ln μ / T as an enclosure, 0 where nothing grows exponentially.
@@ -225,12 +234,26 @@ fn record() -> Record<'static, Decided> {
         .says(INTEGER, "a of the dominant family.")
         .at("resonance.b", Column::math("b", "b"), |decided| decided.resonance().map(|(.., b)| b).into())
         .says(INTEGER, "b of the dominant family.")
+        .json("bias.at_kicks", |decided| bias_cell(decided, |bias| &bias.at_kicks))
+        .says(
+            Shape::OrNull(&ENCLOSURE),
+            "(lambda1 + lambda2) <x^2>/kT where both clocks kick, velocities thermal at the kicks (constant energy, OBABO): 1 of the exact motion; null unless elliptic, and beyond 1,000 kicks a period.",
+        )
+        .json("bias.in_drifts", |decided| bias_cell(decided, |bias| &bias.in_drifts))
+        .says(
+            Shape::OrNull(&ENCLOSURE),
+            "The same with a weak thermostat in the middle of every drift (BAOAB, LangevinMiddle).",
+        )
         .field(Column::new("decided_by").in_words("decided by").left().aside(), |decided| {
             decided.decision.decided_by.name().into()
         })
         .says(Shape::OneOf(&["filter", "refine", "exact"]), "The tier of arithmetic that proved the verdict.")
         .optional("friction", |decided| decided.friction.as_ref().map(friction::value))
         .says(friction::SHAPE, friction::SAYS)
+}
+
+fn bias_cell(decided: &Decided, which: fn(&Bias<Ball>) -> &Ball) -> Cell {
+    decided.bias.as_ref().map(|bias| which(bias).to_f64_enclosure()).into()
 }
 
 /// A number of kicks.
@@ -296,6 +319,13 @@ impl Decided {
             ));
         } else if verdict.kind() == Kind::Hyperbolic {
             lines.push(self.not_counted());
+        }
+        if let Some(Bias { at_kicks, in_drifts }) = &self.bias {
+            let [at_kicks, in_drifts] = [at_kicks, in_drifts].map(|bias| significant(bias.mid_f64()));
+            lines.push(format!(
+                "  bias         potential energy {at_kicks} kT/2 where the kicks see the temperature (OBABO),"
+            ));
+            lines.push(format!("               {in_drifts} kT/2 where the drifts do (BAOAB); 1 is right"));
         }
         lines.push(format!("  decided by   {}", self.decision.decided_by.name()));
         lines.extend(self.friction.iter().flat_map(friction::lines));

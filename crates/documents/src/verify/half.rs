@@ -2,6 +2,7 @@
 
 use num_traits::One;
 
+use super::bias::bias;
 use super::context::{Context, Outcome, holds};
 use super::kind::Verify;
 use crate::question::Half;
@@ -22,6 +23,10 @@ impl Verify for Half {
         let is_trace = trace == two * (diagonal + rest);
         let whole =
             det_is_one.and_then(|()| holds(is_trace, || format!("the trace of the full period is {trace}")));
+        let found = self.bias();
+        let whole = whole.and_then(|()| {
+            holds(found.is_none() || found == bias(&clocks), || "the bias is another one".into())
+        });
         Ok(Outcome { rows: 4, ..Outcome::whole(ROUTE, whole)? })
     }
 }

@@ -44,6 +44,7 @@ mod again;
 mod anharmonic;
 mod aperture;
 mod bands;
+mod bias;
 mod closings;
 mod compare;
 mod context;

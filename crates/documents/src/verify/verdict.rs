@@ -1,10 +1,12 @@
 //! A verdict: the full period, kick by kick, in exact arithmetic; for long periods the next tier of the
 //! ladder, for very long ones return maps over the other clock.
 
+use super::bias::bias;
 use super::context::{Checked, Context, Outcome, failure, holds, same};
 use super::exact::{FullPeriod, affordable, again, full_period, ln_multiplier, meets};
 use super::kind::Verify;
 use crate::question::{self, Decided};
+use clocks::propagator::Bias;
 use clocks::verdict::{
     Growth, Kind, Limits, Tier, Verdict, decide_anew, exact_trace, growth, takes_return_maps,
 };
@@ -54,11 +56,33 @@ impl Verify for question::Verdict {
                 outcome.failures.extend(failure(1, equals(decided, &truth, &limits))?);
             }
         }
+        let rational = decided.oscillator.clocks().ok().and_then(|clocks| clocks.as_rational());
+        if let Some(enclosed) = &decided.bias {
+            match rational
+                .filter(|clocks| clocks.ratio().kicks() <= MAX_EXACT_BIAS)
+                .and_then(|clocks| bias(&clocks))
+            {
+                Some(exact) => outcome.failures.extend(failure(1, is_bias(enclosed, &exact))?),
+                None => outcome.not_rechecked.push("bias by another route: computed again only".into()),
+            }
+        }
         if self.friction.is_some() {
             outcome.not_rechecked.push("friction by another route: computed again only".into());
         }
         Ok(outcome)
     }
+}
+
+/// Every kick adds the digits of the strengths.
+const MAX_EXACT_BIAS: u64 = 200;
+
+fn is_bias(enclosed: &Bias<Ball>, exact: &Bias<Rational>) -> Checked {
+    holds(enclosed.at_kicks.contains(&exact.at_kicks), || {
+        format!("the bias at the kicks is {}", exact.at_kicks)
+    })?;
+    holds(enclosed.in_drifts.contains(&exact.in_drifts), || {
+        format!("the bias in the drifts is {}", exact.in_drifts)
+    })
 }
 
 /// The full period where that is affordable, else return maps or a tier that did not decide.

@@ -180,7 +180,16 @@ impl Linted {
         let rates = rates
             .into_iter()
             .filter_map(|(name, x, unit)| Some((name, format!("{} {unit}", enclosed(rate(x, h)?)))));
-        std::iter::once(verdict).chain(rates).collect()
+        let bias = bias(self, question).map(|bias| {
+            (
+                "bias",
+                format!(
+                    "potential over kinetic energy {} at the word's ends; 1 is right",
+                    enclosed(bias.to_f64_enclosure())
+                ),
+            )
+        });
+        std::iter::once(verdict).chain(rates).chain(bias).collect()
     }
 }
 
@@ -392,6 +401,19 @@ pub(super) fn record(question: &Word) -> Record<'_, Linted> {
         .says(ENDS_OR_NULL, "The effective frequency, where it is elliptic.")
         .json("verdict.impedance", move |linted| at(linted, |found| &found.impedance))
         .says(ENDS_OR_NULL, "The effective impedance, where it is elliptic and A = D.")
+        .json("verdict.bias", move |linted| bias(linted, question).map(|bias| bias.to_f64_enclosure()).into())
+        .says(
+            ENDS_OR_NULL,
+            "(lambda1 + lambda2) <x^2>/<v^2> at the ends of the word, where it is elliptic and A = D: 1 of the exact motion.",
+        )
+}
+
+/// ω²/(the impedance)² at the step that was asked about.
+fn bias(linted: &Linted, question: &Word) -> Option<Ball> {
+    let impedance = linted.at.as_ref()?.impedance.as_ref()?;
+    let sum = question.lambda1.clone()? + question.lambda2.clone().unwrap_or_else(Laurent::zero);
+    let h = question.h.as_ref()?.enclosure(BITS);
+    sum.enclosure(BITS).mul(&h.square(BITS), BITS).div(&impedance.square(BITS), BITS)
 }
 
 /// The schema of a word's document.
