@@ -411,6 +411,7 @@ fn reasons(advice: &Advice) -> Vec<String> {
     };
     lines.extend((!advice.lacks_fast).then(limits));
     lines.extend(advice.cold.iter().map(|(name, cold)| measured(advice, name, cold.as_ref())));
+    lines.extend(super::bias::line(advice));
     lines.push(format!("  unknown    {}", unknown(advice)[0]));
     lines.extend(advice.beads.as_ref().map(ring));
     lines.extend(advice.harmonic.then(|| {
