@@ -98,6 +98,43 @@ fn no_other_ratio_helps_where_all_between_two_ends_are_unstable() {
     }
 }
 
+/// R = 1/(1 − (π h/T)²) of one clock. With a slow force beside it the mean squares of the period's own ellipse,
+/// over an orbit of it, say the same.
+#[test]
+fn a_stable_step_has_the_potential_energy_of_its_ellipse() {
+    let advice = ask(&["10fs"], &["1/2", "1", "2", "3", "3.2"]);
+    let told = advice.schemes.iter().map(|answer| answer.rows[0].bias.map(six));
+    let exact = [0.5f64, 1.0, 2.0, 3.0].map(|h| 1.0 / (1.0 - (std::f64::consts::PI * h / 10.0).powi(2)));
+    let exact = exact.map(|r| Some(six((r, r))));
+    assert_eq!(exact[..3], ["1.02530", "1.10951", "1.65223"].map(|r| Some(r.into())));
+    // Beyond T/π there is none.
+    assert_eq!(told.collect::<Vec<_>>(), exact.into_iter().chain([None]).collect::<Vec<_>>());
+    // Advised is h w = 1, rounded down: 1/(1 - 1/4).
+    assert_eq!(
+        advice.schemes[0].safe_bias.map(|(mode, bias)| (mode, six(bias))),
+        Some((0, "1.33333".into()))
+    );
+
+    for (periods, steps, outer, count) in [(TWO, "1/2,4", 4.0, 8), (TWO, "2/3,2", 2.0, 3)] {
+        let bias = ask(&periods, &[steps]).schemes[0].rows[0].bias.unwrap();
+        let [fast, slow] = [10.0, 40.0].map(|t: f64| (2.0 * std::f64::consts::PI / t).powi(2));
+        let (inner, mut x, mut v) = (outer / f64::from(count), 1.0, 0.0);
+        let (mut xx, mut vv) = (0.0, 0.0);
+        for _ in 0..200_000 {
+            v -= outer / 2.0 * slow * x;
+            for _ in 0..count {
+                v -= inner / 2.0 * fast * x;
+                x += inner * v;
+                v -= inner / 2.0 * fast * x;
+            }
+            v -= outer / 2.0 * slow * x;
+            (xx, vv) = (xx + x * x, vv + v * v);
+        }
+        // Means over 200,000 periods are off by their inverse over the sine of a turn.
+        assert!((bias.0 / ((fast + slow) * xx / vv) - 1.0).abs() < 1e-4, "{steps}: {bias:?}");
+    }
+}
+
 #[test]
 fn flexible_water_is_fine_at_3_fs_cautioned_at_4_fs_refused_from_the_first_tongue_on() {
     let outer = ["3/8,3", "1/2,4", "0.5846,4.6768", "0.58461,4.67688", "0.6,4.8"];

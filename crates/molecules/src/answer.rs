@@ -13,6 +13,7 @@ use super::mode::Mode;
 use super::question::Question;
 use super::unit::TimeUnit;
 use clocks::band::unstable_ratios;
+use clocks::verdict::Kind;
 use number::error::Result;
 use number::named;
 use number::rational::{enclose_f64, from_f64_exact, to_f64};
@@ -49,6 +50,8 @@ pub struct Row {
     /// Its place in [`Advice::modes`].
     pub mode: usize,
     pub found: Found,
+    /// The bias of its potential energy where it is kicked ([`Levels::bias`]); `None` unless it is stable.
+    pub bias: Option<(f64, f64)>,
     /// Outer steps until an amplitude is tenfold, enclosed; `None` unless it grows exponentially.
     pub tenfold_steps: Option<(f64, f64)>,
     /// The first unstable interval of outer steps at the ratio of the scheme. Its upper end and growth are
@@ -90,6 +93,15 @@ pub struct Pair {
     pub near: f64,
 }
 
+/// A mode's place in [`Advice::modes`], and its bias.
+pub type Biased = (usize, (f64, f64));
+
+/// The one that is most off.
+pub fn most_biased(all: impl IntoIterator<Item = Biased>) -> Option<Biased> {
+    let off = |(_, (lo, _)): &Biased| lo.ln().abs();
+    all.into_iter().max_by(|a, b| off(a).total_cmp(&off(b)))
+}
+
 /// The answer about one scheme.
 #[derive(Clone, Debug)]
 pub struct Answer {
@@ -106,6 +118,8 @@ pub struct Answer {
     pub safe: Option<Rational>,
     /// What bounds `safe`.
     pub bound: Option<Bound>,
+    /// With that outermost step: the mode whose potential energy is most off, and its bias.
+    pub safe_bias: Option<Biased>,
     /// Where nothing is known to be on other clocks than the innermost: the shortest period there, in fs, for
     /// which the scheme is proven stable for every period in the band; rounded up.
     pub needs: Option<f64>,
@@ -195,6 +209,7 @@ impl Question {
         let is_known = self.stiffest().iter().all(Option::is_some) && !self.lacks_fast();
         let largest = if is_known { self.largest(scheme)? } else { None };
         let (safe, bound) = caps.safe(scheme, largest.as_ref()).filter(|_| self.beads.is_none()).unzip();
+        let safe_bias = safe.as_ref().and_then(|outer| self.most_biased(scheme, outer));
         let status = if self.lacks_fast() {
             Status::Undecided
         } else if rows.iter().any(|row| !row.found.kind.is_stable()) {
@@ -226,10 +241,24 @@ impl Question {
             largest,
             safe,
             bound,
+            safe_bias,
             needs,
             pairs,
             within_run,
         })
+    }
+
+    /// With another outermost step than that of a scheme, or with none beside the one before it.
+    fn most_biased(&self, scheme: &Scheme, outer: &Rational) -> Option<Biased> {
+        let is_merged = scheme.steps().len() > 1 && outer == scheme.last_but_one();
+        let scheme = if is_merged { scheme.merged() } else { scheme.with_outer(outer.clone()) }.ok()?;
+        let bias = |mode: usize| {
+            let mut stiffness = self.with(mode);
+            let above = stiffness.split_off(scheme.steps().len());
+            above.into_iter().for_each(|own| *stiffness.last_mut().expect("at least one clock") += own);
+            Some((mode, Levels { scheme: &scheme, stiffness }.bias()?))
+        };
+        most_biased(self.faster().into_iter().filter_map(bias))
     }
 
     /// One mass with the shortest periods of the band: the corner that covers all of it.
@@ -247,6 +276,7 @@ impl Question {
         let masking = tenfold_steps.and_then(|_| levels.masking());
         let mut row = Row {
             mode,
+            bias: levels.bias().filter(|_| found.kind == Kind::Elliptic),
             tenfold_steps,
             masking,
             is_damped: self.friction.as_ref().and_then(|rate| levels.is_damped_by(rate)),

@@ -203,9 +203,52 @@ impl Levels<'_> {
         ManyClocks::new(&steps, &vec![Rational::zero(); steps.len()], heard.iter().map(strength).collect())
     }
 
+    /// The bias R of a mode that is stable: its potential energy where it is kicked, over the half kT that its
+    /// velocity has there. `None` where it is not stable, or the balls do not tell it.
+    ///
+    /// Over the half period (x, v) ↦ (A x + B v, C x + D v), and the invariant ellipse of the period at its
+    /// first kick has <x²>/<v²> = −B D/(A C). So R = −(Λ1 + Λ2 + ...) B D/(A C), the Λ being stiffnesses over
+    /// mass; for velocity Verlet 1/(1 − h² Λ/4).
+    ///
+    /// ```
+    /// use kickdrift_molecules::{Levels, Mode, Scheme, number::Rational};
+    /// let bias = |step: i64| {
+    ///     let scheme = Scheme::new(vec![Rational::from_integer(step.into())]).unwrap();
+    ///     let stiffness = vec![Mode::from_period("OH=10fs").unwrap().stiffness];
+    ///     Levels { scheme: &scheme, stiffness }.bias()
+    /// };
+    /// let (lo, hi) = bias(2).unwrap();
+    /// let exact = 1.0 / (1.0 - (0.2 * std::f64::consts::PI).powi(2));
+    /// assert!((lo - exact).abs() < 1e-15 && (hi - exact).abs() < 1e-15);
+    /// // Beyond T/π.
+    /// assert_eq!(bias(4), None);
+    /// ```
+    pub fn bias(&self) -> Option<(f64, f64)> {
+        // Without the silent clocks, with which a period can be several that together turn by a whole.
+        let heard = self.heard();
+        let scheme = Scheme::new(heard.iter().map(|&k| self.scheme.steps[k].clone()).collect()).ok()?;
+        let stiffness: Vec<Laurent> = heard.iter().map(|&k| self.stiffness[k].clone()).collect();
+        let balls = stiffness.iter().map(|stiffness| stiffness.enclosure(BITS));
+        let sum = balls.fold(Ball::zero(), |sum, ball| sum.add(&ball, BITS));
+        let orbits = Levels { scheme: &scheme, stiffness }.half_period(&Ball::one(), |_| false)?;
+        let [[a, c], [b, d]] = [&orbits.even, &orbits.odd];
+        let top = sum.mul(b, BITS).mul(d, BITS).neg();
+        let bias = top.div(&a.mul(c, BITS), BITS)?;
+        (bias.sign() == Some(Sign::Positive)).then(|| bias.to_f64_enclosure())
+    }
+
     /// Whether conditions (1) and (2) hold for the stiffnesses times `factor`: `None` where the balls cannot
     /// decide.
     pub fn in_first_region(&self, factor: &Ball) -> Option<bool> {
+        let mut orbits = self.half_period(factor, |orbits| orbits.left)?;
+        if !orbits.left {
+            orbits.see_end();
+        }
+        if orbits.left { Some(false) } else { (!orbits.doubtful).then_some(true) }
+    }
+
+    /// The orbits over half a period, up to the kick after which they are to `end`.
+    fn half_period(&self, factor: &Ball, end: impl Fn(&Orbits) -> bool) -> Option<Orbits> {
         let steps = &self.scheme.steps;
         let schedule = Schedule::new(steps, &vec![Rational::zero(); steps.len()]).ok()?;
         let tick = Ball::from_rational(schedule.tick(), BITS);
@@ -225,12 +268,11 @@ impl Levels<'_> {
         };
         for event in schedule.half_period() {
             kicks.lead([event], &mut orbits);
-            if orbits.left {
-                return Some(false);
+            if end(&orbits) {
+                break;
             }
         }
-        orbits.see_end();
-        if orbits.left { Some(false) } else { (!orbits.doubtful).then_some(true) }
+        Some(orbits)
     }
 
     /// The factors of all steps, at fixed ratios, up to which the first region provably reaches and beyond

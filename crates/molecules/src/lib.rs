@@ -73,7 +73,7 @@ pub use number;
 pub use systems;
 pub use words;
 
-pub use answer::{Advice, Answer, Pair, Row, Status};
+pub use answer::{Advice, Answer, Biased, Pair, Row, Status, most_biased};
 pub use beads::Beads;
 pub use caps::{Bound, Caps, shortest_of};
 pub use caution::{Caution, GROMPP, HEEDED, OF_MANY, OF_ONE, PRACTICE, Place, SEEN, published};

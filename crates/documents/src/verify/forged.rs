@@ -232,6 +232,9 @@ fn forged_advice_on_periods_is_found() {
         &[
             |safe| more(&mut row(safe, 0).found.trace),
             |safe| row(safe, 0).found.kind = Kind::Hyperbolic,
+            |safe| more(row(safe, 0).bias.as_mut().unwrap()),
+            |safe| row(safe, 0).bias = None,
+            |safe| row(safe, 1).bias = Some((1.0, 1.0)),
             |safe| more(&mut row(safe, 1).found.rate),
             |safe| row(safe, 1).masking.as_mut().unwrap().grows *= 1.1,
             |safe| row(safe, 1).masking.as_mut().unwrap().ranges[0].0 *= 0.9,
@@ -248,6 +251,8 @@ fn forged_advice_on_periods_is_found() {
             |safe| advice(safe).schemes[0].status = molecules::Status::Safe,
             |safe| *advice(safe).schemes[0].largest.as_mut().unwrap() += rational::ratio(1, 2),
             |safe| *advice(safe).schemes[0].safe.as_mut().unwrap() += rational::ratio(1, 2),
+            |safe| more(&mut advice(safe).schemes[0].safe_bias.as_mut().unwrap().1),
+            |safe| advice(safe).schemes[0].safe_bias = None,
             |safe| advice(safe).schemes[0].needs = Some(20.0),
             |safe| {
                 advice(safe)

@@ -1,5 +1,6 @@
 //! Advice as a document: lines to act on, then tables.
 
+mod bias;
 mod chart;
 mod direct;
 mod growth;
@@ -143,6 +144,7 @@ fn scheme_table(advice: &Advice) -> Table {
         .field(Column::new("largest"), |answer| answer.largest.as_ref().map(Cell::exact).into())
         .field(Column::new("safe"), |answer| answer.safe.as_ref().map(Cell::exact).into())
         .field(Column::new("bound"), |answer| answer.bound.map(|bound| bound.name()).into())
+        .field(Column::new("safe_bias").enclosure(), |answer| answer.safe_bias.map(|(_, bias)| bias).into())
         .field(Column::new("needs"), |answer| answer.needs.into())
         .field(Column::new("within_run"), |answer| answer.within_run.into())
         .table("schemes", "", &advice.schemes)
@@ -177,6 +179,7 @@ fn row_table(advice: &Advice, all: bool) -> Table {
         .field(Column::new("mode").left(), |named| named.mode.into())
         .field(Column::new("kind").left(), |named| named.row.found.kind.name().into())
         .field(enclosed("trace", "Tr"), |named| named.row.found.trace.into())
+        .field(enclosed("bias", "bias R"), |named| named.row.bias.into())
         .field(enclosed("growth_rate", "growth").in_unit(rate), move |named| {
             per(unit, named.row.found.rate).into()
         })
@@ -222,9 +225,11 @@ fn row_table(advice: &Advice, all: bool) -> Table {
     if all {
         return table;
     }
+    let biased = named.iter().any(|named| named.row.bias.is_some());
     let masked = named.iter().any(|named| named.row.masking.is_some());
     let bounded = named.iter().any(|named| named.row.masking.as_ref().is_some_and(|masked| !masked.stays()));
     for_people(&table, |key| match key {
+        "bias" => biased,
         "masked_above" => masked,
         "masked_below" => bounded,
         "damped" => advice.friction.is_some(),

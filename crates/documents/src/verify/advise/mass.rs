@@ -116,6 +116,21 @@ impl Mass {
     }
 
     fn damped_trace(&self, friction: &Ball) -> Checked<(Ball, Rational)> {
+        let ([[a, _], [_, d]], period) = self.full_period(friction)?;
+        Ok((a.add(&d, BITS), period))
+    }
+
+    /// R = (Λ1 + Λ2 + ...) Q12²/(1 − (Tr Q/2)²): what the invariant ellipse of Q says in the middle of a kick;
+    /// half a kick leaves Q12 and Tr Q as they are.
+    pub fn bias(&self) -> Checked<Option<Ball>> {
+        let ([[a, _], [b, d]], _) = self.full_period(&Ball::zero())?;
+        let sum = self.stiffness.iter().fold(Ball::zero(), |sum, stiffness| sum.add(stiffness, BITS));
+        let below = Ball::one().sub(&a.add(&d, BITS).scale2(-1).square(BITS), BITS);
+        Ok(sum.mul(&b.square(BITS), BITS).div(&below, BITS))
+    }
+
+    /// Q, column by column, and the period.
+    fn full_period(&self, friction: &Ball) -> Checked<([[Ball; 2]; 2], Rational)> {
         let schedule = self.schedule()?;
         let (zero, one) = (Ball::zero(), Ball::one());
         let columns = [[one.clone(), zero.clone()], [zero, one]];
@@ -125,8 +140,8 @@ impl Mass {
             friction: friction.clone(),
         };
         Kicks::of_clocks(self.strengths(), |k| [k.clone(), k]).lead(schedule.staggered_period(), &mut orbit);
-        let [[a, _], [_, d]] = &orbit.columns;
-        Ok((a.add(d, BITS), schedule.tick() * Rational::from_integer(schedule.period().into())))
+        let period = schedule.tick() * Rational::from_integer(schedule.period().into());
+        Ok((orbit.columns, period))
     }
 
     /// Sign of |Tr| − 2.

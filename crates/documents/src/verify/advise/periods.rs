@@ -5,7 +5,11 @@ use num_traits::One;
 use super::mass::{BITS, Mass, exact};
 use crate::verify::aperture::Plain;
 use crate::verify::context::{Checked, Context, Outcome, holds, located, same};
+<<<<<<< HEAD
 use molecules::aperture::Cold;
+=======
+use crate::verify::exact::encloses;
+>>>>>>> ee8ccc8883f3f638814837288903d38cb5ef4c5a
 use molecules::{Advice, Answer, Mode, Pair, Row, Scheme, Status};
 use number::error::Result;
 use number::rational::to_f64;
@@ -75,10 +79,28 @@ impl Periods<'_> {
         };
         same("status", answer.status.name(), status.name())?;
         self.largest(&corner, &given, answer)?;
+        self.safe_bias(answer)?;
         let silent: Vec<usize> = (1..corner.steps.len()).filter(|&clock| corner.is_silent(clock)).collect();
         let is_asked = !silent.is_empty() && in_band && !lacks_fast;
         holds(answer.needs.is_some() == is_asked, || "needs is given for a silent clock".into())?;
         answer.needs.map_or(Ok(()), |needs| self.needs(corner, &silent, needs))
+    }
+
+    /// That of the mode that is most off with the outermost step that is safe.
+    fn safe_bias(&self, answer: &Answer) -> Checked {
+        let Some((safe, (_, told))) = answer.safe.as_ref().zip(answer.safe_bias) else {
+            return holds(answer.safe.is_some() == answer.safe_bias.is_some(), || {
+                "safe_bias is missing".into()
+            });
+        };
+        let mut most = Ball::one();
+        for row in &answer.rows {
+            let mass = self.mass(&answer.scheme, Some(&self.advice.modes[row.mode])).heard().with_outer(safe);
+            let bias = mass.bias()?.unwrap_or_else(Ball::one);
+            let off = |bias: &Ball| bias.mid_f64().ln().abs();
+            most = if off(&bias) > off(&most) { bias } else { most };
+        }
+        holds(encloses(told, &most), || format!("safe_bias is {}", most.mid_f64()))
     }
 
     /// The shortest period on silent clocks for which the band is proven, to a millionth.

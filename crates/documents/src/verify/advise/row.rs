@@ -37,6 +37,7 @@ fn verdict(row: &Row, mass: &Mass) -> Checked {
         _ => matches!(kind, Kind::Parabolic | Kind::Coexistence),
     };
     holds(is_so, || format!("is not {}", kind.name()))?;
+    bias(row, &heard)?;
     if kind != Kind::Hyperbolic {
         let none = row.tenfold_steps.is_none() && found.rate == (0.0, 0.0);
         return holds(none, || "grows though it is not hyperbolic".into());
@@ -47,6 +48,16 @@ fn verdict(row: &Row, mass: &Mass) -> Checked {
     let ln = half.add(&root, BITS).ln(BITS).unwrap_or_else(Ball::zero);
     let rate = ln.div(&Ball::from_rational(&period, BITS), BITS).unwrap_or_else(Ball::zero);
     holds(encloses(found.rate, &rate), || format!("the growth rate is {} per fs", rate.mid_f64()))
+}
+
+/// Told of what is stable, and of that alone.
+fn bias(row: &Row, heard: &Mass) -> Checked {
+    let Some(bias) = row.bias else {
+        return holds(row.found.kind != Kind::Elliptic, || "the bias is missing".into());
+    };
+    let truth = heard.bias()?.filter(|_| row.found.kind == Kind::Elliptic);
+    let is_so = truth.as_ref().is_some_and(|truth| encloses(bias, truth));
+    holds(is_so, || format!("the bias is {}", truth.map_or(f64::NAN, |truth| truth.mid_f64())))
 }
 
 /// Damped by the frictions that are said to mask, some larger ones where all are, and not by the one that is
