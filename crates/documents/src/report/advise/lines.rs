@@ -415,14 +415,10 @@ fn reasons(advice: &Advice) -> Vec<String> {
         if unit == TimeUnit::Plain { own.replace(&format!(": {PRACTICE}"), "") } else { own }
     };
     lines.extend((!advice.lacks_fast).then(limits));
-<<<<<<< HEAD
     let is_of_molecules = !advice.lacks_fast && unit == TimeUnit::Femtoseconds;
     lines.extend(seen(answer.scheme.steps().len()).filter(|_| is_of_molecules));
     lines.extend(advice.cold.iter().map(|cold| measured(advice, cold)));
-=======
-    lines.extend(advice.cold.iter().map(|(name, cold)| measured(advice, name, cold.as_ref())));
     lines.extend(super::bias::line(advice));
->>>>>>> ee8ccc8883f3f638814837288903d38cb5ef4c5a
     lines.push(format!("  unknown    {}", unknown(advice)[0]));
     lines.extend(advice.beads.as_ref().map(ring));
     lines.extend(advice.harmonic.then(|| {

@@ -5,11 +5,8 @@ use num_traits::One;
 use super::mass::{BITS, Mass, exact};
 use crate::verify::aperture::Plain;
 use crate::verify::context::{Checked, Context, Outcome, holds, located, same};
-<<<<<<< HEAD
-use molecules::aperture::Cold;
-=======
 use crate::verify::exact::encloses;
->>>>>>> ee8ccc8883f3f638814837288903d38cb5ef4c5a
+use molecules::aperture::Cold;
 use molecules::{Advice, Answer, Mode, Pair, Row, Scheme, Status};
 use number::error::Result;
 use number::rational::to_f64;
