@@ -1,7 +1,7 @@
 # %% [markdown]
 # # Stable, safe, accurate: ten bonds at four steps
-# Each bond has its usual wavenumber and, as a Morse bond, its usual energy. The table says of each step whether velocity Verlet is stable,
-# R, its bias, and E\*, the energy in kT from which on a Morse bond is lost at 298 K.
+# Each bond has its usual wavenumber and, as a Morse bond, its usual energy. For each step the table has R, the bias of
+# velocity Verlet, or `unstable`, and E\*, the energy in kT from which on a Morse bond is lost at 298 K.
 
 # %%
 import math
@@ -27,7 +27,7 @@ LIGHT = 2.99792458e-5  # cm/fs
 
 
 def morse(wavenumber, energy, *masses):
-    """The bond in the words of `kickdrift aperture`: a² = k/(2 D), k = μ (2π c ν)²."""
+    """The bond in the words of `kickdrift aperture`: a² = k/(2 D), k = μ (2π c w)²."""
     mass = math.prod(masses) / sum(masses)
     stiffness = 1e6 * mass * (2 * math.pi * LIGHT * wavenumber) ** 2  # kJ/mol/nm^2
     steepness = math.sqrt(stiffness / (2 * energy))

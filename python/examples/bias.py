@@ -1,7 +1,8 @@
 # %% [markdown]
 # # How much energy does a bond hold at a stable step?
-# A droplet of 27 flexible waters at 298 K. Its O-H bonds are harmonic, with the curvature of q-TIP4P/F water and a period of 8.58 fs.
-# Two Langevin schemes differ only in where the thermostat acts: OBABO beside the kicks, LangevinMiddle in the middle of the drift.
+# A droplet of 27 flexible waters at 298 K. Its O-H bonds are harmonic, with the curvature of q-TIP4P/F water and a
+# period of 8.58 fs. Two Langevin schemes differ only in where the thermostat acts: OBABO beside the kicks,
+# LangevinMiddle in the middle of the drift.
 
 # %%
 from pathlib import Path
@@ -95,7 +96,8 @@ def energy(scheme, step, length):
 
 
 # %% [markdown]
-# Neighbours stretch the bonds a little, whatever the step. This static part is what a run at 0.25 fs has above 1, and it is taken off.
+# Neighbours stretch the bonds a little, whatever the step. A run at 0.25 fs has only this static part above 1. It is
+# taken off.
 
 # %%
 LENGTH = 20.0  # ps
