@@ -286,7 +286,7 @@ fn a_thermostat_in_the_middle_of_the_drift_loses_a_bond_no_earlier() {
     assert!(verlet.first.unwrap().share <= middle.first.unwrap().share);
     // The bound holds for both.
     let safe = to_f64(found.schemes[0].safe.as_ref().unwrap());
-    assert!((safe / found.modes[0].period().0 / verlet.first.unwrap().share - 1.0).abs() < 1e-9);
+    assert!((safe / found.modes[0].period().0 / verlet.first.unwrap().bound() - 1.0).abs() < 1e-9);
 }
 
 #[test]

@@ -503,7 +503,8 @@ fn a_friction_that_masks_is_no_bound_unless_all_larger_ones_do() {
 
 #[test]
 fn levels_whose_innermost_forces_are_held_are_limited_by_the_next() {
-    let text = stdout(&words("advise data/scenes/water4-levels.json --constraints h-bonds --no-levers", &[]));
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/data/scenes/water4-levels.json");
+    let text = stdout(&["advise", file, "--constraints", "h-bonds", "--no-levers"]);
     // 15.1 fs is the angles' shortest period; rounding left modes of 8e6 fs of the bonds.
     assert!(text.contains("\nlimit: level 2 (T = 15.") && text.contains("near T/3 = 5.0"), "{text}");
     assert!(!text.contains("e6"), "{text}");

@@ -256,7 +256,7 @@ impl Question {
         // Of all kinds of schemes. Surroundings make the period of a shape longer: these bonds are colder.
         let cold = |mode: &Mode| {
             let own = self.cold.iter().filter(|cold| cold.name == mode.name);
-            let least = own.filter_map(|cold| cold.first).map(|edge| edge.share).reduce(f64::min)?;
+            let least = own.filter_map(|cold| cold.first).map(|edge| edge.bound()).reduce(f64::min)?;
             Some((mode.period().0 * least).next_down())
         };
         caps.with_measured(&Caps::new(&shortest(&other), self.harmonic), &shortest(&cold))

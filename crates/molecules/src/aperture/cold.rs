@@ -46,6 +46,17 @@ pub struct Edge {
     pub aperture: f64,
 }
 
+/// How far the bound stays below the first step at which a bond is too hot. Where a dip begins E* is ragged: of
+/// steps that differ by a millionth of the period some lose a bond, and some do not.
+const RAGGED: f64 = 1.0 / 200.0;
+
+impl Edge {
+    /// The longest step that is advised, over the period.
+    pub fn bound(&self) -> f64 {
+        (self.share * (1.0 - RAGGED)).next_down()
+    }
+}
+
 /// Steps are looked at from the tenth part of the period on, by four thousandths of it, and from the eighth
 /// on, where resonances are strong and narrow, by half of one.
 const FIRST: usize = 200;

@@ -291,7 +291,7 @@ pub trait Model: Debug + Send + Sync {
     /// Where there are not two levels; π, irrational steps, and what is no gradient, sparse or of local
     /// steps.
     fn with_method(self: Arc<Self>, method: Method) -> Result<Arc<dyn Model>> {
-        Err(self.refused(&format!("the method {method}")))
+        Err(Error::input("method", method, "this kind of system has a method of its own: leave it out"))
     }
 
     /// Copies what was asked beside the file from the model of the same file with another number.
