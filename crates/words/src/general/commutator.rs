@@ -2,9 +2,29 @@
 
 use num_traits::One;
 
-use super::series::{Generator, Series};
-use super::{Algebra, ErrorTerm};
+use super::series::{Generator, Scalar, Series};
 use number::Radical;
+
+/// c times a commutator of A (drifts) and B, or B1 and B2 (kicks), in units of the step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ErrorTerm {
+    /// As "\[A,\[A,B\]\]".
+    pub commutator: String,
+    pub coefficient: Radical,
+}
+
+/// Which products of A and the kicks are equal.
+#[derive(Clone, Copy)]
+pub(super) struct Algebra {
+    pub two_forces: bool,
+    pub of_a_potential: bool,
+}
+
+impl Algebra {
+    pub(super) fn reduced<T: Scalar>(self, series: Series<T>) -> Series<T> {
+        if self.of_a_potential { series.of_a_potential() } else { series }
+    }
+}
 
 /// A generator, or the commutator of two.
 enum Bracket {

@@ -18,17 +18,10 @@ use num_integer::Integer;
 use num_traits::{One, Zero};
 
 use super::letters::{Force, Item, Letter, Word};
-use commutator::in_commutators;
+pub use commutator::ErrorTerm;
+use commutator::{Algebra, in_commutators};
 use number::{Radical, Rational, Ring, rational};
 use series::{Generator, Monomial, Scalar, Series};
-
-/// c times a commutator of A (drifts) and B, or B1 and B2 (kicks), in units of the step.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ErrorTerm {
-    /// As "\[A,\[A,B\]\]".
-    pub commutator: String,
-    pub coefficient: Radical,
-}
 
 /// An order with what is in its way.
 #[derive(Clone, Debug, PartialEq)]
@@ -107,19 +100,6 @@ impl Word {
         } else {
             Expansion::new(self, &Radical::clone).orders()
         }
-    }
-}
-
-/// Which products of A and the kicks are equal.
-#[derive(Clone, Copy)]
-struct Algebra {
-    two_forces: bool,
-    of_a_potential: bool,
-}
-
-impl Algebra {
-    fn reduced<T: Scalar>(self, series: Series<T>) -> Series<T> {
-        if self.of_a_potential { series.of_a_potential() } else { series }
     }
 }
 
