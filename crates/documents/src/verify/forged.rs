@@ -103,6 +103,15 @@ fn forged_verdicts_are_found() {
         }],
     );
     finds::<Verdict>(
+        json!({"lambda1": "1", "lambda2": "1/25", "h1": "1/2", "h2": "3/4"}),
+        &[
+            turned,
+            |decided| decided.bias = None,
+            |decided| decided.bias.as_mut().unwrap().at_kicks = number::Ball::one(),
+            |decided| decided.bias.as_mut().unwrap().in_drifts = number::Ball::one(),
+        ],
+    );
+    finds::<Verdict>(
         growing,
         &[
             turned,

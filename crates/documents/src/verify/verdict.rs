@@ -56,14 +56,16 @@ impl Verify for question::Verdict {
                 outcome.failures.extend(failure(1, equals(decided, &truth, &limits))?);
             }
         }
-        let rational = decided.oscillator.clocks().ok().and_then(|clocks| clocks.as_rational());
-        if let Some(enclosed) = &decided.bias {
-            match rational
-                .filter(|clocks| clocks.ratio().kicks() <= MAX_EXACT_BIAS)
-                .and_then(|clocks| bias(&clocks))
-            {
-                Some(exact) => outcome.failures.extend(failure(1, is_bias(enclosed, &exact))?),
-                None => outcome.not_rechecked.push("bias by another route: computed again only".into()),
+        if decided.decision.verdict.kind() == Kind::Elliptic {
+            let rational = decided.oscillator.clocks().ok().and_then(|clocks| clocks.as_rational());
+            match rational.filter(|clocks| clocks.ratio().kicks() <= MAX_EXACT_BIAS) {
+                Some(clocks) => {
+                    outcome.failures.extend(failure(1, is_bias(decided.bias.as_ref(), &bias(&clocks)))?);
+                }
+                None if decided.bias.is_some() => {
+                    outcome.not_rechecked.push("bias by another route: computed again only".into());
+                }
+                None => (),
             }
         }
         if self.friction.is_some() {
@@ -76,13 +78,14 @@ impl Verify for question::Verdict {
 /// Every kick adds the digits of the strengths.
 const MAX_EXACT_BIAS: u64 = 200;
 
-fn is_bias(enclosed: &Bias<Ball>, exact: &Bias<Rational>) -> Checked {
-    holds(enclosed.at_kicks.contains(&exact.at_kicks), || {
-        format!("the bias at the kicks is {}", exact.at_kicks)
-    })?;
-    holds(enclosed.in_drifts.contains(&exact.in_drifts), || {
-        format!("the bias in the drifts is {}", exact.in_drifts)
-    })
+/// Where Λ1 + Λ2 is not positive there is none.
+fn is_bias(enclosed: Option<&Bias<Ball>>, exact: &Option<Bias<Rational>>) -> Checked {
+    let is_told = |(enclosed, exact): (&Bias<Ball>, &Bias<Rational>)| {
+        enclosed.at_kicks.contains(&exact.at_kicks) && enclosed.in_drifts.contains(&exact.in_drifts)
+    };
+    let exact = exact.as_ref().filter(|exact| exact.at_kicks > Rational::default());
+    let holds_true = enclosed.is_some() == exact.is_some() && enclosed.zip(exact).is_none_or(is_told);
+    holds(holds_true, || format!("its bias is {exact:?}"))
 }
 
 /// The full period where that is affordable, else return maps or a tier that did not decide.
