@@ -127,9 +127,7 @@ class Verdict:
         (1.333333, 1.0)
         """
         found = self.document.data["bias"]
-        if found["at_kicks"] is None:
-            return None
-        return _ends(found["at_kicks"]), _ends(found["in_drifts"])
+        return None if found is None else (_ends(found["at_kicks"]), _ends(found["in_drifts"]))
 
     @property
     def m(self) -> int | None:

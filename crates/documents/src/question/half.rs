@@ -4,7 +4,7 @@ use super::asking::{Question, Work, question};
 use super::field::flag;
 use crate::report::document::Document;
 use crate::report::record::Record;
-use crate::report::shape::{Keys, RATIONAL, SIGN, Schema, Shape, WIDE_ENCLOSURE};
+use crate::report::shape::{GROUP_OR_NULL, Keys, RATIONAL, SIGN, Schema, Shape, WIDE_ENCLOSURE};
 use crate::report::table::{Cell, Column};
 use clocks::propagator::{Bias, HalfPeriod, TwoClocks, bias, half_period};
 use clocks::schedule::Schedule;
@@ -71,10 +71,11 @@ impl Question for Half {
             &Shape::List(&Shape::Object(|| record().keys())),
             r#"{"minItems": 4, "maxItems": 4}"#,
         );
-        const BIAS: Shape = Shape::OrNull(&RATIONAL);
-        let says = "(lambda1 + lambda2) <x^2>/kT where both clocks kick, velocities thermal at the kicks (constant energy, OBABO), exactly; null unless elliptic.";
+        let says = "By how much the potential energy is off, 1 being right; null unless elliptic.";
+        let kicks = "(lambda1 + lambda2) <x^2>/kT where both clocks kick, velocities thermal at the kicks (constant energy, OBABO).";
         let drifts = "The same with a weak thermostat in the middle of every drift (BAOAB, LangevinMiddle).";
-        let body = Keys::new().key("bias.at_kicks", BIAS, says).key("bias.in_drifts", BIAS, drifts);
+        let body = Keys::new().key("bias.at_kicks", RATIONAL, kicks).key("bias.in_drifts", RATIONAL, drifts);
+        let body = body.key("bias", GROUP_OR_NULL, says);
         let body = body.key("entries", ENTRIES, "A, B, C, D in the time unit h1: B in h1, C in 1/h1.");
         let title = "The half period of two clocks in numbers: A, B, C, D at rational s and rho";
         Some(Schema::new(title, body))
@@ -104,14 +105,13 @@ impl Question for Half {
         let table =
             record().table("entries", "The half period [[A, B], [C, D]] in the time unit h1", &entries);
         let caption = format!("The entries of the half period at $s = {}$ in the time unit $h_1$", self.s);
-        let (at_kicks, in_drifts) = match self.bias() {
-            Some(Bias { at_kicks, in_drifts }) => (Some(at_kicks.to_string()), Some(in_drifts.to_string())),
-            None => (None, None),
+        let document = Document::new(Self::NAME);
+        let document = match self.bias() {
+            Some(Bias { at_kicks, in_drifts }) => document
+                .entry("bias.at_kicks", at_kicks.to_string())
+                .entry("bias.in_drifts", in_drifts.to_string()),
+            None => document.entry("bias", serde_json::Value::Null),
         };
-        Document::new(Self::NAME)
-            .entry("bias.at_kicks", at_kicks)
-            .entry("bias.in_drifts", in_drifts)
-            .rows(table.captioned(&caption))
-            .summary(&[summary])
+        document.rows(table.captioned(&caption)).summary(&[summary])
     }
 }

@@ -103,7 +103,8 @@ impl Question for Verdict {
 
     fn schema() -> Option<Schema> {
         let says = "The tongue's label m and its dominant family, m = a p + b q; null unless hyperbolic, and where half turns cannot be counted within the budget.";
-        let body = record().keys().key("resonance", GROUP_OR_NULL, says);
+        let bias = "By how much the potential energy is off, 1 being right; null unless elliptic, and beyond 1,000 kicks a period.";
+        let body = record().keys().key("resonance", GROUP_OR_NULL, says).key("bias", GROUP_OR_NULL, bias);
         Some(Schema::new("Is this pair of steps stable?", body).rules(RULES))
     }
 
@@ -236,12 +237,12 @@ fn record() -> Record<'static, Decided> {
         .says(INTEGER, "b of the dominant family.")
         .json("bias.at_kicks", |decided| bias_cell(decided, |bias| &bias.at_kicks))
         .says(
-            Shape::OrNull(&ENCLOSURE),
-            "(lambda1 + lambda2) <x^2>/kT where both clocks kick, velocities thermal at the kicks (constant energy, OBABO): 1 of the exact motion; null unless elliptic, and beyond 1,000 kicks a period.",
+            ENCLOSURE,
+            "(lambda1 + lambda2) <x^2>/kT where both clocks kick, velocities thermal at the kicks (constant energy, OBABO).",
         )
         .json("bias.in_drifts", |decided| bias_cell(decided, |bias| &bias.in_drifts))
         .says(
-            Shape::OrNull(&ENCLOSURE),
+            ENCLOSURE,
             "The same with a weak thermostat in the middle of every drift (BAOAB, LangevinMiddle).",
         )
         .field(Column::new("decided_by").in_words("decided by").left().aside(), |decided| {

@@ -136,9 +136,9 @@ impl Periods<'_> {
             if cold.peek().is_none() {
                 return self.advice.harmonic || is_below_one(&stiffness, step);
             }
-            // h below share T, that is h w/(2 π share) below 1.
+            // h below the bound share T, that is h w/(2 π share) below 1.
             cold.filter_map(|cold| cold.first).all(|edge| {
-                let share = Ball::from_rational(&exact(edge.share), BITS);
+                let share = Ball::from_rational(&exact(edge.bound()), BITS);
                 let turn = Ball::pi(BITS).scale2(1).mul(&share, BITS);
                 let scaled = stiffness.div(&turn.square(BITS), BITS);
                 scaled.is_some_and(|scaled| is_below_one(&scaled, step))
