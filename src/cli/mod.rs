@@ -83,7 +83,7 @@ enum Command {
     /// step.
     Word(word::Args),
     /// Many clocks, many degrees of freedom: is the system stable, and what grows?
-    System(system::Args),
+    System(Box<system::Args>),
     /// Which steps are safe for these periods or bonds, for how long, and why.
     Advise(advise::Args),
     /// How hot may a bond be before the method throws it out? Measured over steps, no proof.

@@ -163,7 +163,9 @@ impl<'a, T> Record<'a, T> {
                 Find::Value(find) => Some(find(number)),
                 Find::Optional(find) => find(number),
             };
-            value.map(|value| put(&mut entries, path, value));
+            if let Some(value) = value {
+                put(&mut entries, path, value);
+            }
         }
         entries.into()
     }

@@ -3,6 +3,7 @@
 
 use std::cell::{OnceCell, RefCell};
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::path::Path;
 
 use plot::Figure;
@@ -208,8 +209,8 @@ impl Scene {
         let shared = Shared { archive: archive.as_deref(), ..Shared::default() };
         let mut made = BTreeMap::new();
         for want in &self.want {
-            if !made.contains_key(&want.product) {
-                made.insert(want.product, self.asking(want.product)?(work, &shared)?);
+            if let Entry::Vacant(product) = made.entry(want.product) {
+                product.insert(self.asking(want.product)?(work, &shared)?);
             }
         }
         Ok(Products { made, arrays: shared.arrays.take() })
