@@ -3,6 +3,7 @@
 mod asked;
 mod catalogue;
 mod linted;
+mod orders;
 mod shown;
 
 pub use asked::Word;
