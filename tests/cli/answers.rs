@@ -26,6 +26,7 @@ fn a_verdict_has_the_keys_of_the_contract_in_their_order() {
         "trace",
         "growth_rate",
         "resonance",
+        "bias",
         "decided_by",
     ];
     assert_eq!(keys(&verdict), contract);
