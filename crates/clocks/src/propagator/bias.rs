@@ -16,11 +16,9 @@
 use num_traits::Zero;
 
 use super::TwoClocks;
-use super::elementary::{apply_drift, apply_kick};
-use crate::schedule::{KickDrift, Kicks, Schedule};
-use nalgebra::Matrix2;
-use num_integer::Integer;
-use number::{Ball, Enclosed, Ratio, Rational, Real, Ring, rational};
+use super::half::{Product, lead};
+use crate::schedule::{KickDrift, Schedule};
+use number::{Ball, Enclosed, Rational, Real, Ring, rational};
 
 /// (Λ1 + Λ2) ⟨x²⟩/kT where both clocks kick: 1 of an unbiased step.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,79 +32,80 @@ pub struct Bias<T> {
 /// The most kicks of a period whose bias is enclosed: each costs its bits.
 pub const MAX_BIAS_KICKS: u64 = 1000;
 
-/// Kicks that the smaller of two precisions is enough for.
-const FEW_KICKS: u64 = 40;
-
 /// Bits of the result that must be certain.
 const ACCURACY_BITS: i64 = 56;
 
-/// The half period with the sums of duration · x² over the middles of its drifts, of the even and of the odd
-/// solution; a drift that T/2 halves has its middle there.
+/// The half period, with Σ duration · x² over the middles of its drifts for the even and for the odd solution.
 struct Spread<S> {
-    half: Matrix2<S>,
+    product: Product<S>,
     squares: [S; 2],
-    /// Ticks of the unit of time h1.
-    unit: u64,
-    /// Ticks that have passed, and those of the half period.
-    passed: u64,
-    end: u64,
-    is_halved: bool,
+    /// Of the last drift, where no kick has followed it: how long it is, and x of both solutions before it.
+    drift: Option<(S, [S; 2])>,
 }
 
 impl<S: Ring> Spread<S> {
     fn new(clocks: &TwoClocks<S>) -> Spread<S> {
-        let schedule = Schedule::two_clocks(clocks.ratio()).expect("a period short enough to compose");
-        let one_half = S::from_rational(&rational::ratio(1, 2));
-        let kicks = Kicks::of_two_clocks(clocks.strengths(), |k| [k.clone(), k * one_half.clone()]);
-        let unit = schedule.clocks()[0].step();
-        let mut spread = Spread {
-            half: Matrix2::new(S::one(), S::zero(), S::zero(), S::one()),
-            squares: [S::zero(), S::zero()],
-            unit,
-            passed: 0,
-            // T = p h1.
-            end: clocks.p() * unit,
-            // No clock kicks at T/2.
-            is_halved: clocks.p() % 2 == 1 && clocks.q() % 2 == 1,
-        };
-        kicks.lead(schedule.half_period(), &mut spread);
+        let squares = [S::zero(), S::zero()];
+        let mut spread =
+            lead(clocks, Schedule::half_period, |product| Spread { product, squares, drift: None });
+        // T/2 is in the middle of a drift that no kick has followed.
+        if let Some((duration, _)) = spread.drift.take() {
+            let middle = spread.positions();
+            spread.add(&duration, &middle);
+        }
         spread
     }
 
-    fn time(&self, ticks: u64, parts: u64) -> S {
-        let (ticks, unit) = (ticks, self.unit * parts);
-        let divisor = ticks.gcd(&unit);
-        S::from_rational(&Rational::new_raw((ticks / divisor).into(), (unit / divisor).into()))
+    fn positions(&self) -> [S; 2] {
+        [0, 1].map(|solution| self.product.matrix[(0, solution)].clone())
+    }
+
+    fn add(&mut self, duration: &S, middle: &[S; 2]) {
+        for (sum, x) in self.squares.iter_mut().zip(middle) {
+            sum.add_product(duration, &S::product(x, x));
+        }
     }
 }
 
 impl<S: Ring> KickDrift<S> for Spread<S> {
     fn drift(&mut self, ticks: u64) {
-        self.passed += ticks;
-        let (duration, half) = (self.time(ticks, 1), self.time(ticks, 2));
-        let is_cut = self.is_halved && 2 * self.passed == self.end;
-        apply_drift(&mut self.half, &half);
-        let middle = if is_cut {
-            apply_drift(&mut self.half, &half);
-            self.half.clone()
-        } else {
-            let middle = self.half.clone();
-            apply_drift(&mut self.half, &half);
-            middle
-        };
-        for (sum, x) in self.squares.iter_mut().zip([&middle[(0, 0)], &middle[(0, 1)]]) {
-            sum.add_product(&duration, &S::product(x, x));
-        }
+        self.drift = Some((self.product.time(ticks), self.positions()));
+        self.product.drift(ticks);
     }
 
     fn kick(&mut self, strength: &S) {
-        apply_kick(&mut self.half, strength);
+        if let Some((duration, before)) = self.drift.take() {
+            let half = S::from_rational(&rational::ratio(1, 2));
+            let ([even, odd], [even_before, odd_before]) = (self.positions(), before);
+            self.add(&duration, &[(even_before + even) * half.clone(), (odd_before + odd) * half]);
+        }
+        self.product.kick(strength);
     }
 }
 
-/// (Λ1 + Λ2) h1² and T/2 in the unit h1, of a ratio and both strengths.
-fn scales(ratio: Ratio) -> (Rational, Rational) {
-    (Rational::from(ratio).recip(), rational::ratio(1, 2) * Rational::from_integer(ratio.p().into()))
+/// Both biases as fractions over `below` = AC, which no elliptic pair has 0.
+struct Fractions<S> {
+    /// (Λ1 + Λ2) h1².
+    stiffness: S,
+    above: Bias<S>,
+    below: S,
+}
+
+impl<S: Ring> Fractions<S> {
+    fn new(clocks: &TwoClocks<S>) -> Fractions<S> {
+        let Spread { product, squares: [even, odd], .. } = Spread::new(clocks);
+        let [a, b, c, d] = [(0, 0), (0, 1), (1, 0), (1, 1)].map(|at| &product.matrix[at]);
+        let number = |x: Rational| S::from_rational(&x);
+        let slow = S::product(clocks.slow(), &number(Rational::from(clocks.ratio()).recip()));
+        let (stiffness, below) = (clocks.fast().clone() + slow, S::product(a, c));
+        // β² below, and ⟨Σ11⟩/β below, T/2 being p/2.
+        let square = -S::product(b, d);
+        let mean = S::product(&square, &even) + S::product(&below, &odd);
+        let mean = S::product(&mean, &number(Rational::new(2.into(), clocks.p().into())));
+        let above =
+            Bias { at_kicks: S::product(&stiffness, &square), in_drifts: S::product(&stiffness, &mean) };
+        Fractions { stiffness, above, below }
+    }
 }
 
 /// The bias of an elliptic pair, exactly; `None` of any other, and unless Λ1 + Λ2 > 0.
@@ -122,43 +121,29 @@ fn scales(ratio: Ratio) -> (Rational, Rational) {
 /// # Panics
 /// As [`half_period`](super::half_period).
 pub fn bias(clocks: &TwoClocks<Rational>) -> Option<Bias<Rational>> {
-    let Spread { half, squares: [even, odd], .. } = Spread::new(clocks);
-    let [a, b, c, d] = [(0, 0), (0, 1), (1, 0), (1, 1)].map(|at| &half[at]);
-    let zero = Rational::zero();
-    let (slow, half_time) = scales(clocks.ratio());
-    let stiffness = clocks.fast() + clocks.slow() * slow;
-    if b * c >= zero || a * d <= zero || stiffness <= zero {
-        return None;
-    }
-    let square = -(b * d) / (a * c);
-    let in_drifts = &stiffness * (&square * even + odd) / half_time;
-    Some(Bias { at_kicks: stiffness * square, in_drifts })
+    let Fractions { stiffness, above, below } = Fractions::new(clocks);
+    // −BD/(AC) > 0 iff AD and BC = AD − 1 have two signs, that is iff the pair is elliptic.
+    let is_elliptic = stiffness > Rational::zero() && &above.at_kicks * &below > Rational::zero();
+    is_elliptic.then(|| Bias { at_kicks: above.at_kicks / &below, in_drifts: above.in_drifts / &below })
 }
 
 /// As [`bias`], of a pair that is known to be elliptic, enclosed to 56 bits; `None` also beyond
 /// [`MAX_BIAS_KICKS`].
 pub fn enclosed_bias<S: Real>(clocks: &TwoClocks<S>) -> Option<Bias<Ball>> {
-    let kicks = clocks.ratio().kicks();
-    if kicks <= FEW_KICKS {
-        enclosed_in::<256, S>(clocks).or_else(|| enclosed_in::<4096, S>(clocks))
-    } else if kicks <= MAX_BIAS_KICKS {
-        enclosed_in::<4096, S>(clocks)
-    } else {
-        None
+    if clocks.ratio().kicks() > MAX_BIAS_KICKS {
+        return None;
     }
+    // A kick costs a bit or two.
+    enclosed_in::<256, S>(clocks)
+        .or_else(|| enclosed_in::<1024, S>(clocks))
+        .or_else(|| enclosed_in::<4096, S>(clocks))
 }
 
 fn enclosed_in<const BITS: u32, S: Real>(clocks: &TwoClocks<S>) -> Option<Bias<Ball>> {
     let clocks = clocks.map(|x| Enclosed::<BITS>(x.enclosure(BITS)));
-    let Spread { half, squares: [even, odd], .. } = Spread::new(&clocks);
-    let (slow, half_time) = scales(clocks.ratio());
-    let ball = |x: &Rational| Ball::from_rational(x, BITS);
-    let stiffness = clocks.fast().0.add(&clocks.slow().0.mul(&ball(&slow), BITS), BITS);
-    let [a, b, c, d] = [(0, 0), (0, 1), (1, 0), (1, 1)].map(|at| &half[at].0);
-    let square = b.mul(d, BITS).neg().div(&a.mul(c, BITS), BITS)?;
-    let sum = square.mul(&even.0, BITS).add(&odd.0, BITS);
-    let in_drifts = stiffness.mul(&sum, BITS).div(&ball(&half_time), BITS)?;
-    let bias = Bias { at_kicks: stiffness.mul(&square, BITS), in_drifts };
+    let Fractions { above, below, .. } = Fractions::new(&clocks);
+    let over = |above: Enclosed<BITS>| above.0.div(&below.0, BITS);
+    let bias = Bias { at_kicks: over(above.at_kicks)?, in_drifts: over(above.in_drifts)? };
     let is_known = |x: &Ball| x.relative_accuracy_bits() >= ACCURACY_BITS && x.lower() > Rational::zero();
     (is_known(&bias.at_kicks) && is_known(&bias.in_drifts)).then_some(bias)
 }
@@ -167,7 +152,7 @@ fn enclosed_in<const BITS: u32, S: Real>(clocks: &TwoClocks<S>) -> Option<Bias<B
 mod tests {
     use super::*;
     use crate::propagator::full_period;
-    use crate::schedule::Event;
+    use crate::schedule::{Event, Kicks};
     use number::rational::ratio;
 
     fn pairs() -> Vec<TwoClocks<Rational>> {

@@ -81,27 +81,43 @@ pub fn full_period<S: Ring>(clocks: &TwoClocks<S>) -> Matrix2<S> {
 
 /// The product over the events of a span of the pair's schedule, the first event rightmost.
 pub(super) fn compose<S: Ring>(clocks: &TwoClocks<S>, span: impl Fn(&Schedule) -> Events) -> Matrix2<S> {
+    lead(clocks, span, |product| product).matrix
+}
+
+/// What `orbit` makes of the empty product, led through the events of a span.
+pub(super) fn lead<S: Ring, O: KickDrift<S>>(
+    clocks: &TwoClocks<S>,
+    span: impl Fn(&Schedule) -> Events,
+    orbit: impl FnOnce(Product<S>) -> O,
+) -> O {
     let schedule = Schedule::two_clocks(clocks.ratio()).expect("a period short enough to compose");
     let one_half = S::from_rational(&Rational::new(1.into(), 2.into()));
     let kicks = Kicks::of_two_clocks(clocks.strengths(), |k| [k.clone(), k * one_half.clone()]);
     let matrix = Matrix2::new(S::one(), S::zero(), S::zero(), S::one());
-    let mut product = Product { matrix, ticks: schedule.clocks()[0].step() };
-    kicks.lead(span(&schedule), &mut product);
-    product.matrix
+    let mut orbit = orbit(Product { matrix, ticks: schedule.clocks()[0].step() });
+    kicks.lead(span(&schedule), &mut orbit);
+    orbit
 }
 
 /// The product so far.
-struct Product<S> {
-    matrix: Matrix2<S>,
+pub(super) struct Product<S> {
+    pub matrix: Matrix2<S>,
     /// Ticks in the unit of time h1.
     ticks: u64,
 }
 
+impl<S: Ring> Product<S> {
+    /// So many ticks in the unit of time.
+    pub fn time(&self, ticks: u64) -> S {
+        let divisor = ticks.gcd(&self.ticks);
+        S::from_rational(&Rational::new_raw((ticks / divisor).into(), (self.ticks / divisor).into()))
+    }
+}
+
 impl<S: Ring> KickDrift<S> for Product<S> {
     fn drift(&mut self, ticks: u64) {
-        let divisor = ticks.gcd(&self.ticks);
-        let time = Rational::new_raw((ticks / divisor).into(), (self.ticks / divisor).into());
-        apply_drift(&mut self.matrix, &S::from_rational(&time));
+        let time = self.time(ticks);
+        apply_drift(&mut self.matrix, &time);
     }
 
     fn kick(&mut self, strength: &S) {

@@ -26,6 +26,31 @@ pub enum Shape {
     With(&'static Shape, &'static str),
 }
 
+/// Two doubles about a value, each a number within what `$limit` says.
+macro_rules! enclosure {
+    ($name:literal $(, $limit:literal)?) => {
+        Shape::Named(
+            $name,
+            concat!(
+                r#"{
+        "description": "An enclosure: the exact value lies between the two doubles.",
+        "type": "object",
+        "required": ["lo", "hi"],
+        "additionalProperties": false,
+        "properties": {
+            "lo": {"type": "number", "#,
+                $($limit, ", ",)?
+                r#""description": "A double not above the value."},
+            "hi": {"type": "number", "#,
+                $($limit, ", ",)?
+                r#""description": "A double not below the value."}
+        }
+    }"#
+            ),
+        )
+    };
+}
+
 /// Any text.
 pub const TEXT: Shape = Shape::Plain(r#"{"type": "string"}"#);
 /// True or false.
@@ -85,19 +110,7 @@ pub const INTEGERS: Shape = Shape::Named(
 pub const ROUNDED: Shape =
     Shape::Named("rounded", r#"{"type": "number", "description": "A rounded double."}"#);
 /// Two doubles about the value.
-pub const ENCLOSURE: Shape = Shape::Named(
-    "enclosure",
-    r#"{
-        "description": "An enclosure: the exact value lies between the two doubles.",
-        "type": "object",
-        "required": ["lo", "hi"],
-        "additionalProperties": false,
-        "properties": {
-            "lo": {"type": "number", "description": "A double not above the value."},
-            "hi": {"type": "number", "description": "A double not below the value."}
-        }
-    }"#,
-);
+pub const ENCLOSURE: Shape = enclosure!("enclosure");
 /// Two doubles about a value that may be beyond all doubles.
 pub const WIDE_ENCLOSURE: Shape = Shape::Named(
     "wide_enclosure",
@@ -119,19 +132,7 @@ pub const WIDE_ENCLOSURE: Shape = Shape::Named(
     }"#,
 );
 /// Two doubles not below 0 about the value.
-pub const ENCLOSURE_FROM_0: Shape = Shape::Named(
-    "enclosure_from_0",
-    r#"{
-        "description": "An enclosure: the exact value lies between the two doubles.",
-        "type": "object",
-        "required": ["lo", "hi"],
-        "additionalProperties": false,
-        "properties": {
-            "lo": {"type": "number", "minimum": 0, "description": "A double not above the value."},
-            "hi": {"type": "number", "minimum": 0, "description": "A double not below the value."}
-        }
-    }"#,
-);
+pub const ENCLOSURE_FROM_0: Shape = enclosure!("enclosure_from_0", r#""minimum": 0"#);
 /// Decimal digits of a number that is not below 0.
 pub const DECIMAL: Shape =
     Shape::Named("decimal", r#"{"type": "string", "pattern": "^[0-9]+([.][0-9]+)?(e-?[0-9]+)?$"}"#);
@@ -139,19 +140,7 @@ pub const DECIMAL: Shape =
 pub const RATIONAL_OR_NULL: Shape =
     Shape::Plain(r#"{"type": ["string", "null"], "pattern": "^[0-9]+(/[0-9]+)?$"}"#);
 /// Two doubles above 0 about the value.
-pub const POSITIVE_ENCLOSURE: Shape = Shape::Named(
-    "positive_enclosure",
-    r#"{
-        "description": "An enclosure: the exact value lies between the two doubles.",
-        "type": "object",
-        "required": ["lo", "hi"],
-        "additionalProperties": false,
-        "properties": {
-            "lo": {"type": "number", "exclusiveMinimum": 0, "description": "A double not above the value."},
-            "hi": {"type": "number", "exclusiveMinimum": 0, "description": "A double not below the value."}
-        }
-    }"#,
-);
+pub const POSITIVE_ENCLOSURE: Shape = enclosure!("positive_enclosure", r#""exclusiveMinimum": 0"#);
 /// The kind of a verdict.
 pub const KIND: Shape =
     Shape::Named("kind", r#"{"enum": ["elliptic", "hyperbolic", "parabolic", "coexistence"]}"#);
