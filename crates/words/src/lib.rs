@@ -34,11 +34,12 @@
 //! # Ok::<(), kickdrift_words::number::error::Error>(())
 //! ```
 
+pub mod anharmonic;
 mod catalogue;
 mod coefficient;
 mod enclosed;
 mod filter;
-mod general;
+mod general_order;
 mod grammar;
 mod integrator;
 mod letters;
@@ -54,7 +55,7 @@ pub use number;
 pub use catalogue::{METHODS, Method, method};
 pub use enclosed::{Enclosed, Piece};
 pub use filter::Filter;
-pub use general::{ErrorTerm, FormalOrder, GeneralOrder, NoGeneralOrder};
+pub use general_order::{ErrorTerm, FormalOrder, GeneralOrder, NoGeneralOrder};
 pub use integrator::{Bounded, Integrator};
 pub use letters::{Cost, Force, Item, Letter, Place, Word};
 pub use order::{MOST_ORDER, Order};

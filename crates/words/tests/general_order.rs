@@ -1,9 +1,9 @@
 //! Orders on all problems, held against local errors in high precision on problems that are not linear.
 
-use kickdrift_words::number::{Radical, Rational, Real};
-use kickdrift_words::{Force, GeneralOrder, Letter, METHODS, NoGeneralOrder, Word, method};
-use num_bigint::BigInt;
-use num_traits::{One, Signed, Zero};
+use kickdrift_words::anharmonic::order_shown;
+use kickdrift_words::number::{Radical, Rational};
+use kickdrift_words::{GeneralOrder, Letter, METHODS, NoGeneralOrder, Word, method};
+use num_traits::{One, Zero};
 
 fn orders(text: &str) -> GeneralOrder {
     text.parse::<Word>().unwrap().general_order().unwrap()
@@ -20,109 +20,10 @@ fn terms(order: &kickdrift_words::FormalOrder) -> Vec<String> {
     order.error.iter().map(|term| format!("{} {}", text(&term.coefficient), term.commutator)).collect()
 }
 
-/// Bits after the point of the numbers that the local errors are computed in: the least ones are near 2^-90.
-const BITS: u32 = 400;
-
-type Fixed = BigInt;
-
-fn fixed(x: &Rational) -> Fixed {
-    (x.numer() << BITS) / x.denom()
-}
-
-fn times(a: &Fixed, b: &Fixed) -> Fixed {
-    (a * b) >> BITS
-}
-
-/// A problem H = T(p) + V1(x) + V2(x).
-struct Problem {
-    /// Whether T = p²/2, or p²/2 + p³/3.
-    quadratic: bool,
-}
-
-impl Problem {
-    fn velocity(&self, p: &Fixed) -> Fixed {
-        if self.quadratic { p.clone() } else { p + times(p, p) }
-    }
-
-    /// −V1' = −x − x², −V2' = −x³, and both.
-    fn force(&self, force: Force, x: &Fixed) -> Fixed {
-        let square = times(x, x);
-        let first = -(x + &square);
-        match force {
-            Force::First => first,
-            Force::Second => -times(&square, x),
-            Force::All => first - times(&square, x),
-        }
-    }
-
-    /// The derivative of the whole force.
-    fn slope(&self, x: &Fixed) -> Fixed {
-        -((BigInt::from(1) << BITS) + BigInt::from(2) * x + BigInt::from(3) * times(x, x))
-    }
-
-    /// One step of a word that begins at (x, p).
-    fn step(&self, word: &Word, h: &Fixed, start: &[Fixed; 2]) -> [Fixed; 2] {
-        let [mut x, mut p] = start.clone();
-        let number = |c: &Radical| fixed(&c.enclosure(BITS + 8).upper());
-        for letter in word.letters() {
-            match letter {
-                Letter::Drift(time) => x += times(&times(&number(time), h), &self.velocity(&p)),
-                Letter::Kick { force, powers, filter } if !filter.zero => {
-                    let pull = self.force(*force, &x);
-                    p += times(&times(&number(&powers[0]), h), &pull);
-                    if let Some(strength) = powers.get(1) {
-                        // Of a linear force f = −F x: f' f = F² x, and v −= d F² x.
-                        let cube = times(&times(h, h), h);
-                        let gradient = times(&self.slope(&x), &pull);
-                        p -= times(&times(&number(strength), &cube), &gradient);
-                    }
-                }
-                _ => (),
-            }
-        }
-        [x, p]
-    }
-
-    /// The solution after h, by its Taylor series: the terms left out are below h^60.
-    fn solution(&self, h: &Fixed, start: &[Fixed; 2]) -> [Fixed; 2] {
-        const TERMS: usize = 60;
-        let (mut x, mut p) = (vec![start[0].clone()], vec![start[1].clone()]);
-        let at = |a: &[Fixed], b: &[Fixed], n: usize| {
-            (0..=n).fold(Fixed::zero(), |sum, k| sum + times(&a[k], &b[n - k]))
-        };
-        let mut squares: Vec<Fixed> = Vec::new();
-        for n in 0..TERMS {
-            squares.push(at(&x, &x, n));
-            let velocity = if self.quadratic { p[n].clone() } else { &p[n] + at(&p, &p, n) };
-            let force = -(&x[n] + &squares[n] + at(&squares, &x, n));
-            x.push(velocity / (n as i64 + 1));
-            p.push(force / (n as i64 + 1));
-        }
-        [x, p].map(|series| series.iter().rev().fold(Fixed::zero(), |sum, c| times(&sum, h) + c))
-    }
-
-    /// The order that a step shows when it is halved.
-    fn order(&self, word: &Word) -> f64 {
-        // Steps at which errors of rounded coefficients, 1e-16 h³, are far below those of order 8.
-        let start = [fixed(&Rational::new(3.into(), 10.into())), fixed(&Rational::new(2.into(), 5.into()))];
-        let error = |log2: u32| {
-            let h = Fixed::one() << (BITS - log2);
-            let (step, solution) = (self.step(word, &h, &start), self.solution(&h, &start));
-            let [x, p] = [0, 1].map(|i| (&step[i] - &solution[i]).abs());
-            x + p
-        };
-        let bits = |x: &Fixed| {
-            let top = x.bits().saturating_sub(50);
-            ((x >> top).to_string().parse::<f64>().unwrap()).log2() + top as f64
-        };
-        let (coarse, fine) = (error(7), error(8));
-        bits(&coarse) - bits(&fine) - 1.0
-    }
-}
-
 /// That the error halves as the order says; the next term changes it by about a step's length, 1 %.
 fn shows(word: &Word, quadratic: bool, order: u64, name: &str) {
-    let seen = Problem { quadratic }.order(word);
+    // At steps at which errors of rounded coefficients, 1e-16 h³, are far below those of order 8.
+    let seen = order_shown(word, quadratic, 7).unwrap();
     assert!((seen - order as f64).abs() < 0.25, "{name}: order {order}, seen {seen}");
 }
 

@@ -41,7 +41,6 @@
 
 mod advise;
 mod again;
-mod anharmonic;
 mod aperture;
 mod bands;
 mod bias;

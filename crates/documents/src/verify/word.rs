@@ -3,16 +3,19 @@
 use nalgebra::Matrix2;
 use num_traits::{One, Zero};
 
-use super::anharmonic;
 use super::context::{Checked, Context, Outcome, holds, same};
 use super::kind::Verify;
 use super::side::step;
 use crate::question::{Linted, Listed, Methods, Span, Word};
 use number::error::Result;
 use number::{ExactSign, Radical, Rational, Real, Ring, Sign, rational};
+use words::anharmonic::order_shown;
 use words::{Force, Letter, method};
 
 const ROUTE: &str = "letter by letter in exact numbers: a step of each interval, the orders by halving a step, on an anharmonic problem, too; exact flows, filters and friction in doubles";
+
+/// Orders are seen at steps of 2^-80 and half of it: the next order's error is as much smaller.
+const STEP_LOG2: u32 = 80;
 
 /// Traces this near to an edge decide nothing in doubles.
 const NEAR: f64 = 1e-7;
@@ -97,18 +100,15 @@ fn has_general_orders(linted: &Linted) -> Checked {
     let Ok(orders) = &linted.general else { return Ok(()) };
     let both = [("general order", &orders.general, false), ("Nystrom order", &orders.nystrom, true)];
     both.into_iter().try_for_each(|(name, found, quadratic)| {
-        match anharmonic::order(&linted.word, quadratic) {
-            Some(seen) => same(name, found.order, seen),
-            None => Ok(()),
-        }
+        let seen = order_shown(&linted.word, quadratic, STEP_LOG2);
+        seen.map_or(Ok(()), |seen| same(name, found.order, seen.round() as u64))
     })
 }
 
 /// The order at one ρ: the error of a step of 2^-80, and of half of it, against the series of the flow.
 fn order(word: &words::Word, rho: &Rational) -> u64 {
-    const STEP: i64 = 80;
-    let error = |log2: i64| {
-        let h = rational::scale2(&1.into(), -log2);
+    let error = |log2: u32| {
+        let h = rational::scale2(&1.into(), -i64::from(log2));
         let (s, x) = (&h * &h, &h * &h * (Rational::one() + rho));
         let product = product(word, &s, rho);
         // cos, sin / ω h and −ω h sin by their series in (ω h)², in the time unit of h.
@@ -129,7 +129,7 @@ fn order(word: &words::Word, rho: &Rational) -> u64 {
         let size = |c: &Radical| c.enclosure(64).abs();
         errors.iter().map(size).map(|ball| ball.upper()).max().unwrap_or_default()
     };
-    let (coarse, fine) = (error(STEP), error(STEP + 1));
+    let (coarse, fine) = (error(STEP_LOG2), error(STEP_LOG2 + 1));
     if coarse.is_zero() || fine.is_zero() {
         return u64::MAX;
     }

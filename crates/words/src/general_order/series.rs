@@ -62,6 +62,9 @@ impl Monomial {
 
 /// Numbers that series have: whole ones, or whole ones of a field of one root.
 pub(super) trait Scalar: Clone + Zero + One + Neg<Output = Self> + AddAssign + MulAssign {
+    /// A number of the word that is whole, in a word whose numbers are of this kind.
+    fn of(x: &Radical) -> Self;
+
     fn whole(x: i64) -> Self;
 
     /// self += a b.
@@ -74,6 +77,10 @@ pub(super) trait Scalar: Clone + Zero + One + Neg<Output = Self> + AddAssign + M
 }
 
 impl Scalar for BigInt {
+    fn of(x: &Radical) -> BigInt {
+        x.polynomial().coefficient(0).to_integer()
+    }
+
     fn whole(x: i64) -> BigInt {
         x.into()
     }
@@ -92,6 +99,10 @@ impl Scalar for BigInt {
 }
 
 impl Scalar for Radical {
+    fn of(x: &Radical) -> Radical {
+        x.clone()
+    }
+
     fn whole(x: i64) -> Radical {
         BigInt::from(x).radical()
     }

@@ -1,22 +1,23 @@
-//! A word on an oscillator that is not linear, letter by letter in fixed point: the order that its steps show.
+//! A word on an oscillator that is not linear, letter by letter in fixed point: the order that its steps show,
+//! to hold [`Word::general_order`] against. Nothing is expanded.
 //!
 //! H = T(v) + V1(x) + V2(x) with T = v²/2, or v²/2 + v³/3 where the kinetic energy may be any, −V1' = −x − x²
-//! and −V2' = −x³. The error of a step of 2^-80 and that of half of it differ by 2^(p + 1).
+//! and −V2' = −x³. The error of a step h and that of h/2 differ by 2^(p + 1).
 
 use num_bigint::BigInt;
-use num_traits::{Signed, Zero};
+use num_traits::{Signed, ToPrimitive, Zero};
 
+use super::letters::{Force, Letter, Word};
 use number::{Radical, Rational, Real};
-use words::{Force, Letter};
 
 /// Bits after the point: errors of order 9 are near 2^-800.
 const BITS: u32 = 1000;
 
-/// The step is 2^-80: the next order's error is as much smaller.
-const STEP_LOG2: u32 = 80;
+/// Bits after the point of the ratio of two errors.
+const RATIO_BITS: u32 = 40;
 
-/// Terms of a Taylor series: those left out are below 2^(-80 · 14).
-const TERMS: i64 = 14;
+/// The most terms of a Taylor series: those left out are below h^60, and below the last bit where fewer do.
+const MOST_TERMS: u32 = 60;
 
 type Fixed = BigInt;
 
@@ -28,23 +29,22 @@ fn times(a: &Fixed, b: &Fixed) -> Fixed {
     (a * b) >> BITS
 }
 
-/// The order that a word shows; `None` where a letter is no kick and no drift, or a force gradient meets a
-/// kinetic energy that is not quadratic.
-pub(super) fn order(word: &words::Word, quadratic: bool) -> Option<u64> {
+/// The order that a word shows at the steps 2^-`step_log2` and half of it, to about the shorter one; rounded
+/// coefficients show theirs at long steps, and what they leave at short ones. `None` where a letter is no kick and
+/// no drift, where a force gradient meets a kinetic energy that is not quadratic, and where nothing is off.
+pub fn order_shown(word: &Word, quadratic: bool, step_log2: u32) -> Option<f64> {
     let start = [(3, 10), (2, 5)].map(|(n, d): (i64, i64)| fixed(&Rational::new(n.into(), d.into())));
     let error = |log2: u32| {
         let h = BigInt::from(1) << (BITS - log2);
-        let (step, solution) = (step(word, quadratic, &h, &start)?, solution(quadratic, &h, &start));
+        let (step, solution) = (
+            step(word, quadratic, &h, &start)?,
+            solution(quadratic, &h, &start, MOST_TERMS.min(BITS / log2 + 2)),
+        );
         Some([0, 1].iter().map(|&i| (&step[i] - &solution[i]).abs()).sum::<Fixed>())
     };
-    let (coarse, fine) = (error(STEP_LOG2)?, error(STEP_LOG2 + 1)?);
-    if fine.is_zero() {
-        return None;
-    }
-    // Between 2^(p + 1/2) and 2^(p + 3/2), in squares.
-    let ratio = (coarse << 64u32) / fine;
-    let log2 = ((&ratio * &ratio) >> 128u32).bits();
-    Some((log2 / 2).saturating_sub(1))
+    let (coarse, fine) = (error(step_log2)?, error(step_log2 + 1)?);
+    let ratio = (coarse << RATIO_BITS).checked_div(&fine)?.to_f64()?;
+    (ratio > 0.0).then(|| ratio.log2() - f64::from(RATIO_BITS) - 1.0)
 }
 
 fn force(force: Force, x: &Fixed) -> Fixed {
@@ -67,7 +67,7 @@ fn slope(force: Force, x: &Fixed) -> Fixed {
     }
 }
 
-fn step(word: &words::Word, quadratic: bool, h: &Fixed, start: &[Fixed; 2]) -> Option<[Fixed; 2]> {
+fn step(word: &Word, quadratic: bool, h: &Fixed, start: &[Fixed; 2]) -> Option<[Fixed; 2]> {
     let [mut x, mut v] = start.clone();
     let by = |c: &Radical, time: &Fixed| times(&fixed(&c.enclosure(BITS).upper()), time);
     let cube = times(&times(h, h), h);
@@ -98,12 +98,12 @@ fn step(word: &words::Word, quadratic: bool, h: &Fixed, start: &[Fixed; 2]) -> O
 }
 
 /// The solution after h by its Taylor series.
-fn solution(quadratic: bool, h: &Fixed, start: &[Fixed; 2]) -> [Fixed; 2] {
+fn solution(quadratic: bool, h: &Fixed, start: &[Fixed; 2], terms: u32) -> [Fixed; 2] {
     let coefficient =
         |a: &[Fixed], b: &[Fixed], n: usize| (0..=n).map(|k| times(&a[k], &b[n - k])).sum::<Fixed>();
     let [mut x, mut v] = start.clone().map(|value| vec![value]);
     let mut squares = Vec::new();
-    for n in 0..TERMS as usize {
+    for n in 0..terms as usize {
         squares.push(coefficient(&x, &x, n));
         let velocity = if quadratic { v[n].clone() } else { &v[n] + coefficient(&v, &v, n) };
         let pull = -(&x[n] + &squares[n] + coefficient(&squares, &x, n));

@@ -12,6 +12,7 @@ mod commutator;
 mod series;
 
 use std::fmt;
+use std::marker::PhantomData;
 
 use num_bigint::BigInt;
 use num_integer::Integer;
@@ -95,10 +96,9 @@ impl Word {
         let letters = self.letters();
         let mut numbers = letters.iter().flat_map(|letter| letter.coefficients());
         if numbers.all(|number| number.field().is_none()) {
-            let whole = |x: &Radical| x.as_rational().expect("no number has a field").to_integer();
-            Expansion::new(self, &whole).orders()
+            Expansion::<BigInt>::new(self).orders()
         } else {
-            Expansion::new(self, &Radical::clone).orders()
+            Expansion::<Radical>::new(self).orders()
         }
     }
 }
@@ -108,11 +108,11 @@ struct Expansion<'a, T> {
     word: &'a Word,
     two_forces: bool,
     unit: BigInt,
-    number: &'a dyn Fn(&Radical) -> T,
+    scalars: PhantomData<T>,
 }
 
 impl<'a, T: Scalar> Expansion<'a, T> {
-    fn new(word: &'a Word, number: &'a dyn Fn(&Radical) -> T) -> Expansion<'a, T> {
+    fn new(word: &'a Word) -> Expansion<'a, T> {
         // Half the strength of a gradient is whole, too.
         let mut unit = BigInt::from(2);
         for letter in word.letters() {
@@ -120,7 +120,7 @@ impl<'a, T: Scalar> Expansion<'a, T> {
                 number.polynomial().coefficients().iter().for_each(|c| unit = unit.lcm(c.denom()));
             }
         }
-        Expansion { word, two_forces: word.names_forces(), unit, number }
+        Expansion { word, two_forces: word.names_forces(), unit, scalars: PhantomData }
     }
 
     fn orders(&self) -> Result<GeneralOrder, NoGeneralOrder> {
@@ -160,7 +160,7 @@ impl<'a, T: Scalar> Expansion<'a, T> {
 
     /// x · unitᵏ.
     fn scaled(&self, x: &Radical, k: u32) -> T {
-        (self.number)(&(x * &Radical::from_rational(&Rational::from_integer(self.unit.pow(k)))))
+        T::of(&(x * &Radical::from_rational(&Rational::from_integer(self.unit.pow(k)))))
     }
 
     /// B, B1 or B2, or B1 + B2.
