@@ -324,9 +324,11 @@ impl Decided {
         if let Some(Bias { at_kicks, in_drifts }) = &self.bias {
             let [at_kicks, in_drifts] = [at_kicks, in_drifts].map(|bias| significant(bias.mid_f64()));
             lines.push(format!(
-                "  bias         potential energy {at_kicks} kT/2 where the kicks see the temperature (OBABO),"
+                "  bias         potential energy over kT/2: {at_kicks} at constant energy or by OBABO,"
             ));
-            lines.push(format!("               {in_drifts} kT/2 where the drifts do (BAOAB); 1 is right"));
+            lines.push(format!(
+                "               {in_drifts} with a weak thermostat in every drift (BAOAB); 1 is right"
+            ));
         }
         lines.push(format!("  decided by   {}", self.decision.decided_by.name()));
         lines.extend(self.friction.iter().flat_map(friction::lines));

@@ -213,6 +213,8 @@ fn forged_integrators_are_found() {
         stiff("avi-3-2"),
         &[
             |linted| linted.order.order += 1,
+            |linted| linted.general.as_mut().unwrap().general.order += 1,
+            |linted| linted.general.as_mut().unwrap().nystrom.order -= 1,
             |linted| linted.stability.as_mut().unwrap().intervals[0].stable ^= true,
         ],
     );

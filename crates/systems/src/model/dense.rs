@@ -3,21 +3,19 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
-use super::Model;
 use super::measured::{MeasuredSystem, rational};
+use super::{Model, decide_slower, growth_of_decision};
 use crate::friction::Friction;
 use crate::levels::{Cells, Method, Outer};
 use crate::linear::system::System;
 use crate::vary::nearest::Nearest;
 use crate::vary::stretches::{Stretch, cover};
 use crate::verdict::analysis::Analysis;
-use crate::verdict::decide::decide_by;
 use crate::verdict::limits::{DENSE, Limits, Route};
 use crate::verdict::measured::Holds;
-use num_traits::One;
 use number::Rational;
 use number::error::Result;
-use number::rational::{from_f64_exact, to_f64};
+use number::rational::to_f64;
 
 /// A cell of a range of n degrees of freedom takes n² (n + this) products, as measured for 81 to 1,080 of
 /// them: eigenvalues, factorizations and norms in wide cells that decide much, and in narrow ones; what goes
@@ -88,10 +86,7 @@ impl Model for MeasuredSystem {
         self.allow(limits)?;
         match self.inner_steps() {
             Some(inner_steps) => self.decided(&Outer::new(to_f64(outer), inner_steps)?, outer),
-            None => {
-                let slower = outer / self.outer_step();
-                decide_by(Route::Cheapest, &self.moving()?.with(&Rational::one(), &slower)?, limits)
-            }
+            None => decide_slower(&*self.moving()?, &(outer / self.outer_step()), limits),
         }
     }
 
@@ -115,8 +110,7 @@ impl Model for MeasuredSystem {
         if let Some(inner_steps) = self.inner_steps() {
             return Ok(self.kernel()?.growth_rate(&Outer::new(outer, inner_steps)?));
         }
-        let exact = from_f64_exact(outer).expect("a finite step");
-        Ok(self.decide_at(&exact, limits)?.rounded_rate(outer))
+        growth_of_decision(self, outer, limits)
     }
 
     fn friction(&self, rate: &Rational, limits: &Limits) -> Result<Friction> {

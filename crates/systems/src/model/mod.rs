@@ -128,8 +128,7 @@ pub trait Model: Debug + Send + Sync {
     /// # Errors
     /// As [`Model::decide`].
     fn decide_at(&self, outer: &Rational, limits: &Limits) -> Result<Analysis> {
-        let slower = outer / self.outer_step();
-        decide_by(Route::Cheapest, &self.moving()?.with(&Rational::from_integer(1.into()), &slower)?, limits)
+        decide_slower(&*self.moving()?, &(outer / self.outer_step()), limits)
     }
 
     /// The kind by exact arithmetic alone: by characteristic polynomials, part by part; of an oscillator with
@@ -182,8 +181,7 @@ pub trait Model: Debug + Send + Sync {
     /// # Errors
     /// As [`Model::decide`].
     fn growth_at(&self, outer: f64, limits: &Limits) -> Result<Option<f64>> {
-        let exact = from_f64_exact(outer).expect("a finite step");
-        Ok(self.decide_at(&exact, limits)?.rounded_rate(outer))
+        growth_of_decision(self, outer, limits)
     }
 
     /// The effect of friction of a rate per unit time, O in the middle of every drift.
@@ -335,4 +333,15 @@ pub trait Model: Debug + Send + Sync {
     fn measured(&self) -> Result<&MeasuredSystem> {
         Err(self.refused("advice"))
     }
+}
+
+/// The verdict with all steps times `slower`.
+fn decide_slower(system: &System, slower: &Rational, limits: &Limits) -> Result<Analysis> {
+    decide_by(Route::Cheapest, &system.with(&Rational::from_integer(1.into()), slower)?, limits)
+}
+
+/// The growth rate that the verdict at an outer step has.
+fn growth_of_decision(model: &(impl Model + ?Sized), outer: f64, limits: &Limits) -> Result<Option<f64>> {
+    let exact = from_f64_exact(outer).expect("a finite step");
+    Ok(model.decide_at(&exact, limits)?.rounded_rate(outer))
 }

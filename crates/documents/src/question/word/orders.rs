@@ -21,7 +21,7 @@ impl Linted {
             let least = if order.order == *most { "at least " } else { "" };
             let rounded = if order.nominal > order.order {
                 format!(
-                    "; {} but for {}, as rounded coefficients have it",
+                    "; {} but for {}, which rounded coefficients leave",
                     order.nominal,
                     commutators(&order.error, 1)
                 )

@@ -156,7 +156,7 @@ fn not_below(advice: &Advice, answer: &Answer) -> String {
         if advice.caps.bound(clock) == Bound::Aperture {
             let (step, own) = (length(&scheme.steps()[clock], unit), cap(value, unit));
             return format!(
-                "the step of {step} is not below {own}, from which on hot bonds are lost, as measured"
+                "the step of {step} is not below {own}; beyond it hot bonds are lost, as measured"
             );
         }
         return format!(
@@ -169,7 +169,7 @@ fn not_below(advice: &Advice, answer: &Answer) -> String {
     match advice.caps.outer() {
         Some((_, Bound::Third)) => format!("not below T/3 = {}", third()),
         Some((value, Bound::Aperture)) => {
-            format!("not below {}, from which on hot bonds are lost, as measured", cap(value, unit))
+            format!("not below {}; beyond it hot bonds are lost, as measured", cap(value, unit))
         }
         Some((value, bound)) => format!("not below {} = {}", bound.name(), cap(value, unit)),
         None => "not below what is published".into(),
@@ -318,6 +318,9 @@ pub(super) fn published(
     )
 }
 
+/// Bonds and angles, which those runs are about, have shorter periods, fs.
+const LONGEST_BOND_PERIOD: f64 = 30.0;
+
 /// What runs show beside what is published of several clocks.
 pub(super) fn seen(steps: usize) -> Option<String> {
     (steps > 1).then(|| format!("  measured   {SEEN}"))
@@ -415,8 +418,10 @@ fn reasons(advice: &Advice) -> Vec<String> {
         if unit == TimeUnit::Plain { own.replace(&format!(": {PRACTICE}"), "") } else { own }
     };
     lines.extend((!advice.lacks_fast).then(limits));
-    let is_of_molecules = !advice.lacks_fast && unit == TimeUnit::Femtoseconds;
-    lines.extend(seen(answer.scheme.steps().len()).filter(|_| is_of_molecules));
+    let is_of_bonds = !advice.lacks_fast
+        && unit == TimeUnit::Femtoseconds
+        && advice.modes.iter().any(|mode| mode.period().0 < LONGEST_BOND_PERIOD);
+    lines.extend(seen(answer.scheme.steps().len()).filter(|_| is_of_bonds));
     lines.extend(advice.cold.iter().map(|cold| measured(advice, cold)));
     lines.extend(super::bias::line(advice));
     lines.push(format!("  unknown    {}", unknown(advice)[0]));

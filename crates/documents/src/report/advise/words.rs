@@ -173,7 +173,7 @@ impl Choice<'_> {
             let own = cap(value, unit);
             if self.caps.bound(clock) == Bound::Aperture {
                 return format!(
-                    "advice: none with a step of {step} inside: it is not below {own}, from which on hot bonds are lost, as measured: take a shorter one. \
+                    "advice: none with a step of {step} inside: it is not below {own}; beyond it hot bonds are lost, as measured: take a shorter one. \
                      Up to {largest} is proven stable for all periods within {band}, of small oscillations"
                 );
             }
