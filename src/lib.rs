@@ -85,6 +85,11 @@
 pub mod cli;
 pub mod explore;
 
+/// The code of README.md, run as documentation is.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
+
 pub use clocks::{band, map, propagator, resonance, schedule, tongue, verdict};
 pub use documents::{format, input as scene, question, report, verify as recheck};
 pub use molecules as advise;

@@ -4,6 +4,7 @@ import importlib
 import inspect
 import re
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -32,6 +33,8 @@ def public() -> Iterator[tuple[str, Any]]:
 
 
 PUBLIC = dict(public())
+README = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
+BLOCKS = re.findall(r"^```python\n(.*?)^```$", README, re.MULTILINE | re.DOTALL)
 
 
 def test_the_list_is_that_of_the_package() -> None:
@@ -51,3 +54,12 @@ def test_every_parameter_is_explained(name: str) -> None:
     lines = re.findall(r"^\S.*", told[1], re.MULTILINE) if told else []
     explained = {word for line in lines for word in re.findall(r"\w+", line.split(":")[0])}
     assert not [given for given in parameters if given not in explained]
+
+
+@pytest.mark.parametrize("block", BLOCKS, ids=lambda block: block.splitlines()[0])
+def test_what_the_code_of_the_readme_prints_is_what_its_comments_say(
+    block: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    exec(block, {})
+    said = re.findall(r"^print\(.*\) +# (.*)$", block, re.MULTILINE)
+    assert said and capsys.readouterr().out.splitlines() == said
