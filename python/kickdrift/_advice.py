@@ -49,8 +49,8 @@ class Advised(Document):
 
     @property
     def safe(self) -> Number | None:
-        """The longest outer step of the first scheme, fs, that is proven stable for the whole band and below what is
-        published: T/3 of the fastest motion, and of each clock's own forces T/6.28."""
+        """The longest outer step of the first scheme, fs, that is proven stable for the whole band and below the
+        published limits: T/3 of the fastest motion, and T/6.28 of each clock's own forces."""
         return _number(self.schemes[0]["safe"])
 
     @property
@@ -152,7 +152,7 @@ class Advice(Advised):
         return self._asked.svg()
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw what is proven stable and unstable over the outer step of the first scheme, a row a mode.
+        """Draw the proven stable and unstable outer steps of the first scheme, a row a mode.
 
         Parameters
         ----------
@@ -215,7 +215,7 @@ class SystemAdvice(Advised):
         return self._table("ladder") if "ladder" in self.data else ()
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw what is proven stable and the first unstable interval over the outer step, a row a scheme.
+        """Draw the proven stable outer steps and the first unstable interval, a row a scheme.
 
         Parameters
         ----------

@@ -112,7 +112,7 @@ def advise(
     length : Time, optional
         The length of the run, as ``"10ns"``.
     friction : Exact, optional
-        A thermostat's, as ``"1/ps"``: whether it masks what grows.
+        A thermostat's, as ``"1/ps"``: does it mask the growth?
     constraints : str, optional
         What is held: ``"h-bonds"``, of bonds also ``"all-bonds"`` or their names.
     hmr : Exact, optional
@@ -127,7 +127,7 @@ def advise(
         What else makes the system of OpenMM's, ASE's or LAMMPS's: the keywords of :func:`kickdrift.openmm.system`
         (``positions``, ``topology``, ``integrator`` and so on), :func:`kickdrift.ase.system` (``groups``) or
         :func:`kickdrift.lammps.system` (``respa``).
-        With more than 1,200 degrees of freedom in OpenMM the answer is that of :func:`kickdrift.openmm.bands`, which
+        With more than 1,200 degrees of freedom in OpenMM the answer comes from :func:`kickdrift.openmm.bands`, which
         takes seconds, unless ``longest`` gives the seconds that Hessians may take.
 
     Raises

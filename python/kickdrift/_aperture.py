@@ -63,7 +63,7 @@ def aperture(
 ) -> Aperture:
     """Measure the least energy, in kT, at which a bond is lost at each step.
 
-    The integrator is run in doubles on one bond from 48 phases at rising energies. That is a measurement and no proof.
+    The integrator is run in doubles on one bond from 48 phases at rising energies: a measurement, no proof.
 
     Parameters
     ----------

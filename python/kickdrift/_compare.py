@@ -24,7 +24,7 @@ class Comparison(Table):
     """
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the disagreements: a grid's in the (h1, h2) plane, those of ratios in (s, h2/h1).
+        """Draw the disagreements: on a grid in the (h1, h2) plane, for ratios in (s, h2/h1).
 
         Parameters
         ----------

@@ -245,7 +245,7 @@ def map(
     h1, h2 : Range
         The closed ranges of steps, time.
     step, step1, step2 : Exact, optional
-        The spacing of both steps, or where they differ that of each.
+        The spacing of both steps, or one for each.
     label : bool
         Also the tongue's label m of each growing pair, and its dominant family (a, b).
     growth : bool

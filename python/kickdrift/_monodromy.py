@@ -47,9 +47,9 @@ def unbalanced(forces: Mapping[str, Doubles], size: float, masses: Doubles, unit
 
 @dataclass(frozen=True, eq=False)
 class Monodromy(Frozen):
-    """What small deviations from a state do over one period of the clocks: measured in doubles, and what is proven.
+    """Small deviations from a state over one period of the clocks: measured in doubles, with a proven verdict.
 
-    About an orbit :attr:`verdict` is proven for all Hessians within the accuracy of those measured.
+    About an orbit :attr:`verdict` is proven for all Hessians within the accuracy of the measured ones.
     Rates, multipliers and doubts are estimates, :attr:`growth_bounds` proven.
 
     Attributes
@@ -64,8 +64,8 @@ class Monodromy(Frozen):
     period : Fraction
         The period of the clocks.
     half : array, shape (2n', 2n')
-        The propagator of mass-weighted deviations (x, v) over half a period, n' = 3n less what is held, in orthonormal
-        frames of what is free at both its ends.
+        The propagator of mass-weighted deviations (x, v) over half a period, n' = 3n less the held ones, in orthonormal
+        frames of the free motions at both ends.
     residual : float
         The step that Newton's method would take next, relative to the extent of the atoms; 0 about a minimum.
     mu : array, shape (n',)

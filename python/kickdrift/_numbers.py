@@ -183,7 +183,7 @@ def flag(field: str, value: Any) -> bool:
 
 
 def mapping_of(field: str, value: Any, remedy: str) -> Mapping[str, Any]:
-    """A mapping, of names to what is meant by them."""
+    """A mapping from names to their values."""
     if not isinstance(value, Mapping):
         raise KickdriftError(field, shown(value), remedy)
     return value

@@ -87,7 +87,7 @@ def recheck(
     Raises
     ------
     KickdriftError
-        What is no document of this program; what does not hold is no error but a failure.
+        The file is no document of this program. A value that does not hold is no error but a failure.
 
     Examples
     --------

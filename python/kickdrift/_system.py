@@ -1,4 +1,4 @@
-"""Systems: many clocks, many degrees of freedom; what is asked of them."""
+"""Systems: many clocks, many degrees of freedom, and the questions about them."""
 
 from __future__ import annotations
 
@@ -116,7 +116,7 @@ class System(HessianSystem):
         method: str | None = None,
         budget: int | None = None,
     ) -> SystemVerdict:
-        """Decide whether the system is stable, and find what grows.
+        """Decide whether the system is stable, and find the growing modes.
 
         Parameters
         ----------
@@ -273,9 +273,9 @@ class System(HessianSystem):
         length : Time, optional
             The length of the run, as ``"10ns"``.
         friction : Exact, optional
-            A thermostat's, as ``"1/ps"``: whether it masks what grows.
+            A thermostat's, as ``"1/ps"``: does it mask the growth?
         constraints : str, optional
-            ``"h-bonds"``: bonds with hydrogens held, beside what is held already; of Hessians with ``forces``.
+            ``"h-bonds"``: bonds with hydrogens held, beside those held already; for Hessians with ``forces``.
         hmr : Exact, optional
             Hydrogens of this mass in amu, taken from their heavy atoms.
         levers : bool
@@ -374,7 +374,7 @@ class SystemVerdict(DecidedSystem):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What limits the verdict, in words; what was left out when the system was made comes first."""
+        """The limits of the verdict, in words; parts left out when the system was made come first."""
         return (*self.system.notes, *self.data["warnings"])
 
     @property

@@ -62,7 +62,7 @@ class SystemFile(Frozen):
         Raises
         ------
         KickdriftError
-            A file that cannot be read; what stands in it is checked when it is used.
+            The file cannot be read. Its content is checked when it is used.
 
         Examples
         --------
@@ -83,7 +83,7 @@ class SystemFile(Frozen):
         return cls(MappingProxyType(document), _path=Path(path), _source=source)
 
     def save(self, folder: str | PathLike[str]) -> Path:
-        """Write ``system.json`` and ``arrays.npz`` to a folder, each as a whole; return the path of the former.
+        """Write ``system.json`` and ``arrays.npz`` to a folder, each as a whole; return the path of ``system.json``.
 
         Parameters
         ----------

@@ -158,10 +158,10 @@ class HessianSystem(SystemFile):
             Where the particles of a free molecule are at t = 0 and half a period later: its rigid motions are set
             apart.
         rigid : array of doubles, shape (2, n, r), optional
-            These motions themselves, in other coordinates than those of particles: mass-weighted columns at t = 0 and
+            The rigid motions themselves, if the coordinates are not particles': mass-weighted columns at t = 0 and
             half a period later.
         accuracy : float
-            How well each Hessian is known, relative to its norm: what is proven is so for all within it.
+            The error of each Hessian relative to its norm: a proof holds for all Hessians within it.
         title, time_unit, labels, notes, periodic, keep_rigid
             As for :meth:`from_hessians`.
 

@@ -89,7 +89,7 @@ class DecidedSystem(Document):
     @property
     def nearest_unstable(self) -> Mapping[str, Any] | None:
         """What :meth:`System.nearest` asks for: the unstable interval that holds the outer step, ``own``, the next one
-        ``below`` and ``above``, None where there is none in what was ``searched``; what is ``untold`` there."""
+        ``below`` and ``above``, None where there is none in the ``searched`` range, and its ``untold`` parts."""
         return self._beside("nearest_unstable")
 
     @property

@@ -310,12 +310,12 @@ class Verdicts(Frozen):
 
     @property
     def stable(self) -> npt.NDArray[np.bool_]:
-        """Whether each pair is stable, shape that of ``code``."""
+        """Whether each pair is stable; the shape of ``code``."""
         return frozen(np.asarray(_STABLE[self.code]))
 
     @property
     def kind(self) -> npt.NDArray[np.str_]:
-        """The kind of each, shape that of ``code``: elliptic, parabolic, coexistence or hyperbolic."""
+        """The kind of each, in the shape of ``code``: elliptic, parabolic, coexistence or hyperbolic."""
         return frozen(np.asarray(np.array([name.rstrip("+-") for name in VERDICTS])[self.code]))
 
     def to_pandas(self) -> pandas.DataFrame:

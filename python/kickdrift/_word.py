@@ -7,7 +7,7 @@ from kickdrift._numbers import Exact, Range, optional_range, optional_text
 
 
 class Word(Table):
-    """An integrator as its author writes it: its stable and unstable intervals, and all that is known of it.
+    """An integrator as its author writes it: its stable and unstable intervals, its order, cost and engines.
 
     Examples
     --------

@@ -60,13 +60,13 @@ def system(
     difference : float
         The difference of positions, Å.
     progress : bool or callable
-        A bar on standard error, in a log four lines a group, behind what it will take; or what is called with the
-        columns done and the columns in all, for each group.
+        A bar on standard error, in a log four lines a group, with an estimate of the time; or a callback
+        (columns done, columns in all) for each group.
     longest : float
         Seconds: Hessians that would take longer, or more memory than there is, are refused before they are begun.
     symmetric : bool
-        False: some force is no gradient, as one that is learned and predicted directly. Then the asymmetry of a
-        Jacobian is no error, and the answer's ``no_gradient`` keeps apart what grows without steps.
+        False: some force is non-conservative, as a learned model that predicts forces directly. Then the asymmetry of a
+        Jacobian is no error, and the answer's ``no_gradient`` keeps apart the growth without steps.
 
     Returns
     -------
@@ -202,9 +202,9 @@ def shapes(
 ) -> list[Shape]:
     """Scan the energy along the fastest bonds, some twenty energies each, and describe it as ``kd.aperture`` reads it.
 
-    Both atoms of a bond move along it, about their centre of mass; all others stand still. A mode of several bonds is
-    not scanned: a hot bond vibrates alone, for its frequency leaves that of the others. So the scan leaves out the
-    coupling of bonds, which makes the fastest mode some percent faster, and whatever moves meanwhile.
+    The two atoms of a bond move along it, about their centre of mass; all others stand still. A mode of several bonds
+    is not scanned: a hot bond vibrates alone, since its frequency changes. So the scan leaves out the coupling of
+    bonds, which makes the fastest mode some percent faster, and whatever moves meanwhile.
 
     Parameters
     ----------

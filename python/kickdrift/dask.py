@@ -72,7 +72,7 @@ def map(
     -------
     xarray.Dataset
         The store, opened: ``verdict`` and what else was asked for over the coordinates h1 and h2. Growth rates are
-        enclosures: within ``growth_rate_error`` they are those of :func:`kickdrift.map`.
+        enclosures: they agree with :func:`kickdrift.map` within ``growth_rate_error``.
 
     Raises
     ------

@@ -1,6 +1,6 @@
 """Systems of LAMMPS: the forces of each level of ``run_style respa``, as LAMMPS itself computes them.
 
-Units are those of the input's ``units``: steps in fs for ``real``, in ps for ``metal``, in τ for ``lj``; or exact with
+Units follow the input's ``units``: steps in fs for ``real``, in ps for ``metal``, in τ for ``lj``; or exact with
 their own, ``"4fs"``. An instance is all that is needed: this module imports no LAMMPS.
 """
 
@@ -63,11 +63,11 @@ def system(
 ) -> System:
     """Make a system of LAMMPS's: the Hessian of each level of r-RESPA at the minimum, with its measured error.
 
-    LAMMPS shows the forces of no level but the outermost, by ``fix store/force`` and ``run 0``. So those of level k are
-    the outermost's of a shorter run style, with the levels from k on in one, less the outermost's with those from k + 1
-    on. The input is left as it was: positions and the run style are put back. Make the instance with ``lammps(cmdargs=
-    ["-screen", "none", "-log", "none"])``, or it prints each of these runs. ``pair_modify table 0`` turns off tables of
-    Coulomb forces, which limit the accuracy. Pairs that cross a cutoff make forces jump.
+    LAMMPS shows only the forces of the outermost level, by ``fix store/force`` and ``run 0``. So levels are merged:
+    forces of level k = (levels k, k+1, ... as the outermost) - (levels k+1, ... as the outermost). The input is left as
+    it was: positions and the run style are put back. Make the instance with ``lammps(cmdargs=["-screen", "none",
+    "-log", "none"])``, or it prints each of these runs. ``pair_modify table 0`` turns off tables of Coulomb forces,
+    which limit the accuracy. Forces jump when a pair crosses a cutoff.
 
     Parameters
     ----------
@@ -76,13 +76,13 @@ def system(
     respa : str
         The line ``run_style respa 2 8 bond 1 pair 2``, or an input in which it is the last of its kind.
     timestep : Exact, optional
-        The outer step in LAMMPS's unit of time, or a text with its own; that of ``timestep`` in the input unless given.
+        The outer step in LAMMPS's unit of time, or a text with its own; by default ``timestep`` of the input.
     minimize : bool
         Go to the minimum beside the positions first, by Newton's method; LAMMPS's own ``minimize`` leads near to it.
     difference : float, optional
         The difference of positions: 1e-3 Å, 3e-4 sigma.
     progress : bool or callable
-        A bar on standard error, or what is called with the columns done and the columns in all, for each level.
+        A bar on standard error, or a callback (columns done, columns in all) for each level.
     longest : float
         Seconds: Hessians that would take longer, or more memory than there is, are refused before they are begun.
 

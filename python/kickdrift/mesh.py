@@ -1,8 +1,8 @@
 """Waves on meshes with local time steps: a mesh of Gmsh or meshio, lumped linear elements, steps by element.
 
 ``M x'' + K x = 0`` for a scalar wave of density ``r`` and speed ``c``: ``M`` holds the integrals of ``r``, lumped,
-``K`` those of ``r c^2 grad u grad v``. Elements whose own Courant limit is short take substeps (leapfrog with local
-time steps, Diaz and Grote 2009), or kick with steps of their own (AVI, Lew, Marsden, Ortiz and West 2003).
+``K`` the integrals of ``r c^2 grad u grad v``. Elements whose own Courant limit is short take substeps (leapfrog with
+local time steps, Diaz and Grote 2009), or kick with steps of their own (AVI, Lew, Marsden, Ortiz and West 2003).
 """
 
 from __future__ import annotations
@@ -136,8 +136,9 @@ def waves(
     Parameters
     ----------
     mesh : path, meshio.Mesh, or (points, cells)
-        A file that meshio reads, as Gmsh's ``.msh`` of version 2.2 or 4.1; its lines, triangles or tetrahedra, those of
-        the highest dimension. Or points, shape (nodes, 1 to 3), and cells, shape (elements, 2 to 4), counted from 0.
+        A file that meshio reads, as Gmsh's ``.msh`` of version 2.2 or 4.1; its lines, triangles or tetrahedra,
+        whichever have the highest dimension. Or points, shape (nodes, 1 to 3), and cells, shape (elements, 2 to 4),
+        counted from 0.
     speed, density : float or array, shape (elements,)
         The speed of the wave, and the density of the medium; the unit of time follows from these.
     scheme : "lts" or "avi"
@@ -150,7 +151,7 @@ def waves(
     courant : float
         In place of a step: its share of ``cfl``.
     fixed : "boundary", sequence of nodes, or None
-        Nodes that stand still: those of faces that one element alone has, these, or none.
+        Nodes that stand still: all nodes on faces of one element alone, the given ones, or none.
     title : str, optional
         Names the system in answers.
 

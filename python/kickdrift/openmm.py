@@ -99,8 +99,8 @@ def system(
         times less accurate, which their ``accuracy`` says; ``minimize`` is then OpenMM's minimizer alone. For a force
         that exists on no other platform.
     progress : bool or callable
-        A bar on standard error, in a log four lines for each step, behind what it will take; or what is called with the
-        columns done and the columns in all, for each step.
+        A bar on standard error, in a log four lines for each step, with an estimate of the time; or a callback
+        (columns done, columns in all) for each step.
     longest : float
         Seconds: Hessians that would take longer, or more memory than there is, are refused before they are begun.
     resume : path, optional
@@ -112,12 +112,12 @@ def system(
     Returns
     -------
     System
-        Its ``accuracy`` is the largest estimated error of a Hessian over its norm, its ``notes`` say what is left out,
-        and whether the groups' own forces vanish at the positions: where they do not, a run is not about them.
-        Constraints are met by RATTLE: deviations along them are projected out, the curvature they bring is kept. Rigid
-        motions are projected out: translations and rotations, in a periodic box translations alone, none among atoms
-        that stand still or in an outer field. Virtual sites follow their atoms at each drift: only what has a mass has
-        degrees of freedom, and positions are those of these particles.
+        Its ``accuracy`` is the largest estimated error of a Hessian over its norm, its ``notes`` list the parts left
+        out, and say whether the groups' own forces vanish at the positions: if they do not, a run is about another
+        place. Constraints are met by RATTLE: deviations along them are projected out, the curvature they bring is kept.
+        Rigid motions are projected out: translations and rotations, in a periodic box translations alone, none among
+        atoms that stand still or in an outer field. Virtual sites follow their atoms at each drift: only particles with
+        a mass have degrees of freedom and positions here.
 
     Raises
     ------
@@ -449,8 +449,8 @@ def oscillations(
         first unstable step, with rates good to 10 % there and worse beyond.
     progress : bool or callable
         A bar on standard error, in a log four lines for each Hessian on the way to the minimum and four for each step
-        of Newton's method, behind what it will take; or what is called with the columns, and then with the Hessians of
-        half a period, that are done and that there are in all.
+        of Newton's method, with an estimate of the time; or a callback (done, in all), first for columns, then for the
+        Hessians of half a period.
     longest : float
         Seconds: what would take longer, or more memory than there is, is refused before it is begun.
     resume : path, optional
@@ -699,9 +699,9 @@ def shapes(
 ) -> list[Shape]:
     """Scan the energy along the fastest bonds, some twenty energies each, and describe it as ``kd.aperture`` reads it.
 
-    Both atoms of a bond move along it, about their centre of mass; all others stand still. A mode of several bonds is
-    not scanned: a hot bond vibrates alone, for its frequency leaves that of the others. So the scan leaves out the
-    coupling of bonds, which makes the fastest mode some percent faster, and whatever moves meanwhile.
+    The two atoms of a bond move along it, about their centre of mass; all others stand still. A mode of several bonds
+    is not scanned: a hot bond vibrates alone, since its frequency changes. So the scan leaves out the coupling of
+    bonds, which makes the fastest mode some percent faster, and whatever moves meanwhile.
 
     Parameters
     ----------

@@ -134,7 +134,7 @@ impl Molecule {
         }
         let (groups, caps) = (self.groups(), self.caps());
         let fastest = groups.first().cloned().or_else(|| self.fastest_between()).ok_or_else(|| {
-            let remedy = "no force of the shorter step acts on what is free: give it the bonds, or leave it out and ask `kickdrift system FILE`";
+            let remedy = "no force of the shorter step acts on the free motions: give it the bonds, or leave it out and ask `kickdrift system FILE`";
             Error::input("fast stiffness", "0", remedy)
         })?;
         friction.map_or(Ok(()), check_friction)?;

@@ -197,7 +197,7 @@ impl Reader {
 }
 
 pub(super) const TWO_FIELDS: &str =
-    "one word has the powers of one root, as of 2^(1/3); write another root as a decimal";
+    "one word has the powers of one root, such as 2^(1/3); write another root as a decimal";
 
 /// The bits of a number's coefficients.
 fn size(x: &Radical) -> u64 {

@@ -258,7 +258,7 @@ impl Advise {
                 say("the text has heavy hydrogens, which the Hessians given do not: add --hmr");
             } else if self.bond.is_empty() {
                 say(
-                    "the text has heavy hydrogens, and periods have no masses: give those of the heavier molecule",
+                    "the text has heavy hydrogens, and periods have no masses: give the periods of the heavier molecule",
                 );
             }
         }

@@ -113,7 +113,7 @@ impl Question for Closings {
             return Err(Error::input(
                 "m",
                 "given with --max-sum",
-                "labels are those of one ratio: give --ratio P/Q, or leave --m out",
+                "labels belong to one ratio: give --ratio P/Q, or leave --m out",
             ));
         }
         if !(2..=MOST_SAMPLES).contains(&self.samples) {

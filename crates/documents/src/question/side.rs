@@ -135,7 +135,7 @@ impl CompareMethods {
             }
             _ => Err(Error::missing(
                 "rho_range",
-                "give the range and spacing of lambda2/lambda1, or those of h2 (lambda2 goes with h2)",
+                "give a range and spacing of lambda2/lambda1, or of h2 (lambda2 goes with h2)",
             )),
         }
     }

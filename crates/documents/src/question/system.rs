@@ -334,7 +334,7 @@ impl System {
                 (figure, varied.words(&span.to_string()))
             }
             (Found::Verdict(verdict), _) => (report::figure(&verdict.analysis, title), varied),
-            (Found::Intervals(_), None) => unreachable!("intervals are those of a number"),
+            (Found::Intervals(_), None) => unreachable!("intervals need a number"),
         };
         let foot = Foot::default().words(title).part(varied.to_string());
         Ok(figure.in_units_of(scene.time_unit().unwrap_or("time")).footed(&foot))

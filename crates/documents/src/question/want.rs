@@ -81,7 +81,7 @@ impl Want {
             return Err(Error::input("want", text, remedy));
         }
         if format == Format::Npz && product != Product::Map {
-            return Err(Error::input("want", text, "arrays are those of the map: map.npz"));
+            return Err(Error::input("want", text, "only a map has arrays: map.npz"));
         }
         Ok(Want { product, format })
     }

@@ -23,7 +23,7 @@ fn whole(max: u64, check: &Check, witnesses: &[Witness]) -> Checked {
     same("resonant_points", check.forward, ratios().map(|(p, _)| p - 1).sum())?;
     let points = ratios().flat_map(|(p, q)| (1..p).map(move |m| (p, q, m)));
     let found = witnesses.iter().map(|witness| (witness.ratio.p(), witness.ratio.q(), witness.m));
-    holds(points.eq(found), || "its witnesses are not those of all points, in order".into())?;
+    holds(points.eq(found), || "its witnesses are not the witnesses of all points, in order".into())?;
     // a p + b q = m with |a| ≤ max, b ≠ 0: a runs through a residue class modulo q.
     let curves = |(p, q): (u64, u64)| {
         let (p, q, max) = (p as i64, q as i64, max as i64);

@@ -130,7 +130,7 @@ pub(super) fn read(text: &str) -> Result<Reading> {
     reading.used.insert(0, shown);
     if !INTEGRATORS.contains(&integrator.as_str()) {
         reading.remarks.push(format!(
-            "integrator = {integrator} is not known here: the answer is that of kicks and drifts"
+            "integrator = {integrator} is not known here: the answer is about kicks and drifts"
         ));
     }
     masses_and_bonds(&keys, &mut reading)?;

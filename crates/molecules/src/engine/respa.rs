@@ -13,7 +13,7 @@ pub(super) fn refuse_order(forces: &[(String, usize)], shown: &str) -> Result<()
     let order: Vec<(&str, usize)> = KEYWORDS.iter().filter(|key| **key != "hybrid").filter_map(at).collect();
     match order.windows(2).find(|pair| pair[1].1 < pair[0].1) {
         Some(pair) => {
-            let remedy = format!("LAMMPS refuses {} on a level below that of {}", pair[1].0, pair[0].0);
+            let remedy = format!("LAMMPS refuses {} on a level below {}", pair[1].0, pair[0].0);
             Err(Error::input("run_style", shown, remedy))
         }
         None => Ok(()),

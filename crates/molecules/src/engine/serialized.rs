@@ -45,7 +45,7 @@ pub(super) fn integrator(text: &str) -> Result<Option<Reading>> {
     let kind = node.attribute("type").unwrap_or("Integrator");
     if kind != "CustomIntegrator" && !PLAIN.contains(&kind) {
         let remedy =
-            "is no integrator whose steps are read: those of kicks and drifts alone are, and MTSIntegrator";
+            "is no integrator whose steps are read: kicks and drifts alone are read, and MTSIntegrator";
         return Err(Error::input("Integrator", kind, remedy));
     }
     let size = node.attributes().find(|attribute| attribute.name() == "stepSize");
@@ -118,7 +118,7 @@ fn evaluations(pieces: &[Piece]) -> Result<BTreeMap<u64, Vec<u64>>> {
         Err(Error::input(
             "CustomIntegrator",
             what,
-            "are not those of MTSIntegrator: give the steps themselves, by --steps",
+            "differ from MTSIntegrator's: give the steps themselves, by --steps",
         ))
     };
     // Parts of dt that all distances are multiples of.

@@ -65,12 +65,11 @@ pub(super) fn read(text: &str, outer: Option<&Rational>) -> Result<Reading> {
     let is_hp =
         has(&HP_KEYS) || integrator.as_deref().is_some_and(|integrator| HP_INTEGRATORS.contains(&integrator));
     if is_hp && has(&TINKER_KEYS) {
-        let remedy =
-            "is a key of Tinker beside keys of Tinker-HP: leave out those of the one that is not run";
+        let remedy = "is a key of Tinker beside keys of Tinker-HP: leave out the keys of one of them";
         return Err(Error::input("key file", "RESPA-INNER or OPENMP-THREADS", remedy));
     }
     let outer = outer.ok_or_else(|| {
-        let remedy = "a key file has no outer step: give the one that the run is started with, by --steps";
+        let remedy = "a key file has no outer step: give the step of the run, by --steps";
         Error::missing("outer step", remedy)
     })?;
     let engine = if is_hp { Engine::TinkerHp } else { Engine::Tinker };

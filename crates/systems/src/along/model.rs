@@ -175,7 +175,7 @@ impl Along {
         if atoms.clone().all(|atoms| atoms.len() == 3 && atoms.iter().all(|m| *m == atoms[0])) {
             return Ok(atoms.map(|atoms| atoms[0]).collect());
         }
-        let remedy = "rigid motions are those of atoms of three coordinates each: say \"keep_rigid\": true";
+        let remedy = "rigid motions need atoms of three coordinates each: say \"keep_rigid\": true";
         Err(Error::input("masses", "not of atoms", remedy))
     }
 

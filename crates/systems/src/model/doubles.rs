@@ -61,7 +61,7 @@ impl Model for Jacobians {
     }
 
     fn friction(&self, rate: &Rational, _: &Limits) -> Result<Friction> {
-        let remedy = "leave it out: the answer has the rate that masks what grows";
+        let remedy = "leave it out: the answer has the friction that masks the growth";
         Err(Error::input("friction", rate, remedy))
     }
 
@@ -81,7 +81,7 @@ impl Model for Along {
     }
 
     fn refused(&self, what: &str) -> Error {
-        let remedy = format!("{what} needs Hessians at one place: the orbit is that of these steps alone");
+        let remedy = format!("{what} needs Hessians at one place: the orbit belongs to these steps alone");
         Error::input("along_orbit", "true", remedy)
     }
 

@@ -30,7 +30,7 @@ impl Document {
                 Err(Error::input("levels", "missing", remedy))
             }
             (None, Some(_)) => {
-                let remedy = "are those of a scheme: give \"scheme\": \"lts\", too, or avi";
+                let remedy = "belong to a scheme: give \"scheme\": \"lts\", too, or avi";
                 Err(Error::input("levels", "given", remedy))
             }
         }
@@ -79,7 +79,7 @@ impl Document {
             }
             (fine, elements, _) => {
                 let given = if fine.is_some() && elements.is_some() { "both" } else { "none" };
-                let remedy = "give fine, the degrees of freedom, or elements, those of a mesh, one of them";
+                let remedy = "give one of them: fine, the degrees of freedom, or elements, parts of a mesh";
                 return Err(Error::input(&format!("levels[{l}]"), given, remedy));
             }
         };

@@ -404,8 +404,8 @@ fn check_symmetric(field: &str, kicks: &[DMatrix<f64>], accuracy: f64) -> Result
         if off.norm() / 2.0 > accuracy * largest {
             let (i, j) = off.map(f64::abs).iamax_full();
             let remedy = format!(
-                "differs from [{j}][{i}] by {:e}, more than the accuracy of {accuracy:e} allows: give (K + K.T)/2 of what was to be symmetric, or an \
-                 accuracy that covers it",
+                "differs from [{j}][{i}] by {:e}, more than the accuracy of {accuracy:e} allows: give (K + K.T)/2 of the \
+                 matrix K that should be symmetric, or an accuracy that covers it",
                 off[(i, j)].abs()
             );
             return Err(Error::input(&format!("{field}[{k}][{i}][{j}]"), matrix[(i, j)], remedy));

@@ -112,7 +112,7 @@ fn local_steps(document: &Document, arrays: &Arrays) -> Result<SparseSystem> {
             );
         }
         (None, ..) => {
-            let remedy = "are those of a scheme: give \"scheme\": \"lts\", too";
+            let remedy = "belong to a scheme: give \"scheme\": \"lts\", too";
             return refused("levels", "given".into(), remedy);
         }
     };

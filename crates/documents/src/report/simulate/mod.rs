@@ -60,7 +60,7 @@ fn head() -> Record<'static, Run> {
             "The middle of the enclosure that a verdict holds, a rounded double; null where none is proven.",
         )
         .json("growth_rate_measured", |run| run.measured.into())
-        .says(Shape::OrNull(&ROUNDED), "Of small deviations; rounded double; null where the run overflows.")
+        .says(Shape::OrNull(&ROUNDED), "The growth rate of small deviations; rounded double; null where the run overflows.")
         .json("linear", |run| run.linear.into())
         .says(FLAG, "Whether deviations of any size move like small ones.")
         .json("irreversibility", |run| run.irreversibility.into())

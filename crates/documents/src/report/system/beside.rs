@@ -102,7 +102,7 @@ pub(super) fn no_gradient_lines(no_gradient: &NoGradient, analysis: &Analysis, p
         Some(0.0) => lines.push("  no friction is needed".into()),
         Some(friction) => {
             let friction = decimal::few(friction, 5);
-            lines.push(format!("  a friction of about {friction} per {per} masks what grows (rounded)"))
+            lines.push(format!("  a friction of about {friction} per {per} masks the growth (rounded)"))
         }
         None => {}
     }

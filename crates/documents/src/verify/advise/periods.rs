@@ -185,7 +185,7 @@ impl Periods<'_> {
         let is_longest = safe == largest || !self.is_published(given, &next);
         let is_safe = is_multiple(safe) && safe <= largest && self.is_published(given, &value);
         holds(is_safe && is_longest && self.advice.beads.is_none(), || {
-            format!("{safe} is not the longest outer step below what is published")
+            format!("{safe} is not the longest outer step below the published limits")
         })
     }
 

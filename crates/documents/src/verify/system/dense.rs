@@ -64,7 +64,7 @@ pub fn growth(scene: &SystemScene, analysis: &Analysis, limits: &Limits) -> Chec
     let off = STILL / analysis.period.to_f64() + ROUNDED * found;
     // Beyond the range of doubles the dense period decides nothing.
     let right = !found.is_finite() || (lo - off <= found && found <= hi + off);
-    holds(right, || format!("the growth rate is {lo} to {hi}, that of the dense full period {found}"))
+    holds(right, || format!("the growth rate is {lo} to {hi}, the dense full period has {found}"))
 }
 
 /// The claims on levels of any number that no other route sees.

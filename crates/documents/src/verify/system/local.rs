@@ -44,7 +44,7 @@ pub fn steps(local_steps: &LocalSteps) -> Checked {
             two * (&half[i] - &x[i]) == -&square * force / mass.get(i, i)
         });
         holds(right, || {
-            format!("a step of the scheme from a displacement of {k} is not that of its stiffness")
+            format!("a step of the scheme from a displacement of {k} does not follow from its stiffness")
         })
     })
 }
