@@ -84,6 +84,7 @@ fn growth(masses: &[f64], steps: &[Rational], kicks: &[Vec<DMatrix<f64>>]) -> f6
     period.complex_eigenvalues().iter().map(|z| z.norm().ln()).fold(0.0, f64::max)
 }
 
+// Ledger: along the orbit; 400 random orbits, seed 30; exact arithmetic on Hessians within the accuracy
 #[test]
 fn what_is_proven_within_the_accuracy_is_so_by_exact_arithmetic_of_what_lies_within_it() {
     let mut random = Numbers(30);

@@ -20,6 +20,7 @@ fn at(measurement: &Measurement, hundredths: i64) -> Step {
     measurement.at(&ratio(hundredths, 100)).unwrap()
 }
 
+// Ledger: aperture; steps of two bonds; a table computed before
 #[test]
 fn the_table_of_the_theory_is_reproduced() {
     // h in 1/100 fs, E* in kT, the share lost in 3,000 steps.
@@ -121,6 +122,7 @@ fn confirmed(step: &Step, lost_at: impl Fn(f64) -> usize) {
     assert!(2 * lost_at(half + f64::max(0.5, 0.1 * half)) >= PHASES, "{}: {half}", step.step);
 }
 
+// Ledger: aperture; one bond by two methods; a plain loop of kicks and drifts
 #[test]
 fn another_bond_at_another_temperature_is_lost_in_a_plain_loop_too() -> Result<()> {
     // C-H as a Morse bond at 400 K, by the middle scheme and by PEFRL's word.
@@ -155,6 +157,7 @@ fn another_bond_at_another_temperature_is_lost_in_a_plain_loop_too() -> Result<(
     Ok(())
 }
 
+// Ledger: aperture; one bond on two clocks; a plain loop of kicks and drifts
 #[test]
 fn two_clocks_lose_a_bond_as_a_plain_loop_does() -> Result<()> {
     // A stiff slow force, three inner steps of 1.95 fs near the quarter turn.

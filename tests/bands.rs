@@ -112,6 +112,7 @@ fn windows_of_any_size_and_unit() {
     }
 }
 
+// Ledger: bands; all pairs of a grid, sectors of 60_000 trials; the verdict on each pair
 #[test]
 fn no_stable_pair_lies_in_a_sector() {
     let window = figure1();

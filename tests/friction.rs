@@ -96,6 +96,7 @@ fn a_friction_that_masks_is_not_said_to_mask_where_larger_ones_grow() {
     assert!(!mask.stays() && mask.ranges.len() == 1, "{mask:?}");
 }
 
+// Ledger: friction; random oscillators in unstable intervals; exact arithmetic at frictions in each range
 /// Random oscillators in unstable intervals: every range holds at frictions in it, by exact arithmetic.
 #[test]
 fn ranges_of_frictions_hold_at_every_friction_in_them() {

@@ -119,6 +119,7 @@ fn is_stable(own: &LocalSteps) -> Option<bool> {
     (!eigenvalues.iter().any(is_near)).then(|| eigenvalues.iter().all(|&x| 0.0 < x && x < 4.0))
 }
 
+// Ledger: local time stepping; 1000 random schemes, seed 7; eigenvalues of the composed step
 #[test]
 fn the_stiffness_of_the_scheme_is_what_its_steps_do_and_decides() {
     let (mut numbers, mut decided) = (Numbers(7), [0, 0]);

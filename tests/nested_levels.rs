@@ -95,6 +95,7 @@ fn one_level_is_verlet() {
     assert!(0.949_99 < edge && edge < 0.95, "{edge}");
 }
 
+// Ledger: many levels; random levels of 2, 4 and 7 modes, seed 11; the rational system
 /// At random steps, nested or not, whatever is proven is what rational arithmetic or discs of the rational
 /// system say.
 #[test]

@@ -170,6 +170,16 @@ fn the_tests_are_run_by_the_command_that_readme_names() {
     assert_eq!(String::from_utf8(printed.stdout).unwrap().trim_end(), command);
 }
 
+/// The site lists what each kind of answer is checked against, read from the tests.
+#[test]
+fn no_kind_of_answer_is_without_a_test_in_the_ledger() {
+    let ledger = Command::new("python3").arg("docs/ledger.py").current_dir(root()).output();
+    let ledger = ledger.expect("python3 runs");
+    assert!(ledger.status.success(), "{}", String::from_utf8_lossy(&ledger.stderr));
+    let entries = String::from_utf8(ledger.stdout).unwrap().matches(", against ").count();
+    assert!(entries > 30, "{entries}");
+}
+
 /// The page is in what people download.
 #[test]
 fn released_programs_have_the_page_and_the_notices_of_what_is_linked() {

@@ -208,6 +208,7 @@ fn a_full_turn_of_a_fine_motion_is_no_rigid_motion() {
     assert_eq!(found.kind, Some(Kind::Parabolic), "{found:?}");
 }
 
+// Ledger: local time stepping; 300 random schemes at four steps, seed 17; exact arithmetic
 /// Walls, none, and none but for a last digit; steps at which fine motions make whole and half turns: what is
 /// proven is so in exact arithmetic.
 #[test]

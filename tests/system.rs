@@ -221,6 +221,7 @@ fn by_the_ladder(springs: &[(i64, i64)]) -> Kind {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
+    // Ledger: exact systems; 200 random masses on springs, new in each run; the verdict on two clocks
     #[test]
     fn one_mass_has_the_verdict_of_verdict_cancelling_springs_included(
         springs in prop::collection::vec((-4i64..=4, 1i64..=2), 1..5), mass_first in any::<bool>(),
@@ -253,6 +254,7 @@ proptest! {
         prop_assert_eq!(decide_exact(&system, &Limits::default()).unwrap().kind, analysis.kind.unwrap());
     }
 
+    // Ledger: exact systems; 200 random systems, new in each run; the exact full period
     #[test]
     fn random_systems_of_potentials_that_may_cancel_have_the_verdict_of_the_full_period(
         (n, entries) in (2usize..=3).prop_flat_map(|n| {

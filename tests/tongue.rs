@@ -129,6 +129,7 @@ fn roots_are_edges(p: u64, q: u64, rho: &Rational) {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(60))]
 
+    // Ledger: edges; 60 random ratios and rho, new in each run; exact roots of the half period's entries
     #[test]
     fn string_edges_are_the_roots_of_the_entries(p in 1u64..16, q in 1u64..16, n in 1i64..3000, d in 1i64..3000) {
         let (p, q) = lowest_terms(p, q);
@@ -142,6 +143,7 @@ proptest! {
         roots_are_edges(p, q, &power);
     }
 
+    // Ledger: label; 60 random places in tongues, new in each run; the number of the tongue
     #[test]
     fn the_verdict_and_its_label_are_those_of_the_tongue(
         p in 1u64..25, q in 1u64..25, n in 1i64..200, gap in 0usize..48, share in 1i64..1000,
@@ -467,6 +469,7 @@ fn closings_of_longer_periods_end() {
     }
 }
 
+// Ledger: closings; three ratios on a grid of rho and one exact closing; tongues computed before
 #[test]
 fn known_closings_come_out() {
     let closing = &found(5, 3)[0];
@@ -491,6 +494,7 @@ fn one_or_two_slow_kicks_never_close() {
     }
 }
 
+// Ledger: closings; all closings of four ratios; the clocks swapped
 #[test]
 fn swapping_the_clocks_inverts_the_closing_rho() {
     for (p, q) in [(5, 3), (5, 4), (7, 4), (8, 3)] {

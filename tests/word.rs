@@ -317,11 +317,13 @@ fn random_words(count: u64, seed: u64) {
     assert!(stable * 100 > inside && palindromes * 5 > count, "{stable} of {inside}, {palindromes}");
 }
 
+// Ledger: words; 400 random words, seed 1; products of their letters
 #[test]
 fn random_words_are_what_their_letters_do() {
     random_words(400, 1);
 }
 
+// Ledger: words; 10_000 random words, seed 2; products of their letters
 #[test]
 #[ignore = "ten thousand words take minutes"]
 fn ten_thousand_random_words_are_what_their_letters_do() {

@@ -19,6 +19,7 @@ fn clean(record: &Record) {
     assert_eq!((record.wrong, record.outside), (0, 0), "{record}");
 }
 
+// Ledger: verdict; 20_000 random pairs, seed SEED; exact signs of the half period
 #[test]
 fn random_cases_are_never_wrong() {
     let record = random(SEED, 20_000);
@@ -27,6 +28,7 @@ fn random_cases_are_never_wrong() {
     assert!(record.by_tier[0] > record.cases * 99 / 100, "{record}");
 }
 
+// Ledger: verdict; 4_000 pairs at and beside edges, seed SEED; exact signs of the half period
 #[test]
 fn neighbouring_doubles_and_hairs_about_an_edge_are_never_wrong() {
     let record = adversarial(SEED, 4_000);
@@ -35,6 +37,7 @@ fn neighbouring_doubles_and_hairs_about_an_edge_are_never_wrong() {
     assert!(record.by_tier[1] > record.cases / 20 && record.by_tier[0] < record.cases, "{record}");
 }
 
+// Ledger: verdict; 10_000_000 random and 1_000_000 adversarial pairs, seed SEED; exact signs of the half period
 #[test]
 #[ignore = "minutes"]
 fn ten_million_random_and_a_million_adversarial_cases() {

@@ -59,11 +59,13 @@ fn agree(pairs: usize) {
     assert!(undecided * 50 <= pairs, "{undecided} of {pairs} undecided");
 }
 
+// Ledger: verdict; 2_000 random long periods; all kicks followed one by one
 #[test]
 fn long_periods_are_what_kicks_give() {
     agree(2_000);
 }
 
+// Ledger: verdict; 100_000 random long periods; all kicks followed one by one
 #[test]
 #[ignore = "minutes"]
 fn long_periods_are_what_kicks_give_a_hundred_thousand_times() {

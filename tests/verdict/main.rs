@@ -39,6 +39,7 @@ fn hair() -> Rational {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(1000))]
 
+    // Ledger: verdict; 1000 random pairs, new in each run, by every tier; the exact product over the full period
     #[test]
     fn all_tiers_agree_with_the_full_product(clocks in pair()) {
         let trace = full_period(&clocks).trace();
@@ -56,6 +57,7 @@ proptest! {
         }
     }
 
+    // Ledger: growth; 1000 random pairs, new in each run; the exact trace
     #[test]
     fn the_trace_enclosure_holds_the_exact_trace(clocks in pair()) {
         let verdict = Decidable::half_signs(&clocks).verdict();
@@ -268,6 +270,7 @@ fn half_turns(p: u64, q: u64, fast: f64, slow: f64) -> u64 {
     changes
 }
 
+// Ledger: label; 40 random long periods, seed 7; half turns counted kick by kick
 /// Both clocks beyond their own limits, or the fast one, or none: labels of long periods come from return
 /// maps, or from kicks where these lose the turns.
 #[test]
