@@ -1,6 +1,7 @@
 //! Numbers: the rings, their exact signs, parsing.
 
 mod cyclotomic;
+mod interval;
 mod laurent;
 mod parse;
 mod polynomial;

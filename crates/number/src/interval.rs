@@ -15,6 +15,8 @@ pub struct Interval {
 const SLACK: f64 = 8.0 * U;
 
 impl Interval {
+    const EVERYTHING: Interval = Interval { lo: f64::NEG_INFINITY, hi: f64::INFINITY };
+
     /// One number.
     #[inline]
     pub fn point(x: f64) -> Self {
@@ -114,6 +116,10 @@ impl Mul for Interval {
     #[inline]
     fn mul(self, other: Interval) -> Interval {
         let products = [self.lo * other.lo, self.lo * other.hi, self.hi * other.lo, self.hi * other.hi];
+        // 0 times an end without a bound, or an end that is no number: `min` and `max` would pass it over.
+        if products.iter().any(|x| x.is_nan()) {
+            return Interval::EVERYTHING;
+        }
         let (lo, hi) =
             products.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), &x| (lo.min(x), hi.max(x)));
         Interval::outward(lo, hi)
@@ -126,7 +132,7 @@ impl Div for Interval {
     #[inline]
     fn div(self, other: Interval) -> Interval {
         if other.lo <= 0.0 && other.hi >= 0.0 {
-            return Interval { lo: f64::NEG_INFINITY, hi: f64::INFINITY };
+            return Interval::EVERYTHING;
         }
         self * Interval::outward(1.0 / other.hi, 1.0 / other.lo)
     }
