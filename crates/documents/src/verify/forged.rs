@@ -7,7 +7,7 @@ use super::context::{Context, Options};
 use super::kind::Verify;
 use crate::question::{
     Advised, Bands, Closings, Compare, CompareMethods, Curves, Found, Half, Methods, Polynomial, Proposition,
-    Safe, Simulate, Survey, System, Tongues, Verdict, Word,
+    Safe, Simulate, Survey, System, SystemAnswer, SystemVerdict, Tongues, Verdict, Word,
 };
 use clocks::propagator::{TwoClocks, half_period};
 use clocks::verdict::{Kind, Side, Verdict as Decided};
@@ -334,10 +334,17 @@ fn forged_systems_are_found() {
     };
     finds::<System>(
         asked(json!({})),
-        &[|answer| {
-            let Found::Verdict(verdict) = &mut answer.found else { panic!("a verdict") };
-            verdict.analysis.kind = Some(Kind::Hyperbolic);
-        }],
+        &[
+            |answer| system_verdict(answer).analysis.kind = Some(Kind::Hyperbolic),
+            |answer| system_verdict(answer).bias = None,
+            |answer| biased(answer)[0].bias.at_kicks *= 1.01,
+            |answer| biased(answer)[1].bias.in_drifts *= 1.01,
+            |answer| biased(answer)[0].period *= 1.01,
+            |answer| biased(answer)[1].turn *= 1.01,
+            |answer| biased(answer)[1].pair.swap(0, 1),
+            |answer| drop(biased(answer).pop()),
+            |answer| biased(answer)[0] = biased(answer)[1].clone(),
+        ],
     );
     finds::<System>(
         asked(json!({"scan_x": "potentials.0.step=1/8..3/4:1/8"})),
@@ -354,6 +361,15 @@ fn forged_systems_are_found() {
         }],
     );
     finds::<Simulate>(asked(json!({"periods": "4"})), &[|answer| answer.run.series[3].amplitude *= 1.01]);
+}
+
+fn system_verdict(answer: &mut SystemAnswer) -> &mut SystemVerdict {
+    let Found::Verdict(verdict) = &mut answer.found else { panic!("a verdict") };
+    verdict
+}
+
+fn biased(answer: &mut SystemAnswer) -> &mut Vec<systems::BiasedMode> {
+    system_verdict(answer).bias.as_mut().unwrap().as_mut().unwrap()
 }
 
 #[test]
