@@ -93,6 +93,22 @@ class DecidedSystem(Document):
         return self._beside("nearest_unstable")
 
     @property
+    def bias(self) -> tuple[Mapping[str, float], ...] | None:
+        """By how much the potential energy of each normal mode is off, the fastest first: its ``turn`` over the period,
+        its ``period`` and R, ``at_kicks`` (constant energy) and ``in_drifts`` (a weak thermostat there); 1 is right.
+        Rounded. None unless elliptic, and where it is not computed: the text says why.
+
+        Examples
+        --------
+        >>> import kickdrift as kd
+        >>> system = kd.System.from_hessians([1.0], {"stiff": ("1/40", [[400.0]]), "soft": ("1/10", [[1.0]])})
+        >>> round(system.decide().bias[0]["at_kicks"], 4)
+        1.0667
+        """
+        found = self.data["bias"]
+        return None if found is None else tuple(MappingProxyType(mode) for mode in found)
+
+    @property
     def local_steps(self) -> Mapping[str, Any] | None:
         """For a scheme of local time steps: its ``levels``, and the ``plain_limit`` of leapfrog without them.
 

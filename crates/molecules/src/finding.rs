@@ -61,6 +61,20 @@ pub struct Finding {
     /// What bounds `safe`.
     pub bound: Option<Bound>,
     pub within_run: Option<bool>,
+    /// Where it is stable for all matrices: the normal mode whose potential energy is most off; `None` also
+    /// where it is not computed.
+    pub bias: Option<MostBiased>,
+    /// That with the outermost step `safe`.
+    pub safe_bias: Option<MostBiased>,
+}
+
+/// The normal mode of a period whose potential energy is most off, rounded.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MostBiased {
+    /// Its name or, where it has none, who moves in it.
+    pub mode: String,
+    /// At the kicks.
+    pub bias: f64,
 }
 
 /// The whole answer for a molecule.

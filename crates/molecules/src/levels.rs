@@ -18,6 +18,7 @@
 use num_traits::{One, ToPrimitive, Zero};
 
 use super::unit::decimal;
+use clocks::propagator::enclosed_bias_of;
 use clocks::schedule::{KickDrift, Kicks, Schedule};
 use clocks::verdict::Kind;
 use number::error::{Error, Result};
@@ -206,9 +207,7 @@ impl Levels<'_> {
     /// The bias R of a mode that is stable: its potential energy where it is kicked, over the half kT that its
     /// velocity has there. `None` where it is not stable, or the balls do not tell it.
     ///
-    /// Over the half period (x, v) ↦ (A x + B v, C x + D v), and the invariant ellipse of the period at its
-    /// first kick has <x²>/<v²> = −B D/(A C). So R = −(Λ1 + Λ2 + ...) B D/(A C), the Λ being stiffnesses over
-    /// mass; for velocity Verlet 1/(1 − h² Λ/4).
+    /// That of [`enclosed_bias_of`]; for velocity Verlet 1/(1 − h² Λ/4).
     ///
     /// ```
     /// use kickdrift_molecules::{Levels, Mode, Scheme, number::Rational};
@@ -227,15 +226,12 @@ impl Levels<'_> {
     pub fn bias(&self) -> Option<(f64, f64)> {
         // Without the silent clocks, with which a period can be several that together turn by a whole.
         let heard = self.heard();
-        let scheme = Scheme::new(heard.iter().map(|&k| self.scheme.steps[k].clone()).collect()).ok()?;
-        let stiffness: Vec<Laurent> = heard.iter().map(|&k| self.stiffness[k].clone()).collect();
-        let balls = stiffness.iter().map(|stiffness| stiffness.enclosure(BITS));
-        let sum = balls.fold(Ball::zero(), |sum, ball| sum.add(&ball, BITS));
-        let orbits = Levels { scheme: &scheme, stiffness }.half_period(&Ball::one(), |_| false)?;
-        let [[a, c], [b, d]] = [&orbits.even, &orbits.odd];
-        let top = sum.mul(b, BITS).mul(d, BITS).neg();
-        let bias = top.div(&a.mul(c, BITS), BITS)?;
-        (bias.sign() == Some(Sign::Positive)).then(|| bias.to_f64_enclosure())
+        let first = &self.scheme.steps[*heard.first()?];
+        let clocks = self.clocks(&heard).ok()?;
+        let sum = heard.iter().fold(Laurent::zero(), |sum, &k| sum + self.stiffness[k].clone());
+        let stiffness = &Laurent::from_rational(first * first) * &sum;
+        let bias = enclosed_bias_of(clocks.schedule(), clocks.strengths(), &stiffness)?;
+        Some(bias.at_kicks.to_f64_enclosure())
     }
 
     /// Whether conditions (1) and (2) hold for the stiffnesses times `factor`: `None` where the balls cannot

@@ -10,7 +10,7 @@ use num_traits::{ToPrimitive, Zero};
 
 use super::answer::Status;
 use super::caps::{Bound, Caps};
-use super::finding::{Finding, Findings, Group};
+use super::finding::{Finding, Findings, Group, MostBiased};
 use super::levels::Scheme;
 use super::lever::{Lever, Way};
 use super::levers::{MOST_MASKED, RATIOS, bounded, least, of_units};
@@ -20,9 +20,9 @@ use super::unit::TimeUnit;
 use number::Rational;
 use number::error::{Error, Result};
 use number::rational::to_f64;
-use systems::Holds;
 use systems::friction::Damping;
 use systems::levels::{Growing, Method, Source};
+use systems::{BiasedMode, Holds};
 
 /// Measured stiffnesses on their clocks, and what their coordinates are called.
 #[derive(Clone, Debug)]
@@ -263,6 +263,13 @@ impl Molecule {
         let time = rate.map(|rate| std::f64::consts::LN_10 / rate);
         let largest = self.largest(scheme, part, at.band_edge)?;
         let (safe, bound) = caps.safe(scheme, largest.as_ref()).unzip();
+        let bias = (decided.holds == Holds::Stable).then(|| self.most_biased(&steps)).transpose()?.flatten();
+        let safe_bias = safe.as_ref().map(|safe| {
+            let mut steps = scheme.steps().to_vec();
+            steps.last_mut().expect("at least one step").clone_from(safe);
+            self.most_biased(&self.in_units(&steps))
+        });
+        let safe_bias = safe_bias.transpose()?.flatten();
         let damping = |rate: &Rational| self.source.damping(&steps, to_f64(rate) * unit);
         let masking = |_| self.source.masking_friction(&steps);
         let AtRatio { first, first_upper, growing, band_edge } = at.clone();
@@ -284,7 +291,22 @@ impl Molecule {
             bound,
             largest,
             within_run: length.filter(|_| grows).zip(time).map(|(length, time)| time <= to_f64(length)),
+            bias,
+            safe_bias,
         })
+    }
+
+    /// The normal mode that is most off at these steps, which are stable; `None` where it is not computed.
+    fn most_biased(&self, steps: &[Rational]) -> Result<Option<MostBiased>> {
+        let Ok(modes) = self.source.biased_modes(steps)? else { return Ok(None) };
+        let off = |mode: &BiasedMode| mode.bias.at_kicks.ln().abs();
+        let most = modes.into_iter().max_by(|a, b| off(a).total_cmp(&off(b)));
+        let named = |BiasedMode { bias, pair: [x, _], .. }: BiasedMode| {
+            let shape = self.source.shape(&x);
+            let name = self.names.motion(&[vec![&shape[..]]]);
+            MostBiased { mode: name.unwrap_or_else(|| self.names.atoms(&shape)), bias: bias.at_kicks }
+        };
+        Ok(most.map(named))
     }
 
     /// The molecule with one thing changed: kicks and drifts at this scheme.

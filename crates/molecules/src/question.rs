@@ -293,9 +293,11 @@ impl Question {
     }
 }
 
+/// That a band is a part of the period.
+///
 /// # Errors
-/// A band outside [0, 1).
-pub(super) fn check_band(band: &Rational) -> Result<()> {
+/// A part outside [0, 1).
+pub fn check_band(band: &Rational) -> Result<()> {
     if *band >= Rational::zero() && *band < Rational::one() {
         return Ok(());
     }

@@ -26,6 +26,7 @@
 //! | `jacobian` | forces that are no gradient: Jacobians that are not symmetric |
 //! | `lts` | local time steps, as codes for waves have them: leapfrog, AVI |
 //! | `geometry` | where degrees of freedom are in space |
+//! | `bias` | by how much a stable step bends what each normal mode holds |
 //! | `friction` | O-steps between the kicks: spectral radius, the friction that masks a resonance |
 //! | `vary` | maps; the unstable intervals of one number |
 //!
@@ -46,6 +47,7 @@
 
 mod along;
 pub mod avi;
+mod bias;
 mod exact;
 pub mod friction;
 mod geometry;
@@ -70,6 +72,7 @@ pub use number;
 pub use words;
 
 pub use along::{Along, OwnOrbit, decide_along};
+pub use bias::{BiasedMode, NoBias};
 pub use exact::decide::{ExactVerdict, MuCount, decide_exact};
 pub use geometry::Geometry;
 pub use half::compose::{full_period, half_period};

@@ -16,8 +16,8 @@
 use num_traits::Zero;
 
 use super::TwoClocks;
-use super::half::{Product, lead};
-use crate::schedule::{KickDrift, Schedule};
+use super::half::{Product, schedule, with_half};
+use crate::schedule::{KickDrift, Kicks, Schedule};
 use number::{Ball, Enclosed, Rational, Real, Ring, rational};
 
 /// (Λ1 + Λ2) ⟨x²⟩/kT where both clocks kick: 1 of an unbiased step.
@@ -44,10 +44,10 @@ struct Spread<S> {
 }
 
 impl<S: Ring> Spread<S> {
-    fn new(clocks: &TwoClocks<S>) -> Spread<S> {
+    fn new(schedule: &Schedule, kicks: &Kicks<S>) -> Spread<S> {
         let squares = [S::zero(), S::zero()];
-        let mut spread =
-            lead(clocks, Schedule::half_period, |product| Spread { product, squares, drift: None });
+        let mut spread = Spread { product: Product::over(schedule), squares, drift: None };
+        kicks.lead(schedule.half_period(), &mut spread);
         // T/2 is in the middle of a drift that no kick has followed.
         if let Some((duration, _)) = spread.drift.take() {
             let middle = spread.positions();
@@ -85,23 +85,31 @@ impl<S: Ring> KickDrift<S> for Spread<S> {
 
 /// Both biases as fractions over `below` = AC, which no elliptic pair has 0.
 struct Fractions<S> {
-    /// (Λ1 + Λ2) h1².
+    /// (Λ1 + Λ2 + ...) h1².
     stiffness: S,
     above: Bias<S>,
     below: S,
 }
 
 impl<S: Ring> Fractions<S> {
+    /// Of a pair.
     fn new(clocks: &TwoClocks<S>) -> Fractions<S> {
-        let Spread { product, squares: [even, odd], .. } = Spread::new(clocks);
+        let ratio = S::from_rational(&Rational::from(clocks.ratio()).recip());
+        let stiffness = clocks.fast().clone() + S::product(clocks.slow(), &ratio);
+        Fractions::of(&schedule(clocks), &Kicks::of_two_clocks(clocks.strengths(), with_half), stiffness)
+    }
+
+    /// Of any clocks, in the unit of time of the first one's step.
+    fn of(schedule: &Schedule, kicks: &Kicks<S>, stiffness: S) -> Fractions<S> {
+        let Spread { product, squares: [even, odd], .. } = Spread::new(schedule, kicks);
         let [a, b, c, d] = [(0, 0), (0, 1), (1, 0), (1, 1)].map(|at| &product.matrix[at]);
-        let number = |x: Rational| S::from_rational(&x);
-        let slow = S::product(clocks.slow(), &number(Rational::from(clocks.ratio()).recip()));
-        let (stiffness, below) = (clocks.fast().clone() + slow, S::product(a, c));
-        // β² below, and ⟨Σ11⟩/β below, T/2 being p/2.
+        let below = S::product(a, c);
+        // β² below, and ⟨Σ11⟩/β below.
         let square = -S::product(b, d);
         let mean = S::product(&square, &even) + S::product(&below, &odd);
-        let mean = S::product(&mean, &number(Rational::new(2.into(), clocks.p().into())));
+        let half = rational::ratio(1, 2) * Rational::from_integer(schedule.period().into());
+        let half = half / Rational::from_integer(schedule.clocks()[0].step().into());
+        let mean = S::product(&mean, &S::from_rational(&half.recip()));
         let above =
             Bias { at_kicks: S::product(&stiffness, &square), in_drifts: S::product(&stiffness, &mean) };
         Fractions { stiffness, above, below }
@@ -139,9 +147,30 @@ pub fn enclosed_bias<S: Real>(clocks: &TwoClocks<S>) -> Option<Bias<Ball>> {
         .or_else(|| enclosed_in::<4096, S>(clocks))
 }
 
+/// As [`enclosed_bias`], of one mass under any clocks that all kick at the start; `None` also where it is not
+/// known to be elliptic. The unit of time is the step of the first clock, and each strength is a step times
+/// its stiffness over mass; `stiffness` is the sum of these.
+pub fn enclosed_bias_of<S: Real>(schedule: &Schedule, strengths: &[S], stiffness: &S) -> Option<Bias<Ball>> {
+    fn within<const BITS: u32, S: Real>(
+        schedule: &Schedule,
+        strengths: &[S],
+        stiffness: &S,
+    ) -> Option<Bias<Ball>> {
+        let enclosed = |x: &S| Enclosed::<BITS>(x.enclosure(BITS));
+        let kicks = Kicks::of_clocks(strengths.iter().map(enclosed), with_half);
+        known(Fractions::of(schedule, &kicks, enclosed(stiffness)))
+    }
+    within::<256, S>(schedule, strengths, stiffness)
+        .or_else(|| within::<1024, S>(schedule, strengths, stiffness))
+}
+
 fn enclosed_in<const BITS: u32, S: Real>(clocks: &TwoClocks<S>) -> Option<Bias<Ball>> {
-    let clocks = clocks.map(|x| Enclosed::<BITS>(x.enclosure(BITS)));
-    let Fractions { above, below, .. } = Fractions::new(&clocks);
+    known(Fractions::new(&clocks.map(|x| Enclosed::<BITS>(x.enclosure(BITS)))))
+}
+
+/// Where both are known well enough, and above 0.
+fn known<const BITS: u32>(fractions: Fractions<Enclosed<BITS>>) -> Option<Bias<Ball>> {
+    let Fractions { above, below, .. } = fractions;
     let over = |above: Enclosed<BITS>| above.0.div(&below.0, BITS);
     let bias = Bias { at_kicks: over(above.at_kicks)?, in_drifts: over(above.in_drifts)? };
     let is_known = |x: &Ball| x.relative_accuracy_bits() >= ACCURACY_BITS && x.lower() > Rational::zero();

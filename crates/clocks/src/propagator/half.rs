@@ -81,22 +81,21 @@ pub fn full_period<S: Ring>(clocks: &TwoClocks<S>) -> Matrix2<S> {
 
 /// The product over the events of a span of the pair's schedule, the first event rightmost.
 pub(super) fn compose<S: Ring>(clocks: &TwoClocks<S>, span: impl Fn(&Schedule) -> Events) -> Matrix2<S> {
-    lead(clocks, span, |product| product).matrix
+    let schedule = schedule(clocks);
+    let mut product = Product::over(&schedule);
+    Kicks::of_two_clocks(clocks.strengths(), with_half).lead(span(&schedule), &mut product);
+    product.matrix
 }
 
-/// What `orbit` makes of the empty product, led through the events of a span.
-pub(super) fn lead<S: Ring, O: KickDrift<S>>(
-    clocks: &TwoClocks<S>,
-    span: impl Fn(&Schedule) -> Events,
-    orbit: impl FnOnce(Product<S>) -> O,
-) -> O {
-    let schedule = Schedule::two_clocks(clocks.ratio()).expect("a period short enough to compose");
-    let one_half = S::from_rational(&Rational::new(1.into(), 2.into()));
-    let kicks = Kicks::of_two_clocks(clocks.strengths(), |k| [k.clone(), k * one_half.clone()]);
-    let matrix = Matrix2::new(S::one(), S::zero(), S::zero(), S::one());
-    let mut orbit = orbit(Product { matrix, ticks: schedule.clocks()[0].step() });
-    kicks.lead(span(&schedule), &mut orbit);
-    orbit
+/// The schedule of a pair.
+pub(super) fn schedule<S: Ring>(clocks: &TwoClocks<S>) -> Schedule {
+    Schedule::two_clocks(clocks.ratio()).expect("a period short enough to compose")
+}
+
+/// A kick and half of it.
+pub(super) fn with_half<S: Ring>(kick: S) -> [S; 2] {
+    let half = S::from_rational(&Rational::new(1.into(), 2.into()));
+    [kick.clone(), kick * half]
 }
 
 /// The product so far.
@@ -107,6 +106,12 @@ pub(super) struct Product<S> {
 }
 
 impl<S: Ring> Product<S> {
+    /// The empty one; the unit of time is the step of the first clock.
+    pub fn over(schedule: &Schedule) -> Product<S> {
+        let matrix = Matrix2::new(S::one(), S::zero(), S::zero(), S::one());
+        Product { matrix, ticks: schedule.clocks()[0].step() }
+    }
+
     /// So many ticks in the unit of time.
     pub fn time(&self, ticks: u64) -> S {
         let divisor = ticks.gcd(&self.ticks);

@@ -366,7 +366,7 @@ fn measured(field: &str, text: &str, dimension: Dimension, unit: TimeUnit) -> Re
 }
 
 /// `5%` or `1/20`.
-fn part(field: &str, text: &str) -> Result<Rational> {
+pub(super) fn part(field: &str, text: &str) -> Result<Rational> {
     match text.trim().strip_suffix('%') {
         Some(percent) => Ok(parse_rational(field, percent)? / Rational::from_integer(100.into())),
         None => parse_rational(field, text),

@@ -3,12 +3,14 @@
 use num_traits::ToPrimitive;
 use plot::Figure;
 
+use super::advise::part;
 use super::asking::{Question, Work, question};
 use super::field::{flag, notation};
 use crate::report::aperture as report;
 use crate::report::document::Document;
 use crate::report::shape::Schema;
-use molecules::aperture::{Bond, Measured, Measurement, energies_seen, hottest_of};
+use molecules::aperture::{Bond, Measured, Measurement, Step, band_of, energies_seen, hottest, hottest_of};
+use molecules::check_band;
 use molecules::unit::{self, Dimension};
 use number::Rational;
 use number::error::{Error, Result};
@@ -113,6 +115,10 @@ question! {
         /// A slow harmonic force about the bond's rest: the period that it would give the bond alone, as 40fs.
         #[arg(long, value_name = "TIME", value_parser = flag::<Time>)]
         slow: Option<Time>,
+        /// The least E* of all bonds whose periods are longer by up to this, too, as 5%: neighbours make them
+        /// so. It is that of the steps h/(1 + band) to h.
+        #[arg(long, value_name = "PART")]
+        band: Option<String>,
         /// The bonds of the system that is meant.
         #[arg(long, value_name = "N", value_parser = flag::<u64>)]
         bonds: u64 = "10000",
@@ -210,19 +216,27 @@ impl Question for Aperture {
 
     fn answer(&self, work: &Work) -> Result<Measured> {
         let (measurement, all) = (self.measurement()?, self.all_steps()?);
+        let band = self.band.as_ref().map(|text| part("band", text)).transpose()?;
+        band.as_ref().map_or(Ok(()), check_band)?;
+        let bands: Vec<Vec<Rational>> = all
+            .iter()
+            .map(|step| band.as_ref().map_or_else(Vec::new, |band| band_of(&measurement, step, band)))
+            .collect();
         let level = hottest_of(&energies_seen(self.bonds, &self.length.value)?);
-        let cost = measurement.cost().saturating_mul(all.len() as u64);
+        let count = all.len() + bands.iter().map(Vec::len).sum::<usize>();
+        let cost = measurement.cost().saturating_mul(count as u64);
         let most = work.budget.unwrap_or(MOST_KICKS);
         if cost > most {
-            let words = format!("{} steps of this method may take {cost} kicks", all.len());
+            let words = format!("{count} steps of this method may take {cost} kicks");
             return Err(Error::budget(words, cost).or("ask about fewer steps"));
         }
         work.announce("the aperture", cost as f64 / KICKS_A_SECOND);
         let bar = work.count(all.len() as u64, "steps");
-        let steps = try_map(&all, |step| {
-            let found = measurement.at(step);
+        let asked: Vec<(&Rational, &Vec<Rational>)> = all.iter().zip(&bands).collect();
+        let steps = try_map(&asked, |(step, band)| {
+            let found = Step { band: hottest(&measurement, band)?, ..measurement.at(step)? };
             bar.advance(1);
-            found
+            Ok(found)
         })?;
         let last = to_f64(all.last().expect("there are steps"));
         // Velocity Verlet's third of a turn lies below its limit, beyond it no resonance.

@@ -2,6 +2,7 @@
 
 use super::asking::{Question, Work, question};
 use super::field::flag;
+use super::verdict::bias_lines;
 use crate::report::document::Document;
 use crate::report::record::Record;
 use crate::report::shape::{GROUP_OR_NULL, Keys, RATIONAL, SIGN, Schema, Shape, WIDE_ENCLOSURE};
@@ -105,13 +106,16 @@ impl Question for Half {
         let table =
             record().table("entries", "The half period [[A, B], [C, D]] in the time unit h1", &entries);
         let caption = format!("The entries of the half period at $s = {}$ in the time unit $h_1$", self.s);
-        let document = Document::new(Self::NAME);
+        let (document, mut lines) = (Document::new(Self::NAME), vec![summary]);
         let document = match self.bias() {
-            Some(Bias { at_kicks, in_drifts }) => document
-                .entry("bias.at_kicks", at_kicks.to_string())
-                .entry("bias.in_drifts", in_drifts.to_string()),
+            Some(Bias { at_kicks, in_drifts }) => {
+                lines.extend(bias_lines([rational::to_f64(&at_kicks), rational::to_f64(&in_drifts)]));
+                document
+                    .entry("bias.at_kicks", at_kicks.to_string())
+                    .entry("bias.in_drifts", in_drifts.to_string())
+            }
             None => document.entry("bias", serde_json::Value::Null),
         };
-        document.rows(table.captioned(&caption)).summary(&[summary])
+        document.rows(table.captioned(&caption)).summary(&lines)
     }
 }

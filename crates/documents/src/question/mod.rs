@@ -62,7 +62,7 @@ pub use scene::{FAMILIES, LONGEST_SCENE, Made, Products, Scene};
 pub use side::{CompareMethods, Side};
 pub use simulate::{Answer as Simulated, Displacement, Simulate};
 pub use survey::{Survey, THINNEST};
-pub use system::{Answer as SystemAnswer, Found, System};
+pub use system::{Answer as SystemAnswer, Found, System, Verdict as SystemVerdict};
 pub use tongues::{Colour, Columns, Form, FoundTongues, Tongues};
 pub use verdict::{Decided, Verdict};
 pub use want::{Product, Want};

@@ -9,7 +9,8 @@ use crate::format::Format;
 use crate::input::{Arrays, Axis, NEAREST, Scan, Span, SystemFile, SystemScene};
 use crate::report::document::Document;
 use crate::report::shape::Shape;
-use crate::report::system::{self as report, Beside, SystemMap};
+use crate::report::system::{self as report, Beside, Biases, SystemMap};
+use clocks::verdict::Kind as Stability;
 use number::Rational;
 use number::error::{Error, Kind, Result};
 use systems::friction::Friction;
@@ -17,7 +18,7 @@ use systems::levels::Method;
 use systems::nearest::Nearest;
 use systems::scan::scan;
 use systems::vary::Intervals;
-use systems::{Analysis, Jacobians, Limits, NoGradient, OwnOrbit, Route, SchemeSummary, seconds};
+use systems::{Analysis, Jacobians, Limits, NoBias, NoGradient, OwnOrbit, Route, SchemeSummary, seconds};
 
 question! {
     /// The verdict on a system; the verdicts over one of its numbers, or two; or the unstable intervals of
@@ -111,6 +112,8 @@ pub struct Verdict {
     is_orbit_missing: bool,
     nearest: Option<Nearest>,
     no_gradient: Option<NoGradient>,
+    /// The bias of its modes, or why it is not told; `None` unless it is stable.
+    pub bias: Option<Biases>,
     pub local: Option<SchemeSummary>,
 }
 
@@ -178,8 +181,13 @@ impl System {
         };
         let nearest = width.map(nearest).transpose()?;
         let no_gradient = model.jacobians().map(Jacobians::no_gradient);
+        let bias = match analysis.kind {
+            Some(Stability::Elliptic) => Some(model.biased_modes(&limits)?),
+            Some(kind) if kind.is_stable() => Some(Err(NoBias::Edge)),
+            _ => None,
+        };
         let (friction, local) = (scene.friction(&limits)?, model.local_steps_summary());
-        Ok(Verdict { analysis, friction, orbit, is_orbit_missing, nearest, no_gradient, local })
+        Ok(Verdict { analysis, friction, orbit, is_orbit_missing, nearest, no_gradient, bias, local })
     }
 
     fn intervals(span: &Span, width: f64, scene: &SystemScene, work: &Work) -> Result<Intervals> {
@@ -256,13 +264,21 @@ impl Question for System {
             Found::Map(map) => map.document(),
             Found::Intervals(intervals) => report::intervals(intervals),
             Found::Verdict(verdict) => {
-                let Verdict { analysis, friction, orbit, is_orbit_missing, nearest, no_gradient, local } =
-                    verdict.as_ref();
+                let Verdict {
+                    analysis,
+                    friction,
+                    orbit,
+                    is_orbit_missing,
+                    nearest,
+                    no_gradient,
+                    bias,
+                    local,
+                } = verdict.as_ref();
                 let local = local.as_ref();
                 let (friction, orbit, nearest) = (friction.as_ref(), orbit.as_ref(), nearest.as_ref());
                 let (unit, labels, is_orbit_missing) = (scene.time_unit(), scene.labels(), *is_orbit_missing);
                 let remark = scene.model().remark();
-                let no_gradient = no_gradient.as_ref();
+                let (no_gradient, bias) = (no_gradient.as_ref(), bias.as_ref());
                 let beside = Beside {
                     unit,
                     friction,
@@ -272,6 +288,7 @@ impl Question for System {
                     nearest,
                     local,
                     remark,
+                    bias,
                     no_gradient,
                 };
                 report::document(analysis, &beside)

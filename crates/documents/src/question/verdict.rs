@@ -321,15 +321,11 @@ impl Decided {
         } else if verdict.kind() == Kind::Hyperbolic {
             lines.push(self.not_counted());
         }
-        if let Some(Bias { at_kicks, in_drifts }) = &self.bias {
-            let [at_kicks, in_drifts] = [at_kicks, in_drifts].map(|bias| significant(bias.mid_f64()));
-            lines.push(format!(
-                "  bias         potential energy over kT/2: {at_kicks} at constant energy or by OBABO,"
-            ));
-            lines.push(format!(
-                "               {in_drifts} with a weak thermostat in every drift (BAOAB); 1 is right"
-            ));
-        }
+        lines.extend(
+            self.bias
+                .iter()
+                .flat_map(|bias| bias_lines([&bias.at_kicks, &bias.in_drifts].map(Ball::mid_f64))),
+        );
         lines.push(format!("  decided by   {}", self.decision.decided_by.name()));
         lines.extend(self.friction.iter().flat_map(friction::lines));
         lines
@@ -387,6 +383,15 @@ fn stability(is_stable: bool) -> &'static str {
 /// An enclosure as the digits that are certain.
 fn shown((lo, hi): (f64, f64)) -> String {
     decimal::enclosure(lo, hi).to_string()
+}
+
+/// The bias at the kicks and in the drifts in words.
+pub(super) fn bias_lines(bias: [f64; 2]) -> [String; 2] {
+    let [at_kicks, in_drifts] = bias.map(significant);
+    [
+        format!("  bias         potential energy over kT/2: {at_kicks} at constant energy or by OBABO,"),
+        format!("               {in_drifts} with a weak thermostat in every drift (BAOAB); 1 is right"),
+    ]
 }
 
 /// Three significant digits.

@@ -5,7 +5,9 @@ use std::f64::consts::{PI, TAU};
 use super::context::{Checked, Context, Outcome, holds};
 use super::kind::Verify;
 use crate::question::Aperture;
-use molecules::aperture::{Bond, Edge, FAR, LATE, Measured, Shape, Step, rungs, squared_frequency, thermal};
+use molecules::aperture::{
+    Bond, Edge, FAR, Hottest, LATE, Measured, Shape, Step, rungs, squared_frequency, thermal,
+};
 use number::error::Result;
 use number::rational::to_f64;
 use number::{Radical, Rational, Real};
@@ -17,7 +19,10 @@ impl Verify for Aperture {
     fn check(&self, measured: &Measured, context: &Context) -> Result<Outcome> {
         let slow = self.slow.as_ref().map(|slow| &slow.value);
         let plain = Plain::of(&self.bond, &self.integrator()?, &self.temperature.value, slow);
-        context.outcome(ROUTE, Ok(()), &measured.steps, |step| plain.holds(step))
+        let mut found = context.outcome(ROUTE, Ok(()), &measured.steps, |step| plain.holds(step))?;
+        let what = "that no bond of a band is lost at less than its least E*: computed again only";
+        found.not_rechecked.extend(self.band.is_some().then(|| what.into()));
+        Ok(found)
     }
 }
 
@@ -165,6 +170,16 @@ impl Plain {
         if let Some(aperture) = step.aperture {
             let is_lost = above(aperture).iter().any(|energy| self.lost(h, *energy) > 0);
             holds(is_lost, || format!("at {aperture} kT and above no bond is lost by another route"))?;
+        }
+        if let Some(Hottest { step: at, aperture: Some(least) }) = &step.band {
+            let is_lost = above(*least).iter().any(|energy| self.lost(to_f64(at), *energy) > 0);
+            holds(is_lost, || {
+                format!("at {least} kT and above no bond is lost at {at} fs by another route")
+            })?;
+        }
+        if let Some(band) = &step.band {
+            let of_all = |aperture: Option<f64>| aperture.unwrap_or(f64::INFINITY);
+            holds(of_all(band.aperture) <= of_all(step.aperture), || "a band holds its own step".into())?;
         }
         if let Some(half) = step.half {
             let is_lost = above(half).iter().any(|energy| 2 * self.lost(h, *energy) >= 48);

@@ -7,7 +7,7 @@ use super::context::{Context, Options};
 use super::kind::Verify;
 use crate::question::{
     Advised, Bands, Closings, Compare, CompareMethods, Curves, Found, Half, Methods, Polynomial, Proposition,
-    Safe, Simulate, Survey, System, Tongues, Verdict, Word,
+    Safe, Simulate, Survey, System, SystemAnswer, SystemVerdict, Tongues, Verdict, Word,
 };
 use clocks::propagator::{TwoClocks, half_period};
 use clocks::verdict::{Kind, Side, Verdict as Decided};
@@ -334,10 +334,17 @@ fn forged_systems_are_found() {
     };
     finds::<System>(
         asked(json!({})),
-        &[|answer| {
-            let Found::Verdict(verdict) = &mut answer.found else { panic!("a verdict") };
-            verdict.analysis.kind = Some(Kind::Hyperbolic);
-        }],
+        &[
+            |answer| system_verdict(answer).analysis.kind = Some(Kind::Hyperbolic),
+            |answer| system_verdict(answer).bias = None,
+            |answer| biased(answer)[0].bias.at_kicks *= 1.01,
+            |answer| biased(answer)[1].bias.in_drifts *= 1.01,
+            |answer| biased(answer)[0].period *= 1.01,
+            |answer| biased(answer)[1].turn *= 1.01,
+            |answer| biased(answer)[1].pair.swap(0, 1),
+            |answer| drop(biased(answer).pop()),
+            |answer| biased(answer)[0] = biased(answer)[1].clone(),
+        ],
     );
     finds::<System>(
         asked(json!({"scan_x": "potentials.0.step=1/8..3/4:1/8"})),
@@ -356,6 +363,15 @@ fn forged_systems_are_found() {
     finds::<Simulate>(asked(json!({"periods": "4"})), &[|answer| answer.run.series[3].amplitude *= 1.01]);
 }
 
+fn system_verdict(answer: &mut SystemAnswer) -> &mut SystemVerdict {
+    let Found::Verdict(verdict) = &mut answer.found else { panic!("a verdict") };
+    verdict
+}
+
+fn biased(answer: &mut SystemAnswer) -> &mut Vec<systems::BiasedMode> {
+    system_verdict(answer).bias.as_mut().unwrap().as_mut().unwrap()
+}
+
 #[test]
 fn forged_advice_on_hessians_is_found() {
     let read = |name: &str| -> Value {
@@ -369,6 +385,9 @@ fn forged_advice_on_hessians_is_found() {
             |safe| more(findings(safe).first.as_mut().unwrap()),
             |safe| findings(safe).rate = findings(safe).rate.map(|rate| rate + 1e-3),
             |safe| *findings(safe).band_edge.as_mut().unwrap() *= 1.2,
+            |safe| findings(safe).bias.as_mut().unwrap().bias *= 1.01,
+            |safe| findings(safe).safe_bias.as_mut().unwrap().bias *= 1.01,
+            |safe| findings(safe).safe_bias = None,
         ],
     );
     finds::<Advised>(

@@ -3,7 +3,7 @@
 use num_traits::ToPrimitive;
 
 use super::bond::Bond;
-use super::search::{Measurement, hottest_of};
+use super::search::{Hottest, Measurement, hottest_of};
 use number::Rational;
 use number::error::Result;
 use number::parallel::try_map;
@@ -86,11 +86,45 @@ impl Cold {
     }
 }
 
+/// The steps that are looked at lie this far from each other where resonances are strong. Whole fs or their
+/// parts keep their digits few.
+fn unit(period: f64) -> Rational {
+    Rational::new(period.ceil().to_u64().unwrap_or(u64::MAX).into(), PARTS.into())
+}
+
+/// The steps that stand for one of them where periods are longer by up to `band`, a part of 1, as neighbours
+/// make them: a bond with the period T' has at h what one with T has at h T/T'. They are those at which
+/// [`Cold`] looks, and both ends.
+pub fn band_of(measurement: &Measurement, step: &Rational, band: &Rational) -> Vec<Rational> {
+    let lo = step / (Rational::from_integer(1.into()) + band);
+    let unit = unit(measurement.period());
+    let first = (&lo / &unit).floor().to_integer().to_u64().unwrap_or(u64::MAX).saturating_add(1);
+    let between = (first..).map(|n| &unit * Rational::from_integer(n.into())).take_while(|at| at < step);
+    let mut all: Vec<Rational> = [lo].into_iter().chain(between).chain([step.clone()]).collect();
+    all.dedup();
+    all
+}
+
+/// The least E* over such steps.
+///
+/// # Errors
+/// Where somebody has stopped the work.
+pub fn hottest(measurement: &Measurement, steps: &[Rational]) -> Result<Option<Hottest>> {
+    let mut found: Option<Hottest> = None;
+    for step in steps {
+        let least = found.as_ref().and_then(|found| found.aperture).unwrap_or(f64::INFINITY);
+        let aperture = measurement.aperture_below(step, least)?;
+        if found.is_none() || aperture.is_some() {
+            found = Some(Hottest { step: step.clone(), aperture });
+        }
+    }
+    Ok(found)
+}
+
 /// The first step at which a bond below the level is lost.
 fn edge(measurement: &Measurement, level: f64) -> Result<Option<Edge>> {
-    // Whole fs or their parts keep the digits of the steps few.
     let period = measurement.period();
-    let unit = Rational::new(period.ceil().to_u64().unwrap_or(u64::MAX).into(), PARTS.into());
+    let unit = unit(period);
     let below = |step: &Rational| measurement.aperture_below(step, level);
     let step = |n: usize| &unit * Rational::from_integer(n.into());
     let last = measurement.limit.map_or(PARTS, |limit| (limit / to_f64(&unit)).floor() as usize);

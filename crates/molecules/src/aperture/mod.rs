@@ -31,10 +31,12 @@ mod map;
 mod search;
 
 pub use bond::{Bond, Shape};
-pub use cold::{Cold, Edge, KINDS, Kind};
+pub use cold::{Cold, Edge, KINDS, Kind, band_of, hottest};
 pub use kernel::{FAR, PHASES};
 pub use map::{Map, Stage, squared_frequency};
-pub use search::{EARLY, LATE, Measurement, Resonance, Step, energies_seen, hottest_of, rungs, thermal};
+pub use search::{
+    EARLY, Hottest, LATE, Measurement, Resonance, Step, energies_seen, hottest_of, rungs, thermal,
+};
 
 use number::Rational;
 use words::Word;
@@ -58,8 +60,9 @@ pub struct Measured {
 }
 
 impl Measured {
-    /// Whether a step is linearly stable, and E* not below the level.
+    /// Whether a step is linearly stable, and E* not below the level, nor that of its band.
     pub fn is_enough(&self, step: &Step) -> bool {
-        step.turn.is_some() && step.aperture.is_none_or(|aperture| aperture >= self.level)
+        let least = step.band.as_ref().map_or(step.aperture, |hottest| hottest.aperture);
+        step.turn.is_some() && least.is_none_or(|aperture| aperture >= self.level)
     }
 }

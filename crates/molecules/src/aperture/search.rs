@@ -57,6 +57,17 @@ pub struct Step {
     pub share: f64,
     /// exp(E*): so many independent energies see one above E*; a bond has about one a picosecond.
     pub enough: Option<f64>,
+    /// The least E* of the bonds whose periods are in a band, where one was asked for.
+    pub band: Option<Hottest>,
+}
+
+/// The step of a band at which E* is least.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Hottest {
+    /// In fs.
+    pub step: Rational,
+    /// E* there, in kT; `None` where no bond of the band is lost up to the last rung.
+    pub aperture: Option<f64>,
 }
 
 /// A step at which the method makes the k-th part of a turn, in fs.
@@ -196,7 +207,7 @@ impl Measurement {
         let found = self.found(h, None)?;
         let enough = found.aperture.map(exp);
         let Found { aperture, half, share } = found;
-        Ok(Step { step: step.clone(), turn, nearest, aperture, half, share, enough })
+        Ok(Step { step: step.clone(), turn, nearest, aperture, half, share, enough, band: None })
     }
 
     /// E* at a step in fs where it is below a level, both in kT.

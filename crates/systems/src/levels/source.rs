@@ -9,9 +9,12 @@ use super::growth::Growing;
 use super::kernel::{AtRatio, Kernel, Outer, highest_frequency};
 use super::nested::Nested;
 use super::search::{Decided, Search, bracket_below};
+use crate::bias::{self, BiasedMode, NoBias};
 use crate::friction::Damping;
+use crate::half::period::Stiffness;
 use crate::verdict::analysis::{Analysis, Instability};
 use crate::verdict::measured::Removed;
+use clocks::schedule::Schedule;
 use number::Rational;
 use number::error::{Error, Result};
 use number::rational::to_f64;
@@ -88,6 +91,12 @@ pub trait Source: Debug + Send + Sync {
     fn masking_friction(&self, steps: &[Rational]) -> Result<Option<f64>> {
         Ok(self.at(steps)?.masking_friction(outermost(steps)))
     }
+
+    /// The bias of each normal mode where these steps are stable.
+    fn biased_modes(&self, steps: &[Rational]) -> Result<std::result::Result<Vec<BiasedMode>, NoBias>>;
+
+    /// Positions of a pair of these in the mass-weighted coordinates given.
+    fn shape(&self, x: &[f64]) -> Vec<f64>;
 
     /// The eigenbasis that other integrators of two levels are decided in.
     fn kernel(&self) -> Option<&Kernel> {
@@ -194,6 +203,18 @@ impl Source for Kernel {
         })
     }
 
+    /// In the eigenbasis, where a fast kick touches each mode alone.
+    fn biased_modes(&self, steps: &[Rational]) -> Result<std::result::Result<Vec<BiasedMode>, NoBias>> {
+        outer_of(steps)?;
+        let fast = self.values.iter().enumerate().map(|(i, value)| (i, vec![(i, *value)])).collect();
+        let kicks = vec![Stiffness::Rows(fast), Stiffness::Whole(self.slow.clone())];
+        Ok(bias::of_levels(&schedule(steps)?, self.values.len(), kicks))
+    }
+
+    fn shape(&self, x: &[f64]) -> Vec<f64> {
+        lifted(&self.modes, x)
+    }
+
     fn kernel(&self) -> Option<&Kernel> {
         Some(self)
     }
@@ -224,6 +245,25 @@ impl Source for Nested {
     fn decide(&self, steps: &[Rational], accuracy: f64) -> Result<Decided> {
         Ok(self.at(steps)?.decide(outermost(steps), accuracy))
     }
+
+    fn biased_modes(&self, steps: &[Rational]) -> Result<std::result::Result<Vec<BiasedMode>, NoBias>> {
+        self.at(steps)?;
+        let kicks = self.levels.iter().map(|level| Stiffness::Whole(level.stiffness.clone())).collect();
+        Ok(bias::of_levels(&schedule(steps)?, self.size(), kicks))
+    }
+
+    fn shape(&self, x: &[f64]) -> Vec<f64> {
+        self.basis.as_ref().map_or_else(|| x.to_vec(), |basis| lifted(basis, x))
+    }
+}
+
+fn schedule(steps: &[Rational]) -> Result<Schedule> {
+    Schedule::new(steps, &vec![Rational::default(); steps.len()])
+}
+
+fn lifted(columns: &Mat<f64>, x: &[f64]) -> Vec<f64> {
+    let row = |i: usize| x.iter().enumerate().map(|(k, x)| columns[(i, k)] * x).sum();
+    (0..columns.nrows()).map(row).collect()
 }
 
 fn outermost(steps: &[Rational]) -> f64 {

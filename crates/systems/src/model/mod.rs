@@ -21,6 +21,7 @@ use std::borrow::Cow;
 use std::fmt::Debug;
 use std::sync::Arc;
 
+use crate::bias::{self, BiasedMode, NoBias};
 use crate::friction::Friction;
 use crate::half::compose::full_period;
 use crate::jacobian::Jacobians;
@@ -182,6 +183,17 @@ pub trait Model: Debug + Send + Sync {
     /// As [`Model::decide`].
     fn growth_at(&self, outer: f64, limits: &Limits) -> Result<Option<f64>> {
         growth_of_decision(self, outer, limits)
+    }
+
+    /// The bias of each normal mode of a system that is elliptic.
+    ///
+    /// # Errors
+    /// As [`Model::moving`].
+    fn biased_modes(&self, limits: &Limits) -> Result<std::result::Result<Vec<BiasedMode>, NoBias>> {
+        if !self.has_system() || self.method() != Method::Respa || self.local_steps().is_some() {
+            return Ok(Err(NoBias::Kind));
+        }
+        Ok(bias::of_system(self.moving()?.as_ref(), limits))
     }
 
     /// The effect of friction of a rate per unit time, O in the middle of every drift.

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use num_traits::Zero;
 
 use super::Model;
+use crate::bias::{self, BiasedMode, NoBias};
 use crate::friction::{Friction, damped_oscillator};
 use crate::levels::Method;
 use crate::linear::sparse::Symmetric;
@@ -91,6 +92,13 @@ impl Model for Oscillator {
     fn exact_kind(&self, limits: &Limits) -> Result<Kind> {
         allow_signs(&self.clocks, with_pi, limits)?;
         Ok(self.clocks.half_signs().verdict().kind())
+    }
+
+    fn biased_modes(&self, limits: &Limits) -> Result<std::result::Result<Vec<BiasedMode>, NoBias>> {
+        let mut found = bias::of_system(&self.rounded, limits);
+        let unit = if self.has_rational_steps { 1.0 } else { self.unit.to_f64() };
+        found.iter_mut().flatten().for_each(|mode| mode.period *= unit);
+        Ok(found)
     }
 
     fn friction(&self, rate: &Rational, limits: &Limits) -> Result<Friction> {

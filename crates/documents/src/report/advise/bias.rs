@@ -1,22 +1,41 @@
 //! How far off the energy of a stable mode is, for people.
 
 use super::words::{cap, length, nearest};
-use molecules::{Advice, Biased, most_biased};
+use molecules::unit::TimeUnit;
+use molecules::{Advice, Biased, Finding, Scheme, most_biased};
+use number::Rational;
 
 /// The bias of the mode that is most off, at the step that was asked for and at the one that is advised.
 pub(super) fn line(advice: &Advice) -> Option<String> {
-    let (answer, unit) = (&advice.schemes[0], advice.unit);
+    let answer = &advice.schemes[0];
     if advice.lacks_fast || advice.beads.is_some() {
         return None;
     }
-    let is_alone = answer.scheme.steps().len() == 1;
-    let shown = |(mode, bias): Biased, place: String| {
-        format!("{} {} at {place}", advice.modes[mode].name, nearest(bias, 3))
-    };
+    let named = |(mode, bias): Biased| (advice.modes[mode].name.clone(), bias);
     let asked = most_biased(answer.rows.iter().filter_map(|row| Some((row.mode, row.bias?))));
-    let asked = asked.map(|biased| shown(biased, length(answer.scheme.outer(), unit)));
-    let other = answer.safe.as_ref().filter(|safe| *safe != answer.scheme.outer());
-    let advised = answer.safe_bias.zip(other).map(|(biased, safe)| {
+    told(&answer.scheme, asked.map(named), answer.safe.as_ref().zip(answer.safe_bias.map(named)), advice.unit)
+}
+
+/// That of the normal modes of a molecule.
+pub(super) fn line_of(finding: &Finding) -> Option<String> {
+    let [asked, safe] = [&finding.bias, &finding.safe_bias]
+        .map(|most| most.as_ref().map(|most| (most.mode.clone(), (most.bias, most.bias))));
+    told(&finding.scheme, asked, finding.safe.as_ref().zip(safe), TimeUnit::Femtoseconds)
+}
+
+/// A mode's name and its bias.
+type Named = (String, (f64, f64));
+
+fn told(
+    scheme: &Scheme,
+    asked: Option<Named>,
+    safe: Option<(&Rational, Named)>,
+    unit: TimeUnit,
+) -> Option<String> {
+    let is_alone = scheme.steps().len() == 1;
+    let shown = |(mode, bias): Named, place: String| format!("{mode} {} at {place}", nearest(bias, 3));
+    let asked = asked.map(|biased| shown(biased, length(scheme.outer(), unit)));
+    let advised = safe.filter(|(safe, _)| *safe != scheme.outer()).map(|(safe, biased)| {
         let step = if is_alone { cap(safe, unit) } else { length(safe, unit) };
         shown(biased, format!("the advised {step}"))
     });

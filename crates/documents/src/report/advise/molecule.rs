@@ -9,7 +9,7 @@ use crate::report::system::of_each;
 use crate::report::table::{Cell, Column, Table};
 use molecules::engine::Reading;
 use molecules::unit::{TimeUnit, decimal};
-use molecules::{Bound, Caution, Finding, Findings, Group, Scheme, Status};
+use molecules::{Bound, Caution, Finding, Findings, Group, MostBiased, Scheme, Status};
 use number::Rational;
 use number::rational::to_f64;
 use systems::levels::Growing;
@@ -94,6 +94,7 @@ fn summary(findings: &Findings, reading: Option<&Reading>, notes: &[String]) -> 
     lines.extend(lines::seen(best.scheme.steps().len()));
     lines.extend((2..).zip(&findings.between).map(|(level, value)| between(level, *value)));
     lines.extend((best.scheme.steps().len() > 1).then(|| slow(findings.slow)));
+    lines.extend(super::bias::line_of(best));
     lines.push(format!("  unknown    {}", UNKNOWN[0]));
     lines.extend(notes.iter().map(|note| format!("  read       {note}")));
     if let Some(friction) = &findings.friction {
@@ -308,6 +309,7 @@ fn rows(findings: &Findings) -> Table {
     let exact = |x: &Option<Rational>| Cell::from(x.as_ref().map(Cell::exact));
     let per_ps = |rate: Option<f64>| Cell::from(rate.map(|rate| 1000.0 * rate));
     let column = |key: &str, title: &str| Column::new(key).in_words(title);
+    let bias = |most: &Option<MostBiased>| Cell::from(most.as_ref().map(|most| most.bias));
     Record::new()
         .field(column("outer", "outer step").in_unit("fs"), |finding: &Finding| {
             Cell::exact(finding.scheme.outer())
@@ -330,5 +332,10 @@ fn rows(findings: &Findings) -> Table {
         .field(Column::new("safe").in_unit("fs"), move |finding| exact(&finding.safe))
         .field(Column::new("bound").left(), |finding| finding.bound.map(|bound| bound.name()).into())
         .field(Column::new("within_run"), |finding| finding.within_run.into())
+        .field(column("bias", "bias R"), move |finding| bias(&finding.bias))
+        .field(column("biased", "most off").left(), |finding| {
+            finding.bias.as_ref().map(|most| most.mode.as_str()).into()
+        })
+        .field(column("safe_bias", "bias R of safe"), move |finding| bias(&finding.safe_bias))
         .table("rows", "The molecule at each scheme of steps", &findings.schemes)
 }

@@ -6,9 +6,9 @@ use super::decimal::few;
 use super::document::Document;
 use super::record::Record;
 use super::shape::{FLAG, Keys, ROUNDED, Shape, TEXT};
-use super::table::{Cell, Column};
+use super::table::{Cell, Column, Table};
 pub use chart::figure;
-use molecules::aperture::{EARLY, LATE, Measured, PHASES, Resonance, Step, rungs};
+use molecules::aperture::{EARLY, Hottest, LATE, Measured, PHASES, Resonance, Step, rungs};
 use molecules::unit::decimal;
 use number::rational::to_f64;
 
@@ -24,9 +24,25 @@ pub fn document(measured: &Measured) -> Document {
     let table = record().table("steps", "How hot a bond may be at each step, as measured", &rows);
     head()
         .document(Document::new("aperture"), measured)
-        .for_people(table.shortened(DIGITS))
+        .for_people(shown(table.shortened(DIGITS), measured))
         .rows(table)
         .summary(&lines(measured))
+}
+
+/// The columns of a band where one was asked for.
+fn shown(table: Table, measured: &Measured) -> Table {
+    if measured.steps.iter().any(|step| step.band.is_some()) {
+        return table;
+    }
+    let kept: Vec<bool> = table.columns().iter().map(|column| !column.key.starts_with("band")).collect();
+    let columns = table.columns().iter().zip(&kept).filter(|(_, kept)| **kept);
+    let mut shown =
+        Table::new(table.name(), table.caption(), columns.map(|(column, _)| column.clone()).collect());
+    for row in table.rows() {
+        let cells = row.iter().zip(&kept).filter(|(_, kept)| **kept);
+        shown.push(cells.map(|(cell, _)| cell.clone()).collect());
+    }
+    shown
 }
 
 /// The keys of the document.
@@ -120,8 +136,25 @@ fn record<'a>() -> Record<'a, Row<'a>> {
             ROUNDED_OR_NULL,
             "exp(aperture): about one of so many bonds times picoseconds is as hot; null above 40 kT; a rounded double.",
         )
+        .field(Column::new("band_aperture").in_words("least of band").in_unit("kT"), |(step, _)| {
+            step.band.as_ref().and_then(|hottest| hottest.aperture).into()
+        })
+        .says(
+            ROUNDED_OR_NULL,
+            "The least aperture of all bonds whose periods are longer by up to the band; null where none of them is lost up to 40 kT, and where no band was asked for; a rounded double.",
+        )
+        .field(Column::new("band_step").in_words("at").in_unit("fs"), |(step, _)| {
+            step.band.as_ref().map(|hottest| to_f64(&hottest.step)).into()
+        })
+        .says(
+            Shape::OrNull(&ABOVE_0),
+            "The step in fs at which the bond at rest has it; null where no band was asked for; a rounded double.",
+        )
         .field(Column::new("enough"), |(_, enough)| (*enough).into())
-        .says(FLAG, "Whether the step is linearly stable and its aperture not below the level.")
+        .says(
+            FLAG,
+            "Whether the step is linearly stable and its aperture, with a band that of the band, not below the level.",
+        )
 }
 
 fn resonance() -> Record<'static, Resonance> {
@@ -167,14 +200,22 @@ fn lines(measured: &Measured) -> Vec<String> {
     lines
 }
 
+/// What the bonds of a band have, where that was asked for.
+fn band_words(step: &Step) -> String {
+    let least = |hottest: &Hottest| hottest.aperture.map(|least| (least, few(to_f64(&hottest.step), 5)));
+    let least = step.band.as_ref().and_then(least);
+    least.map_or_else(String::new, |(least, at)| format!("; in its band E* = {least} kT, as at {at} fs"))
+}
+
 /// What was measured at a step.
 fn words(step: &Step) -> String {
     match (step.turn, step.aperture) {
         (None, _) => "the step is linearly unstable".into(),
-        (_, None) => "none was lost".into(),
+        (_, None) => format!("none was lost{}", band_words(step)),
         (_, Some(aperture)) => format!(
-            "E* = {aperture} kT; of a thermal ensemble {} are lost in {EARLY} steps",
-            few(step.share, 2)
+            "E* = {aperture} kT; of a thermal ensemble {} are lost in {EARLY} steps{}",
+            few(step.share, 2),
+            band_words(step)
         ),
     }
 }

@@ -3,6 +3,7 @@
 
 use serde_json::{Value, json};
 
+use super::bias::Biases;
 use super::nearest;
 use super::words::{rate, rate_per};
 use crate::report::decimal;
@@ -29,6 +30,8 @@ pub struct Beside<'a> {
     pub local: Option<&'a SchemeSummary>,
     /// The remark on its model ([`systems::Model::remark`]).
     pub remark: Option<&'a str>,
+    /// The bias of its modes, where it is stable.
+    pub bias: Option<&'a Biases>,
     /// Results on forces that are no gradient.
     pub no_gradient: Option<&'a NoGradient>,
 }

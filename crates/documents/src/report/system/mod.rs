@@ -2,6 +2,7 @@
 //! it.
 
 mod beside;
+mod bias;
 mod chart;
 mod intervals;
 mod map;
@@ -19,6 +20,7 @@ use super::record::Record;
 use super::table::Column;
 use super::text::counted;
 pub use beside::Beside;
+pub use bias::Biases;
 pub use chart::Colouring;
 pub use intervals::figure as intervals_figure;
 pub use intervals::{document as intervals, sampled};
@@ -50,6 +52,7 @@ pub fn document(analysis: &Analysis, beside: &Beside) -> Document {
         .entry("parts", parts().map(part).collect::<Vec<_>>())
         .entry("warnings", analysis.warnings.clone())
         .entries(analysis.measured.as_ref().map(|measured| ("measured", measured::value(measured))))
+        .entry("bias", bias::value(beside.bias))
         .entries(beside::entries(beside, analysis));
     document.long_rows(table).summary_alone(&lines(analysis, beside))
 }
@@ -146,6 +149,7 @@ fn lines(analysis: &Analysis, beside: &Beside) -> Vec<String> {
         let modes = counted(left_out, "mode grows", "modes grow");
         lines.push(format!("  {modes} more slowly: as JSON or CSV all are shown"));
     }
+    lines.extend(beside.bias.iter().flat_map(|bias| bias::lines(bias, &suffix)));
     let per = beside.unit.unwrap_or("unit time");
     lines.extend(
         beside

@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use crate::input::SystemScene;
 use crate::question::Advised;
 use crate::verify::context::{self, Checked, Context, Outcome, ROOM, failure, holds, too_costly};
+use crate::verify::system::bias::{agree, most_off};
 use molecules::{Finding, Findings, MOST_PRODUCTS, Scheme};
 use num_traits::Zero;
 use number::Rational;
@@ -200,6 +201,34 @@ impl Route for Other {
 const ROUTE: &str = "the ends of the first region and of the band by the action as one matrix over the paths, growth by the full \
                      period kick by kick";
 
+/// The bias at the outer step and at the safe one by a rational system of the doubles given; false where it
+/// would cost too much.
+fn bias(scene: &SystemScene, finding: &Finding, limits: &Limits) -> Checked<bool> {
+    let (unit, moving) = (scene.femtoseconds()?, scene.model().moving()?);
+    let is_stable = finding.holds == Holds::Stable;
+    let scheme = &finding.scheme;
+    let asked = is_stable.then(|| scheme.outer()).map(|outer| (outer, &finding.bias));
+    let safe = finding.safe.as_ref().map(|safe| (safe, &finding.safe_bias));
+    holds(is_stable || finding.bias.is_none(), || "a bias of what is not stable".into())?;
+    holds(safe.is_some() || finding.safe_bias.is_none(), || "a bias at no step".into())?;
+    let mut is_seen = true;
+    for (outer, told) in asked.into_iter().chain(safe) {
+        let (_, inner) = scheme.steps().split_last().expect("at least one step");
+        let steps = inner.iter().chain([outer]).map(|step| step / &unit);
+        let potential =
+            |(potential, step): (&Potential, Rational)| Potential::new(potential.stiffness.clone(), step);
+        let all = moving.potentials().iter().zip(steps).map(potential);
+        let system = System::new(moving.mass().clone(), all.collect())?;
+        let Some(truth) = most_off(&system, limits)? else {
+            is_seen = false;
+            continue;
+        };
+        let right = told.as_ref().is_some_and(|told| agree(told.bias, truth));
+        holds(right, || format!("at {outer} fs the bias that is most off is {truth}"))?;
+    }
+    Ok(is_seen)
+}
+
 pub fn check(
     question: &Advised,
     scene: &SystemScene,
@@ -209,7 +238,7 @@ pub fn check(
     let limits = Limits { products: context.options.budget.unwrap_or(MOST_PRODUCTS), ..Limits::default() };
     let other = route(scene, to_f64(&question.band), &limits)?;
     let mut outcome = Outcome::holding(other.route(), findings.schemes.len() as u64);
-    let mut spent: u64 = 0;
+    let (mut spent, mut is_bias_seen) = (0_u64, true);
     for (row, finding) in (1..).zip(&findings.schemes) {
         let cost = spent.saturating_add(other.cost(finding));
         if let Err(error) = limits.allow(cost, || format!("schemes 1 to {row}")) {
@@ -218,6 +247,12 @@ pub fn check(
         }
         spent = cost;
         outcome.failures.extend(failure(row, other.row(finding))?);
+        let seen = bias(scene, finding, &limits);
+        is_bias_seen &= !matches!(seen, Ok(false));
+        outcome.failures.extend(failure(row, seen.map(drop))?);
+    }
+    if !is_bias_seen {
+        outcome.not_rechecked.push("bias, safe_bias by the dense full period: computed again only".into());
     }
     if !findings.schemes.iter().all(|scheme| other.has_ends(scheme)) {
         let why = "first, band_edge by the other route: too many steps for the action's matrix, computed again only";

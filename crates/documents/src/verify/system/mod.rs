@@ -4,6 +4,7 @@
 //! doubles (multipliers, runs of linear systems).
 
 mod apart;
+pub(super) mod bias;
 mod dense;
 mod implicit;
 mod intervals;
@@ -36,7 +37,12 @@ impl Verify for System {
 
     fn check(&self, SystemAnswer { scene, found }: &SystemAnswer, context: &Context) -> Result<Outcome> {
         match found {
-            Found::Verdict(decided) => verdict(scene, &decided.analysis, decided.local.as_ref(), context),
+            Found::Verdict(decided) => {
+                let mut found = verdict(scene, &decided.analysis, decided.local.as_ref(), context)?;
+                let bias = bias::check(scene, &decided.analysis, decided.bias.as_ref());
+                found.failures.extend(failure(1, bias)?);
+                Ok(found)
+            }
             Found::Map(map) => points(self, scene, map, context),
             Found::Intervals(found) => intervals::check(self, scene, found, context),
         }

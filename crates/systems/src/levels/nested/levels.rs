@@ -35,7 +35,7 @@ pub struct Nested {
     pub(in crate::levels) modes: Mat<f64>,
     /// No less than how far the innermost one reaches below 0.
     pub(super) lack: f64,
-    pub(super) basis: Option<Mat<f64>>,
+    pub(in crate::levels) basis: Option<Mat<f64>>,
     pub(super) is_total_definite: OnceLock<bool>,
     pub(super) modes_of_all: OnceLock<Modes>,
     /// What was projected out before.
