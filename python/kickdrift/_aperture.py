@@ -57,7 +57,7 @@ def aperture(
     word: str | None = None,
     substeps: int | None = None,
     slow: Exact | None = None,
-    band: str | None = None,
+    band: Exact | None = None,
     bonds: int = 10_000,
     length: Exact = "100ns",
     budget: int | None = None,
@@ -85,8 +85,8 @@ def aperture(
         r-RESPA: so many inner steps of the bond in each step of the slow force.
     slow : Exact, optional
         A slow harmonic force about the bond's rest: the period that it would give the bond alone.
-    band : str, optional
-        A part of the period, as "5%": ``band_aperture`` is the least of all bonds whose periods are longer by up to this,
+    band : Exact, optional
+        A part of the period, as 0.05 or "5%": ``band_aperture`` is the least of all bonds whose periods are longer by up to this,
         as neighbours make them, and decides ``enough``.
     bonds : int, optional
         The bonds of the system that is meant.
@@ -120,7 +120,7 @@ def aperture(
         word=word,
         substeps=substeps,
         slow=_with_unit("slow", slow, "fs"),
-        band=band,
+        band=band if band is None or isinstance(band, str) else text("band", band),
         bonds=bonds,
         length=_with_unit("length", length, "fs"),
     )

@@ -79,7 +79,7 @@ struct Motion<'a> {
 
 /// That half a period of this cost may be followed twice, and the modes be found.
 fn allow(half_period: u64, n: usize, limits: &Limits) -> Result<(), NoBias> {
-    let eigen = (EIGEN * (n as u64).saturating_pow(3)) / DENSE;
+    let eigen = EIGEN.saturating_mul((n as u64).saturating_pow(3)) / DENSE;
     let work = half_period.saturating_mul(2).saturating_add(eigen);
     if work > MOST_PRODUCTS.min(limits.products) { Err(NoBias::Cost) } else { Ok(()) }
 }
