@@ -119,6 +119,7 @@ const LINES: &[&str] = &[
     "aperture --bond CH:k=340kcal/mol/A^2,12.011,1.008 --substeps 2 --slow 40fs --steps 1fs",
     "word --list",
     "word --method symplectic-euler --lambda1 1 --h 3",
+    "word --check data/words/claims.toml",
     "word --method impulse --lambda1 pi^2/25 --lambda2 pi^2/400 --h 4 --h-range 0..16",
     "word --method mts-baoab-4 --lambda1 pi^2/25 --lambda2 pi^2/400 --h 4 --friction 1/100",
     "word --method molly-long --lambda1 pi^2/25 --lambda2 pi^2/400 --h 5",

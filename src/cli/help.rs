@@ -78,6 +78,14 @@ fn below(name: &str, examples: &[&str]) -> String {
             EXIT_CODES.replace("done\n", "done; with --exit-code: stable\n  1  with --exit-code: unstable\n")
         }
         "verify" => EXIT_CODES
+        "advise" => EXIT_CODES.replace(
+            "done\n",
+            "done; with --exit-code: all steps are proven stable\n  1  with --exit-code: one is not, or is advised against\n",
+        ),
+        "word" => EXIT_CODES.replace(
+            "done\n",
+            "done; with --check: every claim holds\n  1  with --check: a claim does not hold\n",
+        ),
             .replace("done\n", "every claim that is rechecked holds\n")
             .replace("error:", "error, or a claim that does not hold:"),
         _ => EXIT_CODES.into(),

@@ -1,6 +1,7 @@
 //! The command line: arguments → a scene → the library → a report.
 //!
-//! Exit codes: 0 done, 1 unstable (only with `--exit-code`), 2 error, with one line on standard error.
+//! Exit codes: 0 done, 1 unstable (only with `--exit-code`) or a claim that does not hold (`word --check`), 2
+//! error, with one line on standard error.
 
 mod advise;
 mod args;
@@ -230,7 +231,7 @@ fn run(cli: &Cli) -> Result<u8> {
             let format = common.format_of_table(&Format::DOCUMENT)?;
             common.write(&args.ask(&common.work())?, format)?;
         }
-        Command::Word(args) => args.run(common)?,
+        Command::Word(args) => return args.run(common),
         Command::Verify(args) => args.run(common)?,
         Command::System(args) => return args.run(common),
         Command::Advise(args) => args.run(common)?,

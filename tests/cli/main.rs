@@ -2,6 +2,7 @@
 
 mod advise;
 mod answers;
+mod claims;
 mod files;
 mod golden;
 mod help;

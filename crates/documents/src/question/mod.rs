@@ -25,6 +25,7 @@ mod field;
 
 mod aperture;
 mod bands;
+mod claims;
 mod closings;
 mod compare;
 mod curves;
@@ -49,6 +50,7 @@ pub use aperture::Aperture;
 pub(crate) use asking::question;
 pub use asking::{Fields, Question, Watch, Work};
 pub use bands::Bands;
+pub use claims::{Checked, Claimed, Claims, Held, WordCheck};
 pub use closings::{Closings, DIGITS};
 pub use compare::{Compare, Over};
 pub use curves::Curves;
@@ -153,3 +155,4 @@ fn named(name: &str) -> Result<&'static Named> {
         Error::input("question", name, format!("there are {}", names.join(", ")))
     })
 }
+    Named::of::<WordCheck>(),
