@@ -41,7 +41,8 @@ fn no_workflow_may_write_more_than_it_has_to() {
 /// What stands in `${{ }}` in a script is put in before a shell reads it: a tag could be a command.
 #[test]
 fn scripts_of_workflows_take_names_from_their_environment_only() {
-    for (name, text) in workflows() {
+    let action = (String::from("action.yml"), std::fs::read_to_string(root().join("action.yml")).unwrap());
+    for (name, text) in workflows().into_iter().chain([action]) {
         let mut depth = None;
         for line in text.lines() {
             let indent = line.len() - line.trim_start().len();

@@ -234,7 +234,7 @@ fn run(cli: &Cli) -> Result<u8> {
         Command::Word(args) => return args.run(common),
         Command::Verify(args) => args.run(common)?,
         Command::System(args) => return args.run(common),
-        Command::Advise(args) => args.run(common)?,
+        Command::Advise(args) => return args.run(common),
         Command::Aperture(args) => args.run(common, Default::Text)?,
         Command::Simulate(args) => args.run(common)?,
         Command::Explore(args) => args.run(common)?,
