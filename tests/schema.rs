@@ -75,6 +75,7 @@ const LINES: &[&str] = &[
     "compare --max-sum 8 --rho 1/25 --samples 20",
     "compare --lambda1 16 --lambda2 16/25 --step 1/10 --h1-range 1/10..3/5 --h2-range 1/10..2",
     "compare --methods respa-4,implicit-explicit,molly-long,gautschi --lambda1 pi^2/25 --h-range 0..16 --h-step 1/2 --rho-range 0..1/4 --rho-step 1/16",
+    "compare --methods forest-ruth,velocity-verlet --by-cost --h-range 0..4 --h-step 1/10",
     "proposition --max 7",
     "polynomial --ratio 7/4",
     "polynomial --ratio 1",
