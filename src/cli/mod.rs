@@ -13,6 +13,7 @@ mod explore;
 mod generate;
 mod help;
 mod map;
+mod mcp;
 mod merge;
 mod paper;
 mod progress;
@@ -97,6 +98,8 @@ enum Command {
     Run(run::Args),
     /// Checks a JSON document of kickdrift: every value computed again, and every claim by another route.
     Verify(verify::Args),
+    /// Answers assistants: the questions as tools of the Model Context Protocol, on standard input and output.
+    Mcp(mcp::Args),
     /// How to cite kickdrift and the paper that posed its question: BibTeX, or CITATION.cff.
     Cite(cite::Args),
     /// Manual pages and completions for shells: what packagers need.
@@ -214,7 +217,8 @@ fn run(cli: &Cli) -> Result<u8> {
     if !cli.command.draws() {
         common.format(&Format::DOCUMENT, Format::Text)?;
     }
-    let _patience = Patience::new(common.quiet || matches!(cli.command, Command::Explore(_)));
+    let _patience =
+        Patience::new(common.quiet || matches!(cli.command, Command::Explore(_) | Command::Mcp(_)));
     match &cli.command {
         Command::Verdict(args) => return args.run(common),
         Command::Curves(args) => args.run(common, Default::Table)?,
@@ -238,6 +242,7 @@ fn run(cli: &Cli) -> Result<u8> {
         Command::Aperture(args) => args.run(common, Default::Text)?,
         Command::Simulate(args) => args.run(common)?,
         Command::Explore(args) => args.run(common)?,
+        Command::Mcp(args) => args.run(&whole(), common)?,
         Command::Cite(args) => args.run(common)?,
         Command::Generate(args) => args.run(whole(), common)?,
     }

@@ -7,6 +7,7 @@ mod files;
 mod golden;
 mod help;
 mod manners;
+mod mcp;
 mod names;
 mod refusals;
 mod remedies;
