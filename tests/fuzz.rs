@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use kickdrift::error::Error;
 use kickdrift::number::parse;
-use kickdrift::question::Scene;
+use kickdrift::question::{Scene, WordCheck};
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
 use serde_json::Value;
@@ -126,6 +126,14 @@ fn json() -> impl Strategy<Value = Value> {
     })
 }
 
+const CLAIMS: &str = include_str!("../data/words/claims.toml");
+
+/// As many cases as PROPTEST_CASES says, else so many.
+fn cases(most: u32) -> ProptestConfig {
+    let asked = std::env::var("PROPTEST_CASES").ok().and_then(|text| text.parse().ok());
+    ProptestConfig::with_cases(asked.unwrap_or(most))
+}
+
 const SCENES: [&str; 2] =
     [include_str!("../data/scenes/figure1.json"), include_str!("../data/scenes/small.json")];
 
@@ -142,7 +150,7 @@ fn paths(value: &Value, here: String, all: &mut Vec<String>) {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(1000))]
+    #![proptest_config(cases(1000))]
 
     #[test]
     fn any_text_is_a_number_or_a_refusal(text in any::<String>()) {
@@ -164,6 +172,11 @@ proptest! {
     #[test]
     fn any_text_is_a_scene_or_a_refusal(text in any::<String>()) {
         sane(|| Scene::from_json(&text))?;
+    }
+
+    #[test]
+    fn a_damaged_list_of_claims_is_one_or_a_refusal(all in prop::collection::vec(damage(), 0..6)) {
+        sane(|| WordCheck::of_toml("claims.toml", &damaged(CLAIMS, &all)))?;
     }
 
     #[test]

@@ -41,7 +41,8 @@ fn no_workflow_may_write_more_than_it_has_to() {
 /// What stands in `${{ }}` in a script is put in before a shell reads it: a tag could be a command.
 #[test]
 fn scripts_of_workflows_take_names_from_their_environment_only() {
-    for (name, text) in workflows() {
+    let action = (String::from("action.yml"), std::fs::read_to_string(root().join("action.yml")).unwrap());
+    for (name, text) in workflows().into_iter().chain([action]) {
         let mut depth = None;
         for line in text.lines() {
             let indent = line.len() - line.trim_start().len();
@@ -199,6 +200,25 @@ fn released_programs_have_the_page_and_the_notices_of_what_is_linked() {
     assert!(texts > 20 && notices.contains("Redistribution and use in source and binary forms"), "{texts}");
 }
 
+/// What cargo-binstall asks for is what a release has.
+#[test]
+fn archives_have_the_names_that_the_manifest_tells_installers() {
+    let manifest = std::fs::read_to_string(root().join("Cargo.toml")).unwrap();
+    assert!(manifest.contains("/v{ version }/kickdrift-v{ version }-{ target }.tar.gz\"\n"));
+    assert!(manifest.contains("\"kickdrift-v{ version }-{ target }/{ bin }{ binary-ext }\"\n"));
+    let program = release_job("program");
+    assert!(program.contains("folder=kickdrift-$TAG-$CARGO_BUILD_TARGET\n"));
+    assert!(program.contains("tar czf \"$folder.tar.gz\" \"$folder\"\n"));
+    for machine in [
+        "aarch64-apple-darwin",
+        "x86_64-pc-windows-msvc",
+        "x86_64-unknown-linux-gnu",
+        "aarch64-unknown-linux-gnu",
+    ] {
+        assert!(program.contains(&format!("target: {machine}}}")), "{machine}");
+    }
+}
+
 /// An installation resolves nothing anew: it takes the versions that were tested.
 #[test]
 fn every_installation_that_is_written_down_is_locked() {
@@ -232,6 +252,7 @@ fn every_file_that_names_the_version_names_this_one() {
         ("python/Cargo.toml", format!("\nversion = \"{version}\"\n")),
         ("CITATION.cff", format!("\nversion: {version}\n")),
         ("data/citation.bib", format!("version = {{{version}}},\n")),
+        ("codemeta.json", format!("\"version\": \"{version}\",\n")),
         ("conda/recipe.yaml", format!("version: \"{version}\"\n")),
         (".zenodo.json", format!("\"version\": \"{version}\",\n")),
     ] {

@@ -56,6 +56,7 @@ def compare(
     h_step: Exact | None = None,
     rho_range: Range | None = None,
     rho_step: Exact | None = None,
+    by_cost: bool = False,
     budget: int | None = None,
 ) -> Comparison:
     """Compare the trace with its predictions, over a grid or over ratios; or integrators side by side.
@@ -72,7 +73,10 @@ def compare(
         Integrators side by side instead: names of :func:`methods`, or words. Over the grid of ``step``, ``h1``,
         ``h2``, each force in units of its own step (``lambda2`` is ``lambda1`` unless given); or over
     h, h_step, rho_range, rho_step
-        Steps and lambda2/lambda1, each a closed range with a spacing.
+        Steps and lambda2/lambda1, each a closed range with a spacing; words of one force have steps alone.
+    by_cost : bool, optional
+        Steps as they are paid for: a word of n evaluations takes n times each step, and the rows begin with the least
+        unstable share.
     budget : int, optional
         The most kicks that one verdict may compose.
 
@@ -91,6 +95,9 @@ def compare(
     >>> sides = kd.compare(methods=names, h=(0, 16), h_step=1, rho_range=(0, "1/2"), rho_step="1/8", lambda1="pi^2/25")
     >>> [(row["method"], row["unstable"]) for row in sides]
     [('respa-4', 33), ('implicit-explicit', 40)]
+    >>> paid = kd.compare(methods="pefrl,velocity-verlet", by_cost=True, h=(0, 2), h_step="1/100")
+    >>> [(row["method"], row["evaluations"], row["unstable"]) for row in paid]
+    [('velocity-verlet', 1, 1), ('pefrl', 4, 71)]
     """
     spacing = optional_text("step", step)
     if methods is not None:
@@ -109,6 +116,7 @@ def compare(
             rho_step=optional_text("rho_step", rho_step),
             h2_range=optional_range("h2", h2),
             h2_step=spacing if by_step else None,
+            by_cost="true" if by_cost else None,
         )
     return answered(
         Comparison,

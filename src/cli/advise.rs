@@ -6,7 +6,7 @@ use super::args::Common;
 use super::paper::Paper;
 use super::system::{arrays, source};
 use documents::format::Format;
-use documents::question::{Advise, Question, Work};
+use documents::question::{Advise, Question, Safe, Work};
 use number::error::{Error, Result};
 use number::file;
 
@@ -30,17 +30,22 @@ pub struct Args {
     /// Draws what would let the step grow, a bar a row: FILE.svg, .pdf or .png.
     #[arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath, conflicts_with = "no_levers")]
     levers: Option<PathBuf>,
+    /// Exit with 0 if all steps asked about, those of --engine too, are proven stable for all periods within the
+    /// band; with 1 if one is not, or is advised against.
+    #[arg(long)]
+    exit_code: bool,
     #[command(flatten)]
     paper: Paper,
 }
 
 impl Args {
-    pub fn run(&self, common: &Common) -> Result<()> {
+    pub fn run(&self, common: &Common) -> Result<u8> {
         let format = common.format(&Format::DOCUMENT_OR_FIGURE, Format::Text)?;
         self.paper.check(format.is_figure() || self.levers.is_some())?;
         let (asked, arrays) = (self.asked()?, self.path.as_ref().map(|path| arrays(path)));
         let work = Work { arrays: arrays.as_ref(), ..common.work() };
         let answer = asked.answer(&work)?;
+        let code = if self.exit_code { Self::code(&answer.safe)? } else { 0 };
         let document = asked.document(&answer);
         let drawn = common.output.as_deref().filter(|_| format.is_figure());
         match drawn.zip(drawn.map_or(Ok(None), |_| asked.figure(&answer, &work))?) {
@@ -53,7 +58,19 @@ impl Args {
             })?;
             self.paper.draw("levers", path, figure, common)?;
         }
-        common.tell_beside_output(&document)
+        common.tell_beside_output(&document)?;
+        Ok(code)
+    }
+
+    /// 0 or 1.
+    fn code(safe: &Safe) -> Result<u8> {
+        let none = || {
+            Error::missing(
+                "steps",
+                "no steps are asked about: add --steps, or --engine with an input that has them",
+            )
+        };
+        safe.is_proven().map(|proven| u8::from(!proven)).ok_or_else(none)
     }
 
     /// With the texts of the engine's files, and the system.

@@ -18,7 +18,7 @@ const fn of<Q: Question>() -> Page {
     (Q::NAME, Q::EXAMPLES, Q::USAGE)
 }
 
-const PAGES: [Page; 21] = [
+const PAGES: [Page; 22] = [
     of::<Verdict>(),
     of::<Curves>(),
     of::<Compare>(),
@@ -47,6 +47,7 @@ const PAGES: [Page; 21] = [
         None,
     ),
     ("verify", &["verify data/published/map-100.json"], None),
+    ("mcp", &["mcp"], None),
     ("cite", &["cite", "cite cff --output CITATION.cff"], None),
     ("generate", &["generate man --output man", "generate completions --output completions"], None),
 ];
@@ -77,6 +78,14 @@ fn below(name: &str, examples: &[&str]) -> String {
         "verdict" | "system" => {
             EXIT_CODES.replace("done\n", "done; with --exit-code: stable\n  1  with --exit-code: unstable\n")
         }
+        "advise" => EXIT_CODES.replace(
+            "done\n",
+            "done; with --exit-code: all steps are proven stable\n  1  with --exit-code: one is not, or is advised against\n",
+        ),
+        "word" => EXIT_CODES.replace(
+            "done\n",
+            "done; with --check: every claim holds\n  1  with --check: a claim does not hold\n",
+        ),
         "verify" => EXIT_CODES
             .replace("done\n", "every claim that is rechecked holds\n")
             .replace("error:", "error, or a claim that does not hold:"),

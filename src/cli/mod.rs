@@ -1,6 +1,7 @@
 //! The command line: arguments → a scene → the library → a report.
 //!
-//! Exit codes: 0 done, 1 unstable (only with `--exit-code`), 2 error, with one line on standard error.
+//! Exit codes: 0 done, 1 unstable (only with `--exit-code`) or a claim that does not hold (`word --check`), 2
+//! error, with one line on standard error.
 
 mod advise;
 mod args;
@@ -12,6 +13,7 @@ mod explore;
 mod generate;
 mod help;
 mod map;
+mod mcp;
 mod merge;
 mod paper;
 mod progress;
@@ -96,6 +98,8 @@ enum Command {
     Run(run::Args),
     /// Checks a JSON document of kickdrift: every value computed again, and every claim by another route.
     Verify(verify::Args),
+    /// Answers assistants: the questions as tools of the Model Context Protocol, on standard input and output.
+    Mcp(mcp::Args),
     /// How to cite kickdrift and the paper that posed its question: BibTeX, or CITATION.cff.
     Cite(cite::Args),
     /// Manual pages and completions for shells: what packagers need.
@@ -217,7 +221,8 @@ fn run(cli: &Cli) -> Result<u8> {
     if !cli.command.draws() {
         common.format(&Format::DOCUMENT, Format::Text)?;
     }
-    let _patience = Patience::new(common.quiet || matches!(cli.command, Command::Explore(_)));
+    let _patience =
+        Patience::new(common.quiet || matches!(cli.command, Command::Explore(_) | Command::Mcp(_)));
     match &cli.command {
         Command::Verdict(args) => return args.run(common),
         Command::Curves(args) => args.run(common, Default::Table)?,
@@ -234,13 +239,14 @@ fn run(cli: &Cli) -> Result<u8> {
             let format = common.format_of_table(&Format::DOCUMENT)?;
             common.write(&args.ask(&common.work())?, format)?;
         }
-        Command::Word(args) => args.run(common)?,
+        Command::Word(args) => return args.run(common),
         Command::Verify(args) => args.run(common)?,
         Command::System(args) => return args.run(common),
-        Command::Advise(args) => args.run(common)?,
+        Command::Advise(args) => return args.run(common),
         Command::Aperture(args) => args.run(common, Default::Text)?,
         Command::Simulate(args) => args.run(common)?,
         Command::Explore(args) => args.run(common)?,
+        Command::Mcp(args) => args.run(&whole(), common)?,
         Command::Cite(args) => args.run(common)?,
         Command::Generate(args) => args.run(whole(), common)?,
     }

@@ -65,6 +65,28 @@ fn an_engine_s_line_is_rewritten() {
 }
 
 #[test]
+fn the_exit_code_says_whether_all_steps_are_proven_stable() {
+    let periods = "advise --period OH=10fs --period slow=40fs --no-levers --exit-code";
+    let code = |steps: &str| run(&words(&format!("{periods} {steps}"), &[])).code;
+    // Proven for all periods within the band, below what is published or not.
+    assert_eq!(code("--steps 0.5fs,3fs"), Some(0));
+    assert_eq!(code("--steps 0.5fs,3fs --steps 0.5fs,4fs"), Some(0));
+    // Stable above an unstable interval, unstable, and below it by less than the band.
+    assert_eq!(code("--steps 0.5fs,3fs --steps 0.5fs,5fs"), Some(1));
+    assert_eq!(code("--steps 0.48fs,4.8fs"), Some(1));
+    assert_eq!(code("--steps 0.46fs,4.6fs"), Some(1));
+    let none = run(&words(periods, &[]));
+    assert_eq!(none.code, Some(2), "{}", none.stdout);
+    let desk = Desk::new();
+    let lines = "units real\npair_style lj/cut 10\ntimestep 4.0\nrun_style respa 2 8 bond 1 pair 2\n";
+    for (step, code) in [("4.0", 0), ("5.0", 1)] {
+        desk.write("in.lmp", &lines.replace("4.0", step));
+        let asked = "advise --engine in.lmp --period OH=10fs --period 40fs --exit-code";
+        assert_eq!(desk.run(&words(asked, &[])).code, Some(code), "{step}");
+    }
+}
+
+#[test]
 fn every_form_is_written() {
     let desk = Desk::new();
     for (name, begins) in [

@@ -13,7 +13,7 @@ fn every_command_has_examples_that_run_and_tells_its_exit_codes() {
         .filter_map(|line| line.strip_prefix("  ")?.split(' ').next())
         .filter(|name| !name.is_empty() && *name != "help")
         .collect();
-    assert_eq!(commands.len(), 21, "{commands:?}");
+    assert_eq!(commands.len(), 22, "{commands:?}");
     let desk = Desk::new();
     for command in commands {
         let help = stdout(&[command, "--help"]);

@@ -2,10 +2,12 @@
 
 mod advise;
 mod answers;
+mod claims;
 mod files;
 mod golden;
 mod help;
 mod manners;
+mod mcp;
 mod names;
 mod refusals;
 mod remedies;

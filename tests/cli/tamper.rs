@@ -73,8 +73,12 @@ fn desk() -> Desk {
     }
     desk.write("run.mdp", ENGINE);
     desk.write("scene.json", SCENE);
+    desk.write("claims.toml", CLAIMS);
     desk
 }
+
+const CLAIMS: &str =
+    "[[word]]\nname = \"a\"\nmethod = \"velocity-verlet\"\norder = 4\nsymmetric = false\nlimit = 2\n";
 
 /// The document that a line of arguments makes; the line of an error where it makes none.
 fn document(desk: &Desk, line: &str) -> Result<Value, String> {
@@ -105,6 +109,13 @@ fn arguments(desk: &Desk, line: &str, tampered: &Value) -> Option<String> {
     let schema = tampered["schema"].as_str()?;
     if ["kickdrift/advise-system/1", "kickdrift/advise-direct/1"].contains(&schema) {
         return Some(file().collect::<Vec<_>>().join(" "));
+    }
+    if schema == "kickdrift/word-check/1" {
+        let line = |(key, value): (&String, &Value)| format!("{key} = {value}\n");
+        let lines = |word: &Value| word.as_object().into_iter().flatten().map(line).collect::<String>();
+        let words = input["words"].as_array()?.iter().map(|word| format!("[[word]]\n{}", lines(word)));
+        desk.write("asked.toml", &words.collect::<String>());
+        return Some("word --check asked.toml".into());
     }
     let mut words = vec![tampered["kickdrift"]["command"].as_str()?.to_string()];
     words.extend((schema == "kickdrift/survey/1").then(|| "--survey".to_string()));
@@ -334,6 +345,8 @@ fn no_change_to_a_verdict_a_map_or_a_curve_passes() {
         "proposition --max 4",
         "word --method 2mn-velocity --lambda1 1 --h 2",
         "word --list",
+        "word --check claims.toml",
+        "compare --methods pefrl,velocity-verlet --by-cost --h-range 0..2 --h-step 1/4",
     ];
     no_change_passes(&lines, 1000);
 }

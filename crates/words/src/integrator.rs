@@ -30,15 +30,15 @@ pub enum Bounded {
 }
 
 impl Integrator {
-    /// The integrator of a name in the catalogue, or as a word.
+    /// The word of a name in the catalogue, or as it is written.
     ///
     /// # Errors
     /// A text that is neither.
-    pub fn named(text: &str) -> Result<Integrator> {
+    pub fn word(text: &str) -> Result<Word> {
         let text = text.trim();
         match (method(text), text.parse()) {
-            (Ok(method), _) => Ok(Integrator::of(method.word())),
-            (_, Ok(word)) => Ok(Integrator::of(word)),
+            (Ok(method), _) => Ok(method.word()),
+            (_, Ok(word)) => Ok(word),
             (Err(unknown), _) => {
                 let remedy = format!("write a word, or a method: {}", unknown.remedy());
                 Err(Error::input("methods", text, remedy))
@@ -62,7 +62,7 @@ impl Integrator {
         }
     }
 
-    /// The answers at each s = h² Λ1 > 0, with Λ2 = ρ Λ1 > 0.
+    /// The answers at each s = h² Λ1 > 0, with Λ2 = ρ Λ1 > 0; ρ = 0 for a word that names no forces.
     pub fn along(&self, rho: &Rational, all: &[Laurent]) -> Vec<Bounded> {
         let bounded = |stable: bool| if stable { Bounded::Stable } else { Bounded::Unstable };
         match self {

@@ -12,8 +12,8 @@ use crate::report::document::Document;
 use molecules::aperture::energies_seen;
 use molecules::unit::{TimeUnit, decimal};
 use molecules::{
-    Advice, Beads, Bond, DirectFindings, Findings, Levers, MOST_PRODUCTS, Mode, Molecule, Origin, SOLVED,
-    Scheme, Typical, Way, aperture,
+    Adds, Advice, Beads, Bond, DirectFindings, Findings, Levers, MOST_PRODUCTS, Mode, Molecule, Origin,
+    SOLVED, Scheme, Status, Typical, Way, aperture,
 };
 use number::error::{Error, Result};
 use number::parse::parse_rational;
@@ -138,6 +138,22 @@ impl Question for Advised {
 }
 
 impl Safe {
+    /// Whether all steps asked about are proven stable with all periods within the band, below every unstable
+    /// step: none is advised against. `None` where no steps are asked about.
+    pub fn is_proven(&self) -> Option<bool> {
+        fn all<T>(schemes: &[T], is_proven: impl Fn(&T) -> bool) -> Option<bool> {
+            (!schemes.is_empty()).then(|| schemes.iter().all(is_proven))
+        }
+        let proven = |status: Status| matches!(status, Status::Safe | Status::Caution);
+        match self {
+            Safe::Periods(advice) => all(&advice.schemes, |scheme| proven(scheme.status)),
+            Safe::Hessians(pair) => all(&pair.1.schemes, |scheme| proven(scheme.status)),
+            Safe::Direct(pair) => {
+                all(&pair.1.schemes, |scheme| [scheme.adds, scheme.in_band] == [Adds::Little; 2])
+            }
+        }
+    }
+
     pub(super) fn view(&self) -> report::View<'_> {
         match self {
             Safe::Periods(advice) => report::View::Periods(advice),

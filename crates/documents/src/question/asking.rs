@@ -56,6 +56,20 @@ macro_rules! question {
                 ))*
             }
 
+            fn defaults() -> Vec<(&'static str, &'static str)> {
+                let all: [(&str, Option<&str>); Self::FIELDS.len()] =
+                    [$((stringify!($field), None$(.or(Some($default)))?),)*];
+                all.into_iter().filter_map(|(name, default)| Some((name, default?))).collect()
+            }
+
+            fn required() -> Vec<&'static str> {
+                let defaults = Self::defaults();
+                let all: [(&str, bool); Self::FIELDS.len()] =
+                    [$((stringify!($field), <$type as $crate::question::Field>::of(None, stringify!($field)).is_none()),)*];
+                let has_default = |name: &str| defaults.iter().any(|(field, _)| *field == name);
+                all.into_iter().filter(|(name, needed)| *needed && !has_default(name)).map(|(name, _)| name).collect()
+            }
+
             fn read(input: &serde_json::Map<String, serde_json::Value>) -> number::error::Result<Self> {
                 use $crate::question::field;
                 field::known(input, Self::FIELDS, Self::OTHER_NAMES)?;
@@ -97,6 +111,12 @@ pub trait Fields: Sized {
 
     /// The same as keys of `input`, with what they may be.
     fn keys() -> Keys;
+
+    /// The fields that have a value where none is given, and that value.
+    fn defaults() -> Vec<(&'static str, &'static str)>;
+
+    /// The fields that have to be given.
+    fn required() -> Vec<&'static str>;
 
     /// Reads the `input` of a document.
     ///

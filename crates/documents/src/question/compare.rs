@@ -108,6 +108,7 @@ impl Question for Compare {
         "compare --max-sum 9 --rho 1/25",
         "compare --lambda1 10 --lambda2 2/5 --step 1/10 --h1-range 1/10..1/2 --h2-range 1/10..3",
         "compare --methods impulse,molly-short,respa-4 --h-range 0..8 --h-step 1/8 --rho-range 0..1 --rho-step 1/16 --output side.svg",
+        "compare --methods velocity-verlet,forest-ruth,pefrl --by-cost --h-range 0..4 --h-step 1/100",
     ];
     const USAGE: Option<&'static str> = Some(
         "(--lambda1 X --lambda2 Y --step D --h1-range A..B --h2-range A..B | --max-sum N --rho R | --methods LIST)",

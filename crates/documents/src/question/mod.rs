@@ -25,6 +25,7 @@ mod field;
 
 mod aperture;
 mod bands;
+mod claims;
 mod closings;
 mod compare;
 mod curves;
@@ -49,6 +50,7 @@ pub use aperture::Aperture;
 pub(crate) use asking::question;
 pub use asking::{Fields, Question, Watch, Work};
 pub use bands::Bands;
+pub use claims::{Checked, Claimed, Claims, Held, WordCheck};
 pub use closings::{Closings, DIGITS};
 pub use compare::{Compare, Over};
 pub use curves::Curves;
@@ -72,6 +74,7 @@ pub(crate) use word::{Listed, Span};
 use serde_json::{Map as Input, Value};
 
 use crate::report::document::Document;
+use crate::report::shape::{Keys, Schema};
 use number::error::{Error, Result};
 
 /// The document that answers the question of this name, NAME in `kickdrift/NAME/1`, whose fields are those of
@@ -103,12 +106,44 @@ pub fn schemas() -> Vec<(&'static str, Value)> {
     ALL.iter().filter_map(|known| Some((known.name, (known.schema)()?))).collect()
 }
 
+/// The questions by their names, each with the schema of its fields as a person may type them.
+pub fn fields() -> Vec<(&'static str, Value)> {
+    ALL.iter().map(|known| (known.name, (known.fields)())).collect()
+}
+
+fn fields_of<Q: Fields>() -> Value {
+    let mut schema = Schema::new("", Keys::new()).value("", &Q::keys());
+    let (defs, mut input) = (schema["$defs"].take(), schema["properties"]["input"].take());
+    for (name, default) in Q::defaults() {
+        input["properties"][name]["default"] = default.into();
+    }
+    input["required"] = Q::required().into();
+    if !defs.is_null() {
+        input["$defs"] = defs;
+    }
+    without_patterns(&mut input);
+    input
+}
+
+/// Patterns are of exact numbers as documents echo them; 0.98 and 1e-3 are read as well.
+fn without_patterns(schema: &mut Value) {
+    match schema {
+        Value::Object(map) => {
+            map.retain(|key, value| key != "pattern" || !value.is_string());
+            map.values_mut().for_each(without_patterns);
+        }
+        Value::Array(all) => all.iter_mut().for_each(without_patterns),
+        _ => {}
+    }
+}
+
 /// A question that is read from its fields.
 struct Named {
     name: &'static str,
     ask: fn(&Input<String, Value>, &Work) -> Result<Document>,
     draw: fn(&Input<String, Value>, &Work) -> Result<Option<plot::Figure>>,
     schema: fn() -> Option<Value>,
+    fields: fn() -> Value,
 }
 
 impl Named {
@@ -121,6 +156,7 @@ impl Named {
                 question.figure(&question.answer(work)?, work)
             },
             schema: || Some(Q::schema()?.value(Q::NAME, &Q::keys())),
+            fields: fields_of::<Q>,
         }
     }
 }
@@ -140,6 +176,7 @@ const ALL: &[Named] = &[
     Named::of::<Bands>(),
     Named::of::<Word>(),
     Named::of::<Methods>(),
+    Named::of::<WordCheck>(),
     Named::of::<System>(),
     Named::of::<Simulate>(),
     Named::of::<Advise>(),

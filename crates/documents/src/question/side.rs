@@ -46,6 +46,10 @@ question! {
         /// The stiffness of the slow force, that of the fast one if not given; with h2.
         #[arg(skip)]
         lambda2: Option<Laurent>,
+        /// With --methods: steps as they are paid for. A word of n evaluations, gradients, solves and exact flows
+        /// takes n times each step; the table begins with the least unstable share.
+        #[arg(long, requires = "methods")]
+        by_cost: bool,
         /// In place of Λ2/Λ1: the closed range of h2.
         #[arg(skip)]
         h2_range: Option<(Rational, Rational)>,
@@ -60,6 +64,8 @@ question! {
 pub struct Side {
     pub name: String,
     pub integrator: Integrator,
+    /// Its evaluations, gradients, solves and flows in a step.
+    pub evaluations: u64,
     pub rows: Vec<Vec<Bounded>>,
 }
 
@@ -120,24 +126,39 @@ impl CompareMethods {
         Ok(all.iter().map(|n| n * step).collect())
     }
 
-    /// The vertical axis: its range, its spacing, and Λ2/Λ1 where it is h2.
-    fn second(&self) -> Result<(&(Rational, Rational), &Rational, Option<Rational>)> {
+    /// The vertical axis: its range, its spacing, and Λ2/Λ1 where it is h2; none for one force.
+    fn second(&self) -> Result<Option<(&(Rational, Rational), &Rational, Option<Rational>)>> {
         let by_ratio = self.rho_range.as_ref().zip(self.rho_step.as_ref());
         let by_step = self.h2_range.as_ref().zip(self.h2_step.as_ref());
         match (by_ratio, by_step) {
-            (Some((range, step)), None) if self.lambda2.is_none() => Ok((range, step, None)),
+            (None, None) if self.is_of_one_force() => Ok(None),
+            (Some((range, step)), None) if self.lambda2.is_none() => Ok(Some((range, step, None))),
             (None, Some((range, step))) => {
                 let lambda2 = self.lambda2.as_ref().unwrap_or(&self.lambda1);
                 let wrong =
                     || Error::input("lambda2", lambda2, "choose a positive rational multiple of lambda1");
                 let ratio = Laurent::ratio(lambda2, &self.lambda1).ok_or_else(wrong)?;
-                if ratio.sign() == Sign::Positive { Ok((range, step, Some(ratio))) } else { Err(wrong()) }
+                if ratio.sign() == Sign::Positive {
+                    Ok(Some((range, step, Some(ratio))))
+                } else {
+                    Err(wrong())
+                }
             }
-            _ => Err(Error::missing(
-                "rho_range",
-                "give a range and spacing of lambda2/lambda1, or of h2 (lambda2 goes with h2)",
-            )),
+            _ => Err(Self::without_second()),
         }
+    }
+
+    fn without_second() -> Error {
+        let remedy = "give the range and spacing of lambda2/lambda1, or those of h2 (lambda2 goes with h2)";
+        Error::missing("rho_range", remedy)
+    }
+
+    /// Whether nothing is said about a second force.
+    fn is_of_one_force(&self) -> bool {
+        let CompareMethods { rho_range, rho_step, h2_range, h2_step, lambda2, .. } = self;
+        [rho_range, h2_range].iter().all(|range| range.is_none())
+            && [rho_step, h2_step].iter().all(|step| step.is_none())
+            && lambda2.is_none()
     }
 
     /// The steps, and the ratios or the steps of the slow force.
@@ -146,39 +167,56 @@ impl CompareMethods {
     /// A spacing that is not positive, a range without a positive multiple; neither or both of ratios and
     /// slow steps.
     pub fn grid(&self) -> Result<[Vec<Rational>; 2]> {
-        let (range, step, by_step) = self.second()?;
-        Ok([
-            Self::multiples("h", &self.h_range, &self.h_step)?,
-            Self::multiples(if by_step.is_some() { "h2" } else { "rho" }, range, step)?,
-        ])
+        let ups = match self.second()? {
+            Some((range, step, by_step)) => {
+                Self::multiples(if by_step.is_some() { "h2" } else { "rho" }, range, step)?
+            }
+            None => vec![Rational::default()],
+        };
+        Ok([Self::multiples("h", &self.h_range, &self.h_step)?, ups])
     }
 
-    /// Λ2/Λ1 of one step in units of which both forces have the same: ρ itself, or (h2/h1)² Λ2/Λ1.
+    /// Λ2/Λ1 of one step in units of which both forces have the same: ρ itself, or (h2/h1)² Λ2/Λ1; 0 of one
+    /// force.
     ///
     /// # Errors
     /// As [`grid`](Self::grid).
     pub fn ratio(&self) -> Result<impl Fn(&Rational, &Rational) -> Rational + Sync> {
-        let (.., by_step) = self.second()?;
+        let by_step = self.second()?.and_then(|(.., by_step)| by_step);
         Ok(move |h: &Rational, up: &Rational| match &by_step {
             None => up.clone(),
             Some(ratio) => (up / h) * (up / h) * ratio,
         })
     }
 
-    /// h² Λ1 of each step.
-    pub fn squares(&self, steps: &[Rational]) -> Vec<Laurent> {
-        steps.iter().map(|h| &self.lambda1 * &Laurent::from_rational(h * h)).collect()
+    /// h² Λ1 of each step, of a word of so many evaluations.
+    pub fn squares(&self, steps: &[Rational], evaluations: u64) -> Vec<Laurent> {
+        let times = Rational::from_integer(if self.by_cost { evaluations } else { 1 }.into());
+        let square = |h: &Rational| h * h * &times * &times;
+        steps.iter().map(|h| &self.lambda1 * &Laurent::from_rational(square(h))).collect()
+    }
+
+    /// The words, each with its evaluations.
+    fn words(&self) -> Result<Vec<(String, u64, Integrator)>> {
+        let one = |name: String| {
+            let word = Integrator::word(&name)?;
+            if self.is_of_one_force() && word.names_forces() {
+                return Err(Self::without_second());
+            }
+            Ok((name, word.cost().total().max(1), Integrator::of(word)))
+        };
+        self.names().into_iter().map(one).collect()
     }
 }
 
 /// The row of an integrator, so many points of a map, each with so much area.
-fn record(points: u64, cell: Rational) -> Record<'static, Side> {
+fn record(points: u64, cell: Rational, by_cost: bool) -> Record<'static, Side> {
     let area = move |side: &Side, what: Bounded| {
         Cell::exact(&(Rational::from_integer(side.count(what).into()) * &cell))
     };
     let area_too = area.clone();
     let share = move |side: &Side| Cell::Float(side.count(Bounded::Stable) as f64 / points as f64);
-    Record::new()
+    let record = Record::new()
         .field(Column::new("method").left(), |side: &Side| side.name.as_str().into())
         .says(TEXT, "A name or a word, as it was asked for.")
         .field(Column::new("stable"), |side| side.count(Bounded::Stable).into())
@@ -196,7 +234,17 @@ fn record(points: u64, cell: Rational) -> Record<'static, Side> {
         .field(Column::new("unstable_area").in_words("unstable area"), move |side| {
             area_too(side, Bounded::Unstable)
         })
-        .says(EXACT, "unstable times h_step times rho_step.")
+        .says(EXACT, "unstable times h_step times rho_step.");
+    if !by_cost {
+        return record;
+    }
+    record
+        .field(Column::new("evaluations"), |side| side.evaluations.into())
+        .says(POSITIVE, "With by_cost: evaluations, gradients, solves and exact flows in a step; its steps are so many times those of the grid.")
+        .field(Column::new("unstable_share").in_words("unstable share"), move |side| {
+            Cell::Float(side.count(Bounded::Unstable) as f64 / points as f64)
+        })
+        .says(ROUNDED, "With by_cost: unstable over points; the nearest double.")
 }
 
 impl Question for CompareMethods {
@@ -204,11 +252,14 @@ impl Question for CompareMethods {
     type Answer = Vec<Side>;
 
     fn schema() -> Option<Schema> {
-        let methods = Shape::List(&Shape::Object(|| record(0, Rational::default()).keys()));
+        let methods = Shape::List(&Shape::Object(|| {
+            let keys = |by_cost| record(0, Rational::default(), by_cost).keys();
+            keys(true).or_only(&keys(false))
+        }));
         let body = Keys::new().key("points", POSITIVE, "Points of each map.").key(
             "methods",
             methods,
-            "The integrators, in the order in which they were asked for.",
+            "The integrators, in the order in which they were asked for; with by_cost the least unstable share first.",
         );
         Some(Schema::new("Integrators side by side over the same steps and ratios of stiffness", body))
     }
@@ -221,19 +272,19 @@ impl Question for CompareMethods {
         if names.len() > MOST_METHODS {
             return Err(Error::input("methods", names.len(), format!("choose {MOST_METHODS} at most")));
         }
-        let methods = names.iter().map(|name| Integrator::named(name)).collect::<Result<Vec<_>>>()?;
+        let methods = self.words()?;
         let [steps, ups] = self.grid()?;
-        let (ratio, by_ratio) = (self.ratio()?, self.rho_range.is_some());
-        let degree: u64 = methods.iter().map(Integrator::degree).fold(0, u64::saturating_add);
+        let (ratio, by_ratio) = (self.ratio()?, self.h2_range.is_none());
+        let degree: u64 = methods.iter().map(|(.., own)| own.degree()).fold(0, u64::saturating_add);
         let cost = degree.saturating_mul(steps.len() as u64).saturating_mul(ups.len() as u64);
         let most = work.budget.unwrap_or(MOST);
         if cost > most {
             let what = format!("these maps cost {cost} powers of a force, the budget is {most}");
             return Err(Error::budget(what, cost).or("choose larger spacings"));
         }
-        let squares = self.squares(&steps);
         let bar = work.count((methods.len() * ups.len()) as u64, "rows");
-        let side = |(name, integrator): (&String, Integrator)| {
+        let side = |(name, evaluations, integrator): (String, u64, Integrator)| {
+            let squares = self.squares(&steps, evaluations);
             let row = |up: &Rational| {
                 let boundeds = if by_ratio {
                     integrator.along(up, &squares)
@@ -247,33 +298,58 @@ impl Question for CompareMethods {
                 Ok(boundeds)
             };
             let rows = try_map(&ups, row)?;
-            Ok(Side { name: name.clone(), integrator, rows })
+            Ok(Side { name, integrator, evaluations, rows })
         };
-        names.iter().zip(methods).map(side).collect()
+        let mut sides = methods.into_iter().map(side).collect::<Result<Vec<Side>>>()?;
+        if self.by_cost {
+            sides.sort_by_key(|side| side.count(Bounded::Unstable));
+        }
+        Ok(sides)
     }
 
     fn show(&self, sides: &Vec<Side>) -> Document {
-        let cell = self.second().map_or_else(|_| Rational::default(), |(_, step, _)| &self.h_step * step);
+        let by = |second: Option<(_, &Rational, _)>| {
+            second.map_or_else(|| self.h_step.clone(), |(_, step, _)| &self.h_step * step)
+        };
+        let cell = self.second().map_or_else(|_| Rational::default(), by);
         let points = sides.first().map_or(0, |side| side.rows.iter().map(Vec::len).sum::<usize>() as u64);
-        let table =
-            record(points, cell).table("methods", "Integrators side by side, over the same steps", sides);
-        let plane = if self.rho_range.is_some() { "(h, lambda2/lambda1)" } else { "(h1, h2)" };
-        let line = format!("{points} points {plane} for each of {} integrators", sides.len());
-        let shown =
-            ["method", "stable", "unstable", "edge", "stable_area", "unstable_area"].map(String::from);
-        let people = table.choose(&shown).expect("columns of the table");
+        let table = record(points, cell, self.by_cost).table(
+            "methods",
+            "Integrators side by side, over the same steps",
+            sides,
+        );
+        let plane = match (&self.rho_range, &self.h2_range) {
+            (Some(_), _) => "(h, lambda2/lambda1)",
+            (_, Some(_)) => "(h1, h2)",
+            _ => "h",
+        };
+        let paid = if self.by_cost { "; a word of n evaluations takes n times each step" } else { "" };
+        let line = format!("{points} points {plane} for each of {} integrators{paid}", sides.len());
+        let shown: &[&str] = if self.by_cost {
+            &["method", "evaluations", "unstable_share", "stable", "unstable", "edge"]
+        } else {
+            &["method", "stable", "unstable", "edge", "stable_area", "unstable_area"]
+        };
+        let people = table
+            .choose(&shown.iter().map(ToString::to_string).collect::<Vec<_>>())
+            .expect("columns of the table");
         Document::new(Self::NAME).entry("points", points).rows(table).for_people(people).summary(&[line])
     }
 
     fn figure(&self, sides: &Vec<Side>, _: &Work) -> Result<Option<Figure>> {
         let [steps, ratios] = self.grid()?.map(|all| all.iter().map(to_f64).collect::<Vec<_>>());
-        let (_, second, by_step) = self.second()?;
+        let Some((_, second, by_step)) = self.second()? else {
+            let remedy = "words of one force have no plane of steps to draw: give the range and spacing of lambda2/lambda1";
+            return Err(Error::missing("rho_range", remedy));
+        };
         let (across, up, by_step) = (to_f64(&self.h_step), to_f64(second), by_step.is_some());
         let ends = |all: &[f64], step: f64| (all[0] - step / 2.0, all[all.len() - 1] + step / 2.0);
         let ((left, right), (low, high)) = (ends(&steps, across), ends(&ratios, up));
         let columns = if (5..=6).contains(&sides.len()) { 3 } else { sides.len().min(4) };
         let panel = |side: &Side| {
-            let x = Axis::linear(if by_step { "*h*_1" } else { "*h*" }, left, right).of_time();
+            let x = if by_step { "*h*_1" } else { "*h*" };
+            let x = if self.by_cost { format!("{x} per evaluation") } else { x.into() };
+            let x = Axis::linear(&x, left, right).of_time();
             let y = if by_step {
                 Axis::linear("*h*_2", low, high).of_time()
             } else {

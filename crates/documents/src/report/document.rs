@@ -285,7 +285,7 @@ pub(super) fn command(name: &'static str) -> &'static str {
         "system-verdict" | "system-map" | "system-intervals" => "system",
         "advise-system" | "advise-direct" => "advise",
         "survey" => "tongues",
-        "methods" => "word",
+        "methods" | "word-check" => "word",
         "compare-methods" => "compare",
         name => name,
     }

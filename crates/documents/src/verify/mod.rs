@@ -19,7 +19,7 @@
 //! | system-intervals | cells of signs, counts and discs | half periods at steps in the stretches, and the order of Krein's signs between; large schemes run |
 //! | bands | a common cone of return maps, in doubles with bounds | pairs in the boxes, worst placed, by the ladder |
 //! | compare-methods | polynomials in s, balls over y = h w/2 | the trace at each point letter by letter in doubles; those of trigonometric integrators by their formula |
-//! | word, methods | polynomials in s, Sturm chains | letter by letter, in numbers of the field, at a step of each interval; halved steps |
+//! | word, methods, word-check | polynomials in s, Sturm chains | letter by letter, in numbers of the field, at a step of each interval; halved steps |
 //! | half | the half period, kick by kick | its determinant; the trace of the full period |
 //! | run | the names of the products | none |
 //! | proposition | Bézout's identity | eqs. (9) and (10) in integers |
@@ -74,7 +74,7 @@ use crate::input::json;
 use crate::input::kind::{is_asked, of_another_kind};
 use crate::question::{
     Advised, Aperture, Bands, Closings, Compare, CompareMethods, Curves, Half, Methods, Polynomial,
-    Proposition, Simulate, Survey, System, Tongues, Verdict, Word,
+    Proposition, Simulate, Survey, System, Tongues, Verdict, Word, WordCheck,
 };
 use number::error::{Error, Result};
 
@@ -97,6 +97,7 @@ const KINDS: &[Kind] = &[
     Kind::of::<Bands>("bands", "sectors"),
     Kind::of::<Word>("word", "intervals"),
     Kind::of::<Methods>("methods", "methods"),
+    Kind::of::<WordCheck>("word-check", "checks"),
     Kind::of::<Advised>("advise", "rows"),
     Kind::of::<Advised>("advise-system", "rows"),
     Kind::of::<Advised>("advise-direct", "rows"),

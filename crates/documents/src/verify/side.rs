@@ -16,11 +16,14 @@ const NEAR: f64 = 1e-7;
 impl Verify for CompareMethods {
     fn check(&self, sides: &Vec<Side>, context: &Context) -> Result<Outcome> {
         let ([steps, ups], ratio) = (self.grid()?, self.ratio()?);
-        let squares = self.squares(&steps);
         // (h² Λ1, Λ2/Λ1), row by row.
-        let row = |up| steps.iter().zip(&squares).map(|(h, s)| (s.to_f64(), to_f64(&ratio(h, up)))).collect();
-        let rows: Vec<Vec<(f64, f64)>> = ups.iter().map(row).collect();
-        context.outcome(ROUTE, Ok(()), sides, |side| is_so_at(side, &rows))
+        let rows = |side: &Side| -> Vec<Vec<(f64, f64)>> {
+            let squares = self.squares(&steps, side.evaluations);
+            let row =
+                |up| steps.iter().zip(&squares).map(|(h, s)| (s.to_f64(), to_f64(&ratio(h, up)))).collect();
+            ups.iter().map(row).collect()
+        };
+        context.outcome(ROUTE, Ok(()), sides, |side| is_so_at(side, &rows(side)))
     }
 }
 

@@ -3,10 +3,10 @@
 use nalgebra::Matrix2;
 use num_traits::{One, Zero};
 
-use super::context::{Checked, Context, Outcome, holds, same};
+use super::context::{Checked, Context, Failure, Outcome, holds, same};
 use super::kind::Verify;
 use super::side::step;
-use crate::question::{Linted, Listed, Methods, Span, Word};
+use crate::question::{Held, Linted, Listed, Methods, Span, Word, WordCheck};
 use number::error::Result;
 use number::{ExactSign, Radical, Rational, Real, Ring, Sign, rational};
 use words::anharmonic::order_shown;
@@ -192,4 +192,18 @@ fn has_edges(Listed { method: listed, linted, two }: &Listed) -> Checked {
         holds(inside(word, &(&x * &x), &Rational::zero()) == sign, || "its edge is another one".into())?;
     }
     Ok(())
+}
+
+impl Verify for WordCheck {
+    /// Each word as `word` has it, by its own other route.
+    fn check(&self, answer: &Vec<Held>, context: &Context) -> Result<Outcome> {
+        let mut whole = Outcome::holding(ROUTE, answer.iter().map(|held| held.checks.len() as u64).sum());
+        for (claimed, held) in self.words.iter().zip(answer) {
+            let Outcome { failures, .. } = claimed.word.check(&held.linted, context)?;
+            let about_words =
+                failures.into_iter().map(|failure| Failure { row: 0, place: held.name.clone(), ..failure });
+            whole.failures.extend(about_words);
+        }
+        Ok(whole)
+    }
 }

@@ -9,6 +9,7 @@ mod shown;
 pub use asked::Word;
 pub use catalogue::{Listed, Methods};
 pub use linted::{Linted, Span};
+pub(super) use orders::{commutators, shown};
 
 use super::asking::{Question, Work};
 use crate::report::document::Document;
@@ -30,12 +31,13 @@ const LETTERS: u64 = 1000;
 impl Question for Word {
     const NAME: &'static str = "word";
     const USAGE: Option<&'static str> =
-        Some("(WORD | --method <NAME> | --list) [--lambda1 <X>] [--lambda2 <Y>] [--h <H>]");
+        Some("(WORD | --method <NAME> | --list | --check <FILE>) [--lambda1 <X>] [--lambda2 <Y>] [--h <H>]");
     const EXAMPLES: &'static [&'static str] = &[
         "word \"K(1/6) D(1/2) K(2/3, -1/36) D(1/2) K(1/6)\"",
         "word --method pefrl",
         "word --method respa-4 --lambda1 pi^2 --lambda2 pi^2/25 --h 1 --h-range 0..3",
         "word --list",
+        "word --check data/words/claims.toml",
     ];
     type Answer = Linted;
 
