@@ -107,10 +107,8 @@ const FIRST_STEPS: usize = 5;
 /// to take, its limit, the levers, and what is not known.
 pub(super) fn first(lines: &[String], steps: usize) -> Vec<String> {
     let (asked, others) = lines.split_at(steps);
-    let is_first = |line: &&String| {
-        let label = line.strip_prefix("  ").map(|labelled| labelled.split(' ').next().unwrap_or_default());
-        label.is_none_or(|label| !DETAILS.contains(&label))
-    };
+    let label = |line: &str| line.strip_prefix("  ").map(|labelled| labelled.split(' ').next().unwrap_or(""));
+    let is_first = |line: &&String| label(line).is_none_or(|label| !DETAILS.contains(&label));
     let mut first: Vec<String> = asked.iter().take(FIRST_STEPS).cloned().collect();
     let left = steps.saturating_sub(FIRST_STEPS);
     first.extend((left > 0).then(|| format!("        and {}", counted(left, "step more", "steps more"))));
