@@ -6,7 +6,7 @@ const WATER: &str = "advise --period OH=10fs --period slow=40fs --steps 0.5fs,4f
 
 #[test]
 fn the_first_lines_can_be_acted_on() {
-    let text = stdout(&words(WATER, &["--details"]));
+    let text = stdout(&words(WATER, &[]));
     let lines: Vec<&str> = text.lines().take(3).collect();
     assert_eq!(
         lines,
@@ -26,20 +26,6 @@ fn the_first_lines_can_be_acted_on() {
         "Ma, Izaguirre, Skeel 2003",
     ] {
         assert!(text.contains(word), "{word}: {text}");
-    }
-}
-
-/// An answer first: a screen of lines, which the details begin with, in their order.
-#[test]
-fn a_short_answer_has_a_dozen_lines_and_the_details_have_them_too() {
-    let molecule = concat!("advise ", env!("CARGO_MANIFEST_DIR"), "/data/scenes/water4-levels.json");
-    for line in [WATER, "advise --period OH=10fs --steps 1fs", molecule] {
-        let (short, full) = (stdout(&words(line, &[])), stdout(&words(line, &["--details"])));
-        let (more, answer) = short.trim_end().rsplit_once('\n').map(|(answer, more)| (more, answer)).unwrap();
-        assert!(more.starts_with("  more       --details") && answer.lines().count() < 12, "{short}");
-        let mut rest = full.lines();
-        assert!(answer.lines().all(|line| rest.any(|other| other == line)), "{short}\n{full}");
-        assert!(full.lines().count() > 2 * short.lines().count(), "{full}");
     }
 }
 

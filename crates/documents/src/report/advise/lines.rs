@@ -96,9 +96,8 @@ pub(super) fn limit(
     }
 }
 
-/// The labels of lines that a short answer leaves out; lines that go on with one have none.
-const DETAILS: [&str; 10] =
-    ["proven", "published", "measured", "levers", "", "left", "level", "used", "read", "sums"];
+/// The labels of lines that a short answer has, beside those without a label.
+const FIRST_LABELS: [&str; 6] = ["write", "note", "bias", "unknown", "beads", "fast"];
 
 /// So many steps have a line each in a short answer.
 const FIRST_STEPS: usize = 5;
@@ -107,8 +106,10 @@ const FIRST_STEPS: usize = 5;
 /// to take, its limit, the levers, and what is not known.
 pub(super) fn first(lines: &[String], steps: usize) -> Vec<String> {
     let (asked, others) = lines.split_at(steps);
-    let label = |line: &str| line.strip_prefix("  ").map(|labelled| labelled.split(' ').next().unwrap_or(""));
-    let is_first = |line: &&String| label(line).is_none_or(|label| !DETAILS.contains(&label));
+    let is_first = |line: &&String| match line.strip_prefix("  ") {
+        Some(labelled) => FIRST_LABELS.iter().any(|label| labelled.split(' ').next() == Some(label)),
+        None => true,
+    };
     let mut first: Vec<String> = asked.iter().take(FIRST_STEPS).cloned().collect();
     let left = steps.saturating_sub(FIRST_STEPS);
     first.extend((left > 0).then(|| format!("        and {}", counted(left, "step more", "steps more"))));
