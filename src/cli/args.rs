@@ -11,7 +11,6 @@ use documents::report::document::{Document, Layout};
 use documents::report::file::write_output;
 use documents::report::latex::Float;
 use documents::report::map::needed;
-use documents::report::text::Page;
 use number::Laurent;
 use number::error::{Error, Result, visible};
 
@@ -39,34 +38,10 @@ pub struct Common {
     /// of steps [default: 100000000].
     #[arg(long, global = true, value_name = "KICKS", value_parser = flag::<u64>)]
     pub budget: Option<u64>,
-    /// Text in full: the reasons and tables that a short answer leaves out.
-    #[arg(long, global = true)]
-    pub details: bool,
-    /// Verdicts in colour: on a terminal without NO_COLOR, always, or never.
-    #[arg(long, global = true, value_name = "WHEN", value_enum, default_value_t)]
-    pub color: Colour,
     /// The command as figures carry it.
     #[arg(skip)]
     pub command: String,
 }
-
-/// When verdicts have colours.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
-pub enum Colour {
-    #[default]
-    Auto,
-    Always,
-    Never,
-}
-
-/// The characters of a line of the terminal that is written to.
-pub fn terminal_width() -> Option<usize> {
-    let (_, columns) = console::Term::stdout().size_checked().filter(|_| std::io::stdout().is_terminal())?;
-    Some(usize::from(columns).max(NARROWEST_TERMINAL))
-}
-
-/// Words of a narrower terminal would stand alone in their lines, characters.
-const NARROWEST_TERMINAL: usize = 40;
 
 /// That none of these flags is given, which are of no use here.
 pub fn unused(given: &[(&str, bool)], remedy: &str) -> Result<()> {
@@ -84,8 +59,7 @@ impl Common {
     /// Writes a document where and how the flags say, in `default` format if they do not.
     pub fn write(&self, document: &Document, default: Format) -> Result<()> {
         let format = self.format(&Format::DOCUMENT, default)?;
-        let document = document.clone().floated(self.float).on(self.page());
-        let text = document.render_with(format, TO_SEE_ROWS)?;
+        let text = document.clone().floated(self.float).render_with(format, TO_SEE_ROWS)?;
         write_output(self.output.as_deref(), text.as_bytes())?;
         self.wrote_output();
         Ok(())
@@ -115,30 +89,7 @@ impl Common {
         if self.output.is_none() || self.quiet {
             return Ok(());
         }
-        write_output(None, document.clone().on(self.page_of_terminal()).render(Format::Text)?.as_bytes())
-    }
-
-    /// How a text of the output is read.
-    pub fn page(&self) -> Page {
-        let page = self.page_of_terminal();
-        if self.output.is_some() { page.of_a_file() } else { page }
-    }
-
-    /// How a text on standard output is read.
-    pub fn page_of_terminal(&self) -> Page {
-        let width = terminal_width();
-        let is_set = |name: &str| std::env::var_os(name).is_some_and(|value| !value.is_empty());
-        let colour = match self.color {
-            Colour::Always => true,
-            Colour::Never => false,
-            Colour::Auto => width.is_some() && !is_set("NO_COLOR"),
-        };
-        Page {
-            details: self.details,
-            width,
-            colour,
-            more: Some("--details shows all reasons and the tables"),
-        }
+        write_output(None, document.render(Format::Text)?.as_bytes())
     }
 
     /// Says on standard error that the file of `--output` is written, where there is one.

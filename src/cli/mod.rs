@@ -33,7 +33,7 @@ use std::process::ExitCode;
 use clap::error::ErrorKind;
 use clap::{Command as Program, CommandFactory, FromArgMatches, Parser, Subcommand};
 
-use args::{Common, terminal_width};
+use args::Common;
 use asked::{Asked, Default, Drawn};
 use documents::format::Format;
 use documents::question::{Aperture, Bands, Closings, Curves, Half, Polynomial, Proposition, Question};
@@ -137,12 +137,8 @@ fn whole() -> Program {
     help::explained(Cli::command())
 }
 
-/// Characters a line of help; longer ones are hard to read.
-const WIDEST_HELP: usize = 100;
-
 fn parsed(arguments: impl IntoIterator<Item = OsString>) -> clap::error::Result<Cli> {
-    let mut program =
-        whole().term_width(terminal_width().map_or(WIDEST_HELP, |width| width.min(WIDEST_HELP)));
+    let mut program = whole();
     let matches = program.try_get_matches_from_mut(arguments)?;
     let mut cli = Cli::from_arg_matches(&matches)?;
     cli.common.command = command::text(&program, &matches);

@@ -9,7 +9,6 @@ use documents::format::Format;
 use documents::question::{Form, LONGEST_SCENE, Scene, Want};
 use documents::report::file::{Folder, write_output};
 use documents::report::map::MapArrays;
-use documents::report::text::Page;
 use number::error::{Error, Result};
 use number::file;
 
@@ -35,7 +34,7 @@ impl Args {
         let mut products = scene.products(Some(folder.path()), &common.work())?;
         // All products before the first file: an error leaves nothing behind.
         let written = |&Want { product, format }: &Want| {
-            let form = Form { format, float: common.float, to_see: TO_SEE_ROWS, page: Page::default() };
+            let form = Form { format, float: common.float, to_see: TO_SEE_ROWS };
             let draw = |figure| self.paper.bytes(figure, format, &common.command);
             // Arrays are on the disk already.
             let held = (format != Format::Npz).then(|| products.of(product).written(form, draw));
@@ -51,7 +50,7 @@ impl Args {
         let document = scene.summary(folder.path(), &products);
         folder.keep();
         let format = common.format.unwrap_or(Format::Text);
-        write_output(None, document.on(common.page_of_terminal()).render(format)?.as_bytes())
+        write_output(None, document.render(format)?.as_bytes())
     }
 
     /// The text of the scene file; no more of it than a scene may have.

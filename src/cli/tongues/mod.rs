@@ -85,7 +85,7 @@ impl Args {
         if format == Format::Latex {
             question.columns.get_or_insert_with(Columns::edges);
         }
-        let form = Form { format, float: common.float, to_see: TO_SEE_ROWS, page: common.page() };
+        let form = Form { format, float: common.float, to_see: TO_SEE_ROWS };
         write_with(common.output.as_deref(), |sink| question.write(&common.work(), form, sink).map(drop))?;
         common.wrote_output();
         Ok(())

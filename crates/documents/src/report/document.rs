@@ -9,7 +9,6 @@ use serde_json::{Map, Value, json};
 use super::decimal::in_digits;
 use super::latex::{self, Equation, Float};
 use super::table::Table;
-use super::text::Page;
 use super::{csv, text};
 use crate::format::Format;
 use number::error::{Error, Result, visible};
@@ -33,10 +32,7 @@ pub struct Document {
     /// The environment of tables in LaTeX, where one is asked for.
     float: Option<Float>,
     summary: String,
-    /// In its place, with no table, where the text is not asked for in full.
-    short: Option<String>,
     summary_only: bool,
-    page: Page,
 }
 
 /// The columns and digits that a person asks for.
@@ -65,9 +61,7 @@ impl Document {
             digits: None,
             float: None,
             summary: String::new(),
-            short: None,
             summary_only: false,
-            page: Page::default(),
         }
     }
 
@@ -178,19 +172,6 @@ impl Document {
         self.summary(lines)
     }
 
-    /// The lines of the summary that answer; the text form leaves out the others and the tables, unless
-    /// details are asked for.
-    #[must_use]
-    pub fn answer_first(self, lines: &[String]) -> Self {
-        Document { short: Some(lines.join("\n")), ..self }
-    }
-
-    /// Its text form for a page.
-    #[must_use]
-    pub fn on(self, page: Page) -> Self {
-        Document { page, ..self }
-    }
-
     /// The summary alone.
     pub fn summary_text(&self) -> &str {
         &self.summary
@@ -253,29 +234,22 @@ impl Document {
     }
 
     fn text(&self, to_see: &str) -> String {
-        let Page { details, width, colour, more } = self.page;
-        let short = self.short.as_ref().filter(|_| !details);
-        let summary = short.unwrap_or(&self.summary);
-        let summary = visible(&self.digits.map_or_else(|| summary.clone(), |n| in_digits(summary, n)));
-        let line = |line: &str| {
-            let line = text::wrapped(line, width);
-            if colour { text::coloured(&line) } else { line }
-        };
-        let mut out = summary.lines().map(line).collect::<Vec<_>>().join("\n");
+        let mut out = self.digits.map_or_else(|| self.summary.clone(), |n| in_digits(&self.summary, n));
         out.push('\n');
-        out.extend(short.and(more).map(|more| format!("  more       {more}\n")));
         let first = self.for_people.as_ref().or(self.table.as_ref());
-        let is_shown = short.is_none() && !self.summary_only;
-        for table in first.into_iter().chain(&self.more).filter(|_| is_shown) {
+        for table in first.into_iter().chain(&self.more).filter(|_| !self.summary_only) {
             let rows = table.rows().len();
             if rows > ROWS_FOR_PEOPLE {
                 out += &format!("\n{rows} rows: {to_see}\n");
             } else if rows > 0 {
-                let table = self.digits.map_or_else(|| table.clone(), |n| table.shortened(n));
-                out += &format!("\n{}\n", visible(text::document(&table, width).trim_end()));
+                out += &format!(
+                    "\n{}\n",
+                    text::document(&self.digits.map_or_else(|| table.clone(), |n| table.shortened(n)))
+                        .trim_end()
+                );
             }
         }
-        out
+        visible(&out)
     }
 }
 

@@ -269,12 +269,7 @@ mod tests {
         // Without a folder there is no file for them.
         assert!(products.arrays.is_none());
         for want in &scene.want[1..5] {
-            let form = Form {
-                format: want.format,
-                float: None,
-                to_see: "",
-                page: crate::report::text::Page::default(),
-            };
+            let form = Form { format: want.format, float: None, to_see: "" };
             let written = products.of(want.product).written(form, |_| unreachable!()).unwrap();
             let mut alone = Vec::new();
             match want.product {

@@ -10,7 +10,6 @@ use crate::report::document::Document;
 use crate::report::latex::Float;
 use crate::report::stream::JsonRows;
 use crate::report::table::Choice;
-use crate::report::text::Page;
 use crate::report::tongues::{TongueTally, record};
 use clocks::tongue::{Listing, Tongue};
 use number::error::{Error, Result};
@@ -24,7 +23,6 @@ pub struct Form {
     pub float: Option<Float>,
     /// How rows that are left out of a text are to be seen.
     pub to_see: &'static str,
-    pub page: Page,
 }
 
 /// Rows that a LaTeX table holds at most; text shows them up to a number that fits a terminal.
@@ -128,7 +126,7 @@ impl Tongues {
 
     /// A summary, and the rows where a terminal or a table holds them.
     fn write_for_people(&self, found: &FoundTongues, form: Form, sink: &mut dyn Write) -> Result<()> {
-        let Form { format, float, to_see, page } = form;
+        let Form { format, float, to_see } = form;
         let count = found.tally.count;
         let too_many = count > most_rows(format);
         if too_many && format == Format::Latex {
@@ -136,8 +134,7 @@ impl Tongues {
             return Err(Error::too_much(cost, "write csv or json"));
         }
         let rows = if too_many { &[] } else { &found.tongues[..] };
-        let document =
-            self.tables(found, rows, &found.request).inputs(found.asked.input()).floated(float).on(page);
+        let document = self.tables(found, rows, &found.request).inputs(found.asked.input()).floated(float);
         let mut text = document.render(format)?;
         if too_many {
             text += &format!("\n{count} rows: {to_see}\n");

@@ -47,12 +47,10 @@ pub(super) fn document(findings: &DirectFindings, reading: Option<&Reading>, not
         "within_run" => findings.length.is_some(),
         _ => true,
     };
-    let lines = summary(findings, reading, notes);
     document
         .long_rows(for_people(&rows, shown))
         .and_rows(for_people(&ladder, shown))
-        .answer_first(&lines::first(&lines, findings.schemes.len()))
-        .summary(&lines)
+        .summary(&summary(findings, reading, notes))
 }
 
 const FASTEST: &str = "the fastest motion of the innermost forces";
@@ -74,8 +72,8 @@ fn rate(rate: Option<(f64, f64)>) -> String {
 
 fn summary(findings: &DirectFindings, reading: Option<&Reading>, notes: &[String]) -> Vec<String> {
     let best = &findings.schemes[0];
-    let mut lines: Vec<String> = findings.schemes.iter().map(|scheme| line(findings, scheme)).collect();
-    lines.push(choice(findings, best));
+    let mut lines = vec![choice(findings, best)];
+    lines.extend(findings.schemes.iter().map(|scheme| line(findings, scheme)));
     if let Some(reading) = reading {
         lines.extend(read_from(advised(&best.scheme, &best.safe), reading));
         lines.extend(lines::grompp(reading, FASTEST, |n| {

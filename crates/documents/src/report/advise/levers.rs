@@ -102,32 +102,28 @@ pub(super) fn add(document: Document, levers: Option<&Levers>, unit: TimeUnit) -
     if levers.rows.is_empty() { document } else { document.and_rows(shown(levers, &table, unit)) }
 }
 
-/// Gains as near to each other are one for people.
-const AS_NEAR: f64 = 0.98;
-
-/// The three gains of the outer step that are largest, longer than kicks and drifts as they are; levers that
-/// gain about the same stand together.
-pub(super) fn longer(levers: Option<&Levers>, unit: TimeUnit) -> String {
+/// The three levers that let the outer step grow most, longer than kicks and drifts as they are.
+pub(super) fn longer(levers: Option<&Levers>) -> String {
     let Some(levers) = levers else { return "longer: what would let the step grow was not looked at".into() };
-    let mut best: Vec<(&Lever, &Rational, f64)> = levers.rows.iter().filter_map(gained).collect();
-    best.retain(|(lever, _, gain)| *gain > 1.0 && !matches!(lever.way, Way::Respa | Way::Friction));
-    best.sort_by(|a, b| b.2.total_cmp(&a.2));
-    let groups = best.chunk_by(|a, b| b.2 >= AS_NEAR * a.2).take(3).map(|group| {
-        let names: Vec<&str> = group.iter().map(|(lever, ..)| lever.name.as_str()).collect();
-        let (_, step, gain) = group[0];
-        format!("{} by {} ({} times)", unit.of(decimal(step)), names.join(" or "), nearest((gain, gain), 3))
-    });
-    let groups: Vec<String> = groups.collect();
-    if groups.is_empty() {
+    let one = Rational::from_integer(1.into());
+    let mut best: Vec<(&Lever, &Rational, &Rational)> = levers.rows.iter().filter_map(gained).collect();
+    best.retain(|(lever, _, gain)| **gain > one && !matches!(lever.way, Way::Respa | Way::Friction));
+    best.sort_by(|a, b| b.2.cmp(a.2));
+    let shown = |(lever, step, gain): &(&Lever, &Rational, &Rational)| {
+        let gain = to_f64(gain);
+        format!("{} fs by {} ({} times)", decimal(step), lever.name, nearest((gain, gain), 3))
+    };
+    let shown: Vec<String> = best.iter().take(3).map(shown).collect();
+    if shown.is_empty() {
         "longer: nothing known would let the step grow".into()
     } else {
-        format!("longer: {}", groups.join("; "))
+        format!("longer: {}", shown.join(", "))
     }
 }
 
-fn gained(lever: &Lever) -> Option<(&Lever, &Rational, f64)> {
+fn gained(lever: &Lever) -> Option<(&Lever, &Rational, &Rational)> {
     let (step, _) = lever.step.as_ref()?;
-    Some((lever, step, to_f64(lever.gain.as_ref()?)))
+    Some((lever, step, lever.gain.as_ref()?))
 }
 
 /// The lines beside the table.

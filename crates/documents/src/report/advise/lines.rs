@@ -3,13 +3,12 @@
 use super::words::{Choice, cap, down, length, named, nearest, percent, within};
 use crate::report::decimal::few;
 use crate::report::friction;
-use crate::report::text::counted;
 use molecules::aperture::{Cold, Edge};
 use molecules::engine::{Engine, Reading, nested_beside, not_nested};
 use molecules::unit::{TimeUnit, decimal};
 use molecules::{
-    Advice, Answer, Beads, Bound, Caps, FAST, GROMPP, Mode, Origin, PRACTICE, Pair, Place, Row, SEEN, SLOW,
-    Scheme, Status, Typical, Unstable, shortest_of,
+    Advice, Answer, Beads, Bound, FAST, GROMPP, Mode, Origin, PRACTICE, Pair, Place, Row, SEEN, SLOW, Scheme,
+    Status, Typical, Unstable, shortest_of,
 };
 use number::Rational;
 use number::rational::to_f64;
@@ -41,7 +40,6 @@ pub(super) fn of(advice: &Advice, reading: Option<&Reading>) -> Vec<String> {
     let mut lines: Vec<String> = advice.schemes.iter().map(|answer| line(advice, answer)).collect();
     lines.extend(advice.schemes.iter().filter_map(|answer| ratios(answer, advice.unit)));
     lines.push(action(advice, &advice.schemes[0]));
-    lines.extend(bounds(advice));
     if let Some(reading) = reading {
         let fastest = &advice.modes[advice.fastest];
         lines.extend(read_from(of_answer(&advice.schemes[0]), reading));
@@ -51,70 +49,6 @@ pub(super) fn of(advice: &Advice, reading: Option<&Reading>) -> Vec<String> {
     lines.extend(reasons(advice));
     lines.extend(advice.levers.iter().flat_map(|lever| super::levers::lines(lever, advice.unit)));
     lines
-}
-
-/// The limit of the step and the levers, where the fastest motion is known and all have periods.
-fn bounds(advice: &Advice) -> Vec<String> {
-    if advice.lacks_fast || advice.silent || advice.beads.is_some() {
-        return Vec::new();
-    }
-    let (fastest, answer) = (&advice.modes[advice.fastest], &advice.schemes[0]);
-    let firsts = answer.rows.iter().filter_map(|row| row.first.as_ref()).map(|first| first.lower);
-    let first = firsts.min_by(|a, b| a.0.total_cmp(&b.0));
-    let name = named(fastest, advice.unit);
-    let limit = limit(&answer.scheme, &name, fastest.period(), &advice.caps, first, advice.unit);
-    let longer = advice.levers.as_ref().map(|levers| super::levers::longer(Some(levers), advice.unit));
-    [limit].into_iter().chain(longer).collect()
-}
-
-/// The bound of the outer step: of the fastest motion its name and period, and where the first unstable outer
-/// step is.
-pub(super) fn limit(
-    scheme: &Scheme,
-    name: &str,
-    (lo, hi): (f64, f64),
-    caps: &Caps,
-    first: Option<(f64, f64)>,
-    unit: TimeUnit,
-) -> String {
-    let step = if scheme.steps().len() == 1 { "step" } else { "outer step" };
-    let first = first.map_or_else(String::new, |first| {
-        format!("; the first unstable {step} is {} (proven)", unit.of(nearest(first, 4)))
-    });
-    match caps.outer().map(|(value, bound)| (cap(value, unit), bound)) {
-        Some((_, Bound::Third)) => {
-            let third = unit.of(nearest((lo / 3.0, hi / 3.0), 3));
-            format!("limit: {name}: outer steps near T/3 = {third} drift (published){first}")
-        }
-        Some((value, Bound::Aperture)) => {
-            format!("limit: {name}: beyond {value} hot bonds are lost (measured){first}")
-        }
-        Some((value, bound)) => {
-            format!("limit: {name}: {} = {value}, h w <= 1 (published){first}", bound.name())
-        }
-        None => format!("limit: {name}{first}"),
-    }
-}
-
-/// The labels of lines that a short answer has, beside those without a label.
-const FIRST_LABELS: [&str; 6] = ["write", "note", "bias", "unknown", "beads", "fast"];
-
-/// So many steps have a line each in a short answer.
-const FIRST_STEPS: usize = 5;
-
-/// The lines that answer: on the steps that were asked for, so many, with which the lines begin; on the step
-/// to take, its limit, the levers, and what is not known.
-pub(super) fn first(lines: &[String], steps: usize) -> Vec<String> {
-    let (asked, others) = lines.split_at(steps);
-    let is_first = |line: &&String| match line.strip_prefix("  ") {
-        Some(labelled) => FIRST_LABELS.iter().any(|label| labelled.split(' ').next() == Some(label)),
-        None => true,
-    };
-    let mut first: Vec<String> = asked.iter().take(FIRST_STEPS).cloned().collect();
-    let left = steps.saturating_sub(FIRST_STEPS);
-    first.extend((left > 0).then(|| format!("        and {}", counted(left, "step more", "steps more"))));
-    first.extend(others.iter().filter(is_first).cloned());
-    first
 }
 
 /// The outer step that is advised, where it is another one than that of the scheme: no other one is ever

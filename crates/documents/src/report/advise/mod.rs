@@ -93,8 +93,7 @@ fn of_periods(advice: &Advice, reading: Option<&Reading>) -> Document {
     let document = if pairs.rows().is_empty() { document } else { document.and_rows(pairs) };
     let step = lines::of_answer(&advice.schemes[0]);
     let document = document.entries(reading.map(|reading| ("engine", engine(step, reading))));
-    let lines = lines::of(advice, reading);
-    document.answer_first(&lines::first(&lines, advice.schemes.len())).summary(&lines)
+    document.summary(&lines::of(advice, reading))
 }
 
 fn mode_table(advice: &Advice) -> Table {

@@ -43,12 +43,10 @@ pub(super) fn document(findings: &Findings, reading: Option<&Reading>, notes: &[
             "masked_above" | "damped" => findings.friction.is_some(),
             _ => true,
         }));
-    let lines = summary(findings, reading, notes);
     super::levers::add(document, findings.levers.as_ref(), TimeUnit::Femtoseconds)
         .and_rows(for_people(&intervals, |_| true))
         .and_rows(for_people(&groups, |_| true))
-        .answer_first(&lines::first(&lines, findings.schemes.len()))
-        .summary(&lines)
+        .summary(&summary(findings, reading, notes))
 }
 
 /// Limits of Hessians at one place.
@@ -66,17 +64,16 @@ fn summary(findings: &Findings, reading: Option<&Reading>, notes: &[String]) -> 
     let period = fastest.period.0;
     let name = named(fastest);
     let band = percent(&findings.band);
-    // The steps that were asked for; then the safe one, its limit, the levers.
+    // The safe step, its limit, the levers; then the steps that were asked for.
     let unit = TimeUnit::Femtoseconds;
     let fastest = (name.as_str(), (period, period));
     let (scheme, caps) = (&best.scheme, &findings.caps);
     let (edge, harmonic) = (best.band_edge.unwrap_or(0.0), findings.harmonic);
     let (safe, bound, largest) = (&best.safe, best.bound, &best.largest);
     let choice = Choice { scheme, safe, bound, largest, caps, band: &band, fastest, edge, harmonic, unit };
-    let mut lines: Vec<String> = findings.schemes.iter().map(|scheme| line(findings, scheme)).collect();
-    lines.push(choice.words());
-    lines.push(lines::limit(scheme, &name, fastest.1, caps, best.first, unit));
-    lines.push(super::levers::longer(findings.levers.as_ref(), unit));
+    let mut lines =
+        vec![choice.words(), limit(&name, findings, best), super::levers::longer(findings.levers.as_ref())];
+    lines.extend(findings.schemes.iter().map(|scheme| line(findings, scheme)));
     if let Some(reading) = reading {
         lines.extend(read_from(advised_step(best), reading));
         lines.extend(lines::grompp(reading, &name, |n| rounded(period / n as f64, 3)));
@@ -132,6 +129,24 @@ fn named(group: &Group) -> String {
 
 fn rounded(x: f64, digits: usize) -> String {
     nearest((x, x), digits)
+}
+
+/// The bound of the outer step.
+fn limit(name: &str, findings: &Findings, finding: &Finding) -> String {
+    let first = finding.first.map_or_else(String::new, |(lo, hi)| {
+        format!("; the first unstable outer step is {} fs (proven)", nearest((lo, hi), 4))
+    });
+    let period = findings.fastest.period.0;
+    match findings.caps.outer().map(|(cap, bound)| (self::cap(cap, TimeUnit::Femtoseconds), bound)) {
+        Some((_, Bound::Third)) => {
+            format!(
+                "limit: {name}: outer steps near T/3 = {} fs drift (published){first}",
+                rounded(period / 3.0, 3)
+            )
+        }
+        Some((cap, bound)) => format!("limit: {name}: {} = {cap}, h w <= 1 (published){first}", bound.name()),
+        None => format!("limit: {name}{first}"),
+    }
 }
 
 /// " at the ratio 8", " at the ratios 1:2:8", and which periods beside the fast ones may be off.
