@@ -33,6 +33,7 @@ class Advised(Document):
     """What all advice has: schemes of steps, each with a status, and what to do."""
 
     _text: str
+    _details: str
 
     _schemes_are = "schemes"
 
@@ -107,6 +108,19 @@ class Advised(Document):
         """
         return frame(flat(self.rows))
 
+    @property
+    def details(self) -> str:
+        """All that there is to say: the lines of ``str(advice)``, the reasons, every lever, and the tables.
+
+        Examples
+        --------
+        >>> import kickdrift as kd
+        >>> advice = kd.advise({"OH": "10fs", "slow": "40fs"}, steps=["0.5fs", "4fs"])
+        >>> len(str(advice).splitlines()) <= 12, "What would let the outer step grow" in advice.details
+        (True, True)
+        """
+        return self._details
+
     def __str__(self) -> str:
         return self._text
 
@@ -117,8 +131,7 @@ class Advised(Document):
     def _repr_html_(self) -> str:
         colour = _plot.COLOURS[_COLOURS.get(self.status, "unstable")]
         style = f"border-left: 4px solid {colour}; padding-left: 1em"
-        lines, *_ = self._text.split("\n\n")
-        return f"<pre style='{style}'>{escape(lines)}</pre>"
+        return f"<pre style='{style}'>{escape(self._text.rstrip())}</pre>"
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -81,7 +81,7 @@ class Asked(Frozen):
         return fields, self.budget, place
 
     def render(self, form: str) -> str:
-        """The answer as json, csv, latex or text."""
+        """The answer as json, csv, latex or text, or a text with all details."""
         return self._answer.render(form)
 
     def svg(self) -> str:

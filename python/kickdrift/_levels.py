@@ -253,5 +253,6 @@ class Bands:
         )
         looked = [f"  looked at  {level}" for level in self.levels]
         notes = [f"  note       {note}" for note in self.notes]
-        told: Advice = replace(found, _text="\n".join([self._told(), *looked, *notes, str(found)]))
+        before = "\n".join([self._told(), *looked, *notes, ""])
+        told: Advice = replace(found, _text=before + str(found), _details=before + found.details)
         return told

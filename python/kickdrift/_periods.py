@@ -43,7 +43,7 @@ def advise_periods(
     given["bond"] = [f"{_name('bonds', name)}:{value}" for name, value in bonded.items()]
     given["on"] = [f"{_name('on', name)}={clock}" for name, clock in clocks.items()]
     question = asked(given, steps, engine, scales, levers=levers, all_modes=all_modes, harmonic=harmonic)
-    return Advice(question.render("json"), question.render("text"), question)
+    return Advice(question.render("json"), question.render("text"), question.render("details"), question)
 
 
 #: What to give in place of what is none.

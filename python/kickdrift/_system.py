@@ -309,9 +309,10 @@ class System(HessianSystem):
         warnings = self.decide().warnings
         # With other masses or held bonds the orbit is another one, which nobody has followed.
         followed = self if constraints is None and hmr is None else replace(self, _orbit=None)
-        sentences, rest = _parted(question.render("text"))
-        before = followed._orbit_sentence() + sentences + _lines(followed._new_warnings(warnings))
-        return SystemAdvice(question.render("json"), before + rest, warnings)
+        unsaid = _lines(followed._new_warnings(warnings))
+        parted = (_parted(question.render(form)) for form in ("text", "details"))
+        told = [followed._orbit_sentence() + sentences + unsaid + rest for sentences, rest in parted]
+        return SystemAdvice(question.render("json"), *told, warnings)
 
     def _orbit_sentence(self) -> str:
         """What is said first: the integrator's own orbit, where a run is about it and not about the minimum."""

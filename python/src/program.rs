@@ -30,14 +30,20 @@ pub fn main(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
 #[pyclass(frozen)]
 pub struct Answer(Document);
 
+/// Below an answer in a few lines.
+const MORE: &str = "more: the reasons, every lever and the tables in .details";
+
 #[pymethods]
 impl Answer {
-    /// The document as json, csv, latex or text.
+    /// The document as json, csv, latex or text, or a text with all "details".
     fn render(&self, form: &str) -> PyResult<String> {
+        if form == "details" {
+            return self.0.clone().detailed().render(Format::Text).map_err(|error| raised(&error));
+        }
         let format = Format::DOCUMENT.into_iter().find(|format| format.name() == form);
         let format =
             format.ok_or_else(|| raised(&Error::input("form", form, "is json, csv, latex or text")))?;
-        self.0.render(format).map_err(|error| raised(&error))
+        self.0.clone().below_answer(MORE).render(format).map_err(|error| raised(&error))
     }
 }
 

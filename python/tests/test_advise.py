@@ -18,6 +18,7 @@ import kickdrift as kd
 
 TWO = {"OH": "10fs", "slow": "40fs"}
 STEPS = [("0.5fs", "4fs"), ("0.5fs", 5)]
+MORE = "more: the reasons, every lever and the tables"
 FLAGS = ["--period=OH=10fs", "--period=slow=40fs", "--steps=0.5fs,4fs", "--steps=0.5fs,5fs"]
 GROMACS = "dt = 0.0005 ; ps\nmts = yes\nmts-level2-factor = 8\n"
 
@@ -26,7 +27,11 @@ def test_advice_is_that_of_the_program(program: Callable[..., str], tmp_path: Pa
     advice = kd.advise(TWO, steps=STEPS, length="10ns")
     flags = [*FLAGS, "--band=5%", "--length=10ns"]
     assert advice.to_json() == program("advise", *flags, "--format", "json")
-    assert str(advice) == program("advise", *flags, "--format", "text")
+    # The last line says where the rest is: in the other's own word.
+    few = program("advise", *flags, "--format", "text").splitlines()
+    assert str(advice).splitlines()[:-1] == few[:-1] and len(few) <= 12
+    assert (str(advice).splitlines()[-1], few[-1]) == (f"{MORE} in .details", f"{MORE} with --details")
+    assert advice.details == program("advise", *flags, "--details", "--format", "text")
     program("advise", *flags, "--output", str(tmp_path / "advice.svg"))
     assert advice.to_svg() == (tmp_path / "advice.svg").read_text()
     assert advice == kd.advise(TWO, steps=STEPS, length=10**7) and advice.engine is None
@@ -118,7 +123,7 @@ def test_advice_on_hessians_is_that_of_the_program(program: Callable[..., str], 
     advice = system.advise(steps=[("0.5fs", "4.5fs")], length="10ns")
     flags = [str(system._path), "--steps=0.5fs,4.5fs", "--band=5%", "--length=10ns"]
     assert advice.to_json() == program("advise", *flags, "--format", "json")
-    assert str(advice) == program("advise", *flags, "--format", "text")
+    assert advice.details == program("advise", *flags, "--details", "--format", "text")
     assert advice.schemes == advice.rows and len(advice.rows) == 2 and repr(advice).startswith("SystemAdvice(4 fs ")
     assert advice.groups[0]["shortest"] < 10 and advice.safe is not None and advice.safe < 4
     assert len(advice.to_pandas()) == 2 and "<pre" in advice._repr_html_()

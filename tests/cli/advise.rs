@@ -18,6 +18,7 @@ fn the_first_lines_can_be_acted_on() {
         ]
     );
     // What runs of our own show stands beside what is published.
+    let text = stdout(&words(WATER, &["--details"]));
     for word in [
         "  proven ",
         "  published ",
@@ -43,7 +44,9 @@ fn an_engine_s_line_is_rewritten() {
         "{}",
         ended.stdout
     );
-    assert!(ended.stdout.contains("dt is the outermost step; 0.5 fs: bond; 4 fs: pair"), "{}", ended.stdout);
+    let line = "advise --engine in.lmp --period OH=10fs --period 40fs --details";
+    let all = desk.run(&words(line, &[])).stdout;
+    assert!(all.contains("dt is the outermost step; 0.5 fs: bond; 4 fs: pair"), "{all}");
     let document =
         desk.run(&words("advise --engine in.lmp --period OH=10fs --period 40fs --format json", &[]));
     desk.write("d.json", &document.stdout);
@@ -184,7 +187,7 @@ fn a_friction_that_masks_is_told_and_is_no_advice() {
 
 #[test]
 fn constrained_bonds_are_on_no_clock() {
-    let line = "advise --bond OH:K=450kcal/mol/A^2,15.999,1.008 --period angle=19.45fs --period 60fs --steps 2fs,4fs";
+    let line = "advise --bond OH:K=450kcal/mol/A^2,15.999,1.008 --period angle=19.45fs --period 60fs --details --steps 2fs,4fs";
     let free = stdout(&words(line, &[]));
     let text = stdout(&words(&format!("{line} --constraints h-bonds"), &[]));
     assert!(!free.starts_with("4 fs    safe") && text.starts_with("4 fs    safe"), "{text}");
@@ -208,18 +211,19 @@ fn held_bonds_and_heavy_hydrogens_of_an_engine_s_text_are_those_of_the_answer() 
         "run.conf",
         "structure a.psf\nPME yes\ntimestep 2.0\nrigidBonds all; # held\nfullElectFrequency 2\n",
     );
-    let water = "--bond OH:K=450kcal/mol/A^2,15.999,1.008 --period angle=19.45fs --period 60fs --no-levers";
+    let water =
+        "--bond OH:K=450kcal/mol/A^2,15.999,1.008 --period angle=19.45fs --period 60fs --no-levers --details";
     let held = desk.run(&words(&format!("advise --engine run.conf {water}"), &[])).stdout;
     assert!(
         held.contains("  assumed    OH") && held.contains("  write      fullElectFrequency 3\n"),
         "{held}"
     );
     // Which of the periods are bonds is asked for.
-    let line = "advise --engine run.conf --period OH=10fs --period 60fs --no-levers";
+    let line = "advise --engine run.conf --period OH=10fs --period 60fs --no-levers --details";
     let periods = desk.run(&words(line, &[])).stdout;
     assert!(periods.contains("periods do not say which of them are bonds"), "{periods}");
     desk.write("md.mdp", "dt = 0.002\nmts = yes\nmts-level2-factor = 2\nmass-repartition-factor = 3\n");
-    let line = "advise --engine md.mdp --bond CH:K=340kcal/mol/A^2,12.011,1.008,3 --period 60fs --no-levers";
+    let line = "advise --engine md.mdp --bond CH:K=340kcal/mol/A^2,12.011,1.008,3 --period 60fs --no-levers --details";
     let heavy = desk.run(&words(line, &[])).stdout;
     assert!(heavy.contains("CH (T = 16.69") && heavy.contains("hydrogens of 3.024 amu"), "{heavy}");
     // grompp wants a mesh's forces on the second level and no other integrator: then nothing is written.
@@ -240,7 +244,8 @@ fn an_engine_s_file_may_have_any_name_a_mark_before_its_text_and_latin_letters_i
     let name = std::ffi::OsStr::from_bytes(b"md\xff.mdp");
     std::fs::write(desk.path().join(name), b"\xef\xbb\xbfdt = 0.002 ; \xe9quilibration\nnstlist = 10\n")
         .unwrap();
-    let mut command = desk.command(&words("advise --period OH=10fs --period 40fs --no-levers --engine", &[]));
+    let mut command =
+        desk.command(&words("advise --details --period OH=10fs --period 40fs --no-levers --engine", &[]));
     let output = command.arg(name).output().unwrap();
     let text = String::from_utf8(output.stdout).unwrap();
     assert!(text.contains("  used       dt = 0.002\n"), "{text} {}", String::from_utf8_lossy(&output.stderr));
@@ -346,7 +351,7 @@ fn without_a_fast_period_the_answer_asks_for_one_and_offers_typical_ones() {
 #[test]
 fn a_single_clock_is_advised_below_its_own_turn_unless_its_bonds_are_harmonic() {
     let line = "advise --period OH=8.5836fs --steps 1fs --steps 2fs";
-    let text = stdout(&words(line, &[]));
+    let text = stdout(&words(line, &["--details"]));
     for said in [
         "1 fs    safe",
         "2 fs    stable; unstable from 2.7322 fs on, margin 0.732 fs; caution: not below T/6.28 = 1.36 fs",
@@ -387,7 +392,7 @@ fn an_inner_step_that_is_too_long_is_named_and_no_line_is_written() {
 #[test]
 fn times_without_a_unit_are_plain_numbers() {
     let line = "advise --period bond=0.2 --period slow=0.8 --steps 0.01,0.09 --friction 1/2 --length 50";
-    let text = stdout(&words(line, &[]));
+    let text = stdout(&words(line, &["--details"]));
     assert!(
         text.starts_with("0.09    ")
             && text.contains("\nadvice: outer step 0.06 (6 of 0.01): below T/3 = 0.0667"),
@@ -473,7 +478,8 @@ fn what_grompp_warns_of_is_told_of_gromacs_alone() {
         "units real\npair_style lj/cut 10\ntimestep 3.0\nrun_style respa 2 6 bond 1 pair 2\n",
     );
     let of = |engine: &str| {
-        desk.run(&["advise", "--engine", engine, "--period", "OH=10fs", "--period", "40fs"]).stdout
+        desk.run(&["advise", "--details", "--engine", engine, "--period", "OH=10fs", "--period", "40fs"])
+            .stdout
     };
     assert!(
         of("md.mdp").contains(

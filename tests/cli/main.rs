@@ -1,5 +1,6 @@
 //! The program from outside: what a person or a script types, and what comes back.
 
+mod advice_first;
 mod advise;
 mod answers;
 mod claims;

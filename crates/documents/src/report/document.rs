@@ -33,6 +33,9 @@ pub struct Document {
     float: Option<Float>,
     summary: String,
     summary_only: bool,
+    /// In place of the summary and the tables in text, unless details are asked for.
+    answer: Option<Vec<String>>,
+    is_detailed: bool,
 }
 
 /// The columns and digits that a person asks for.
@@ -62,6 +65,8 @@ impl Document {
             float: None,
             summary: String::new(),
             summary_only: false,
+            answer: None,
+            is_detailed: false,
         }
     }
 
@@ -172,6 +177,25 @@ impl Document {
         self.summary(lines)
     }
 
+    /// The answer in a few lines: the text form shows them alone, and the rest where it is [`detailed`](Self::detailed).
+    #[must_use]
+    pub fn answer(self, lines: Vec<String>) -> Self {
+        Document { answer: Some(lines), ..self }
+    }
+
+    /// With the summary and the tables in text.
+    #[must_use]
+    pub fn detailed(self) -> Self {
+        Document { is_detailed: true, ..self }
+    }
+
+    /// With a line below the answer, where it stands alone.
+    #[must_use]
+    pub fn below_answer(mut self, line: &str) -> Self {
+        self.answer.iter_mut().for_each(|lines| lines.push(line.into()));
+        self
+    }
+
     /// The summary alone.
     pub fn summary_text(&self) -> &str {
         &self.summary
@@ -234,6 +258,9 @@ impl Document {
     }
 
     fn text(&self, to_see: &str) -> String {
+        if let Some(lines) = self.answer.as_ref().filter(|_| !self.is_detailed) {
+            return visible(&format!("{}\n", lines.join("\n")));
+        }
         let mut out = self.digits.map_or_else(|| self.summary.clone(), |n| in_digits(&self.summary, n));
         out.push('\n');
         let first = self.for_people.as_ref().or(self.table.as_ref());
@@ -242,14 +269,16 @@ impl Document {
             if rows > ROWS_FOR_PEOPLE {
                 out += &format!("\n{rows} rows: {to_see}\n");
             } else if rows > 0 {
-                out += &format!(
-                    "\n{}\n",
-                    text::document(&self.digits.map_or_else(|| table.clone(), |n| table.shortened(n)))
-                        .trim_end()
-                );
+                out += &format!("\n{}\n", text::document(&self.for_text(table)).trim_end());
             }
         }
         visible(&out)
+    }
+
+    /// With the digits asked for; an answer for people has decimals where its other forms have fractions.
+    fn for_text(&self, table: &Table) -> Table {
+        let table = self.digits.map_or_else(|| table.clone(), |n| table.shortened(n));
+        if self.answer.is_some() { table.in_decimals() } else { table }
     }
 }
 

@@ -8,6 +8,7 @@ use num_traits::ToPrimitive;
 use serde::ser::{Serialize, SerializeMap, SerializeSeq, Serializer};
 
 use super::decimal;
+use molecules::unit::decimal as decimal_of;
 use number::error::{Error, Result};
 
 /// One value of a table.
@@ -254,6 +255,17 @@ impl Table {
             _ => cell.clone(),
         };
         let rows = self.rows.iter().map(|row| row.iter().map(shorten).collect()).collect();
+        Table { rows, ..self.clone() }
+    }
+
+    /// The table with decimals in place of fractions that have finitely many.
+    #[must_use]
+    pub fn in_decimals(&self) -> Table {
+        let plain = |cell: &Cell| match cell {
+            Cell::Exact(text) => Cell::Exact(text.parse().map_or_else(|_| text.clone(), |x| decimal_of(&x))),
+            other => other.clone(),
+        };
+        let rows = self.rows.iter().map(|row| row.iter().map(plain).collect()).collect();
         Table { rows, ..self.clone() }
     }
 

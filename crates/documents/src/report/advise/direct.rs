@@ -1,5 +1,6 @@
 //! Advice on forces that are no gradient: lines to act on, then tables.
 
+use super::answer;
 use super::lines::{self, advised, read_from};
 use super::tables::{self, enclosed, for_people, published};
 use super::words::{fs, nearest, percent, within};
@@ -41,6 +42,7 @@ pub(super) fn document(findings: &DirectFindings, reading: Option<&Reading>, not
         .entry("unknown", UNKNOWN.to_vec())
         .entries(reading.map(|reading| ("engine", tables::engine(step, reading))));
     let has_friction = findings.friction.is_some();
+    let lines = summary(findings, reading, notes);
     let shown = |key: &str| match key {
         "damped" | "masked" => has_friction,
         "within_accuracy" => findings.accuracy.is_some(),
@@ -50,7 +52,8 @@ pub(super) fn document(findings: &DirectFindings, reading: Option<&Reading>, not
     document
         .long_rows(for_people(&rows, shown))
         .and_rows(for_people(&ladder, shown))
-        .summary(&summary(findings, reading, notes))
+        .summary(&lines)
+        .answer(answer::of(&lines))
 }
 
 const FASTEST: &str = "the fastest motion of the innermost forces";

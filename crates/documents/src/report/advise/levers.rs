@@ -102,28 +102,46 @@ pub(super) fn add(document: Document, levers: Option<&Levers>, unit: TimeUnit) -
     if levers.rows.is_empty() { document } else { document.and_rows(shown(levers, &table, unit)) }
 }
 
+/// Levers whose gains are within 2 % of each other are one.
+const AS_GOOD: f64 = 0.98;
+
 /// The three levers that let the outer step grow most, longer than kicks and drifts as they are.
-pub(super) fn longer(levers: Option<&Levers>) -> String {
-    let Some(levers) = levers else { return "longer: what would let the step grow was not looked at".into() };
-    let one = Rational::from_integer(1.into());
-    let mut best: Vec<(&Lever, &Rational, &Rational)> = levers.rows.iter().filter_map(gained).collect();
-    best.retain(|(lever, _, gain)| **gain > one && !matches!(lever.way, Way::Respa | Way::Friction));
-    best.sort_by(|a, b| b.2.cmp(a.2));
-    let shown = |(lever, step, gain): &(&Lever, &Rational, &Rational)| {
-        let gain = to_f64(gain);
-        format!("{} fs by {} ({} times)", decimal(step), lever.name, nearest((gain, gain), 3))
+pub(super) fn longer(levers: &Levers, unit: TimeUnit) -> Option<String> {
+    let mut best: Vec<(&Lever, &Rational, f64)> = levers.rows.iter().filter_map(gained).collect();
+    best.retain(|(lever, _, gain)| *gain > 1.0 && !matches!(lever.way, Way::Respa | Way::Friction));
+    best.sort_by(|a, b| b.2.total_cmp(&a.2));
+    let mut groups: Vec<Vec<(&Lever, &Rational, f64)>> = Vec::new();
+    for one in best {
+        match groups.last_mut() {
+            Some(group) if one.2 >= AS_GOOD * group[0].2 => group.push(one),
+            _ => groups.push(vec![one]),
+        }
+    }
+    let shown = |group: &Vec<(&Lever, &Rational, f64)>| {
+        // An engine has it, where one has.
+        let (lever, step, gain) =
+            group.iter().find(|one| !one.0.way.engines().is_empty()).unwrap_or(&group[0]);
+        let others: Vec<_> = group.iter().filter(|one| one.0.name != lever.name).collect();
+        let others = match others[..] {
+            [] => String::new(),
+            [(other, ..)] => format!(" or {}", other.name),
+            _ => format!(" or {} others", others.len()),
+        };
+        format!("{} by {}{others} ({} times)", unit.of(decimal(step)), lever.name, nearest((*gain, *gain), 3))
     };
-    let shown: Vec<String> = best.iter().take(3).map(shown).collect();
-    if shown.is_empty() {
-        "longer: nothing known would let the step grow".into()
+    let shown: Vec<String> = groups.iter().take(3).map(shown).collect();
+    if levers.rows.is_empty() {
+        None
+    } else if shown.is_empty() {
+        Some("longer: no lever that could be looked at lets the step grow".into())
     } else {
-        format!("longer: {}", shown.join(", "))
+        Some(format!("longer: {}", shown.join("; ")))
     }
 }
 
-fn gained(lever: &Lever) -> Option<(&Lever, &Rational, &Rational)> {
+fn gained(lever: &Lever) -> Option<(&Lever, &Rational, f64)> {
     let (step, _) = lever.step.as_ref()?;
-    Some((lever, step, lever.gain.as_ref()?))
+    Some((lever, step, to_f64(lever.gain.as_ref()?)))
 }
 
 /// The lines beside the table.

@@ -1,5 +1,6 @@
 //! Advice as text: a line for each scheme, then which step to take, then why.
 
+use super::answer;
 use super::words::{Choice, cap, down, length, named, nearest, percent, within};
 use crate::report::decimal::few;
 use crate::report::friction;
@@ -40,6 +41,8 @@ pub(super) fn of(advice: &Advice, reading: Option<&Reading>) -> Vec<String> {
     let mut lines: Vec<String> = advice.schemes.iter().map(|answer| line(advice, answer)).collect();
     lines.extend(advice.schemes.iter().filter_map(|answer| ratios(answer, advice.unit)));
     lines.push(action(advice, &advice.schemes[0]));
+    lines.extend(answer::limit_of_periods(advice));
+    lines.extend(advice.levers.as_ref().and_then(|levers| super::levers::longer(levers, advice.unit)));
     if let Some(reading) = reading {
         let fastest = &advice.modes[advice.fastest];
         lines.extend(read_from(of_answer(&advice.schemes[0]), reading));

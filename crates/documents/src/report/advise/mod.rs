@@ -1,5 +1,6 @@
 //! Advice as a document: lines to act on, then tables.
 
+mod answer;
 mod bias;
 mod chart;
 mod direct;
@@ -93,7 +94,8 @@ fn of_periods(advice: &Advice, reading: Option<&Reading>) -> Document {
     let document = if pairs.rows().is_empty() { document } else { document.and_rows(pairs) };
     let step = lines::of_answer(&advice.schemes[0]);
     let document = document.entries(reading.map(|reading| ("engine", engine(step, reading))));
-    document.summary(&lines::of(advice, reading))
+    let lines = lines::of(advice, reading);
+    document.summary(&lines).answer(answer::of(&lines))
 }
 
 fn mode_table(advice: &Advice) -> Table {

@@ -1,5 +1,6 @@
 //! Advice on the Hessians of a molecule: lines of text, then tables.
 
+use super::answer;
 use super::lines::{self, advised, read_from};
 use super::tables::{self, enclosed, for_people, published};
 use super::words::{Choice, cap, down, fs, nearest, percent, within};
@@ -20,6 +21,7 @@ pub(super) fn document(findings: &Findings, reading: Option<&Reading>, notes: &[
     let fastest = &findings.fastest;
     let (groups, rows, intervals) = (groups(findings), rows(findings), intervals(findings));
     let (best, between) = (&findings.schemes[0], &findings.between);
+    let lines = summary(findings, reading, notes);
     let document = Document::new("advise-system")
         .entries((!between.is_empty()).then(|| ("between_periods", between.clone())))
         .entry("rigid_motions.count", removed.map(|removed| removed.count))
@@ -46,7 +48,8 @@ pub(super) fn document(findings: &Findings, reading: Option<&Reading>, notes: &[
     super::levers::add(document, findings.levers.as_ref(), TimeUnit::Femtoseconds)
         .and_rows(for_people(&intervals, |_| true))
         .and_rows(for_people(&groups, |_| true))
-        .summary(&summary(findings, reading, notes))
+        .summary(&lines)
+        .answer(answer::of(&lines))
 }
 
 /// Limits of Hessians at one place.
@@ -71,8 +74,13 @@ fn summary(findings: &Findings, reading: Option<&Reading>, notes: &[String]) -> 
     let (edge, harmonic) = (best.band_edge.unwrap_or(0.0), findings.harmonic);
     let (safe, bound, largest) = (&best.safe, best.bound, &best.largest);
     let choice = Choice { scheme, safe, bound, largest, caps, band: &band, fastest, edge, harmonic, unit };
-    let mut lines =
-        vec![choice.words(), limit(&name, findings, best), super::levers::longer(findings.levers.as_ref())];
+    let third = rounded(period / 3.0, 3);
+    let limit = answer::limit(&name, &format!("{third} fs"), caps, best.first, (scheme, unit));
+    let mut lines = vec![choice.words(), limit];
+    match &findings.levers {
+        Some(levers) => lines.extend(super::levers::longer(levers, unit)),
+        None => lines.push("longer: what would let the step grow was not looked at".into()),
+    }
     lines.extend(findings.schemes.iter().map(|scheme| line(findings, scheme)));
     if let Some(reading) = reading {
         lines.extend(read_from(advised_step(best), reading));
@@ -106,7 +114,7 @@ fn summary(findings: &Findings, reading: Option<&Reading>, notes: &[String]) -> 
             "  rigid      {} motions projected out, by {}{held}",
             removed.count, removed.found_by
         ));
-        lines.extend(removed.warning(findings.accuracy).map(|own| format!("  rigid      {own}")));
+        lines.extend(removed.warning(findings.accuracy).map(|own| format!("  warning    {own}")));
     }
     lines.extend(findings.levers.iter().flat_map(|lever| super::levers::lines(lever, unit)));
     lines
@@ -129,24 +137,6 @@ fn named(group: &Group) -> String {
 
 fn rounded(x: f64, digits: usize) -> String {
     nearest((x, x), digits)
-}
-
-/// The bound of the outer step.
-fn limit(name: &str, findings: &Findings, finding: &Finding) -> String {
-    let first = finding.first.map_or_else(String::new, |(lo, hi)| {
-        format!("; the first unstable outer step is {} fs (proven)", nearest((lo, hi), 4))
-    });
-    let period = findings.fastest.period.0;
-    match findings.caps.outer().map(|(cap, bound)| (self::cap(cap, TimeUnit::Femtoseconds), bound)) {
-        Some((_, Bound::Third)) => {
-            format!(
-                "limit: {name}: outer steps near T/3 = {} fs drift (published){first}",
-                rounded(period / 3.0, 3)
-            )
-        }
-        Some((cap, bound)) => format!("limit: {name}: {} = {cap}, h w <= 1 (published){first}", bound.name()),
-        None => format!("limit: {name}{first}"),
-    }
 }
 
 /// " at the ratio 8", " at the ratios 1:2:8", and which periods beside the fast ones may be off.
@@ -177,17 +167,18 @@ fn slow(period: f64) -> String {
     )
 }
 
-/// "5.0226-5.0228 fs (tenfold in ...), 5.0229-5.032 fs (...)".
+/// "5.0226-5.0228 fs (tenfold in ...)": the first one, and how many more there are.
 fn interval(finding: &Finding) -> Option<String> {
-    let (lo, hi) = finding.first?;
-    let one = |(n, growing): (usize, &Growing)| {
-        let lower = if n == 0 { nearest((lo, hi), 5) } else { rounded(growing.lower, 5) };
-        let end = growing.upper.map_or_else(|| " and on".into(), |upper| format!("-{}", rounded(upper, 5)));
-        let (at, rate) = growing.worst;
-        let worst = rounded(std::f64::consts::LN_10 / (rate * at), 3);
-        format!("{lower}{end} fs (at worst tenfold in {worst} steps)")
+    let first = nearest(finding.first?, 5);
+    let growing = finding.growing.first()?;
+    let end = growing.upper.map_or_else(|| " and on".into(), |upper| format!("-{}", rounded(upper, 5)));
+    let (at, rate) = growing.worst;
+    let worst = rounded(std::f64::consts::LN_10 / (rate * at), 3);
+    let more = match finding.growing.len() {
+        1 => String::new(),
+        all => format!(", {} more above it", all - 1),
     };
-    Some(finding.growing.iter().enumerate().map(one).collect::<Vec<_>>().join(", "))
+    Some(format!("{first}{end} fs (at worst tenfold in {worst} steps){more}"))
 }
 
 fn line(findings: &Findings, finding: &Finding) -> String {
