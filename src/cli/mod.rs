@@ -105,7 +105,9 @@ enum Command {
 impl Command {
     /// Whether its output may be more than a document: a figure, arrays, files of its own.
     fn draws(&self) -> bool {
-        use Command::{Advise, Aperture, Bands, Cite, Compare, Generate, Map, Merge, Run, System, Tongues};
+        use Command::{
+            Advise, Aperture, Bands, Cite, Compare, Generate, Map, Merge, Run, System, Tongues, Word,
+        };
         matches!(
             self,
             Advise(_)
@@ -117,6 +119,7 @@ impl Command {
                 | Merge(_)
                 | Tongues(_)
                 | System(_)
+                | Word(_)
                 | Run(_)
                 | Generate(_)
         )

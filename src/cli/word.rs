@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use num_traits::Zero;
 
 use super::args::{Columns, Common};
+use super::paper::Paper;
 use super::verdict::within;
 use documents::format::Format;
 use documents::question::{Linted, Methods, Question, Word};
@@ -27,6 +28,8 @@ pub struct Args {
     list: bool,
     #[command(flatten)]
     columns: Columns,
+    #[command(flatten)]
+    paper: Paper,
 }
 
 /// Coq multiplies 400 letters of small fractions in some 10 s, and twice as many in four times that.
@@ -35,6 +38,9 @@ const WORTH_CERTIFYING: u64 = 400;
 impl Args {
     pub fn run(&self, common: &Common) -> Result<()> {
         let work = common.work();
+        let forms: &[Format] = if self.list { &Format::DOCUMENT } else { &Format::DOCUMENT_OR_FIGURE };
+        let format = common.format(forms, Format::Text)?;
+        self.paper.check(format.is_figure())?;
         let document = if self.list {
             Methods {}.ask(&work)?
         } else {
@@ -44,7 +50,14 @@ impl Args {
                 self.certify(&answer, path, common.budget)?;
                 common.wrote(path.display());
             }
-            self.question.document(&answer)
+            let document = self.columns.of(self.question.document(&answer))?;
+            if format.is_figure()
+                && let Some(figure) = self.question.figure(&answer, &work)?
+            {
+                self.paper.write(figure, format, common.output.as_deref(), common)?;
+                return common.tell_beside_output(&document);
+            }
+            document
         };
         common.write(&self.columns.of(document)?, Format::Text)
     }

@@ -2,6 +2,7 @@
 
 mod asked;
 mod catalogue;
+mod chart;
 mod linted;
 mod orders;
 mod shown;
@@ -35,6 +36,7 @@ impl Question for Word {
         "word \"K(1/6) D(1/2) K(2/3, -1/36) D(1/2) K(1/6)\"",
         "word --method pefrl",
         "word --method respa-4 --lambda1 pi^2 --lambda2 pi^2/25 --h 1 --h-range 0..3",
+        "word --method bcss-2 --output word.svg",
         "word --list",
     ];
     type Answer = Linted;
@@ -95,6 +97,10 @@ impl Question for Word {
         columns.extend(self.lambda1.iter().flat_map(|_| ["h_lower", "h_upper"]));
         let people = chosen(&rows, &columns);
         document.rows(rows).for_people(people).summary(&answer.lines(self))
+    }
+
+    fn figure(&self, answer: &Linted, _: &Work) -> Result<Option<plot::Figure>> {
+        chart::figure(self, answer).map(Some)
     }
 
     fn command(&self) -> String {
