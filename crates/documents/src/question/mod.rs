@@ -66,7 +66,7 @@ pub use system::{Answer as SystemAnswer, Found, System};
 pub use tongues::{Colour, Columns, Form, FoundTongues, Tongues};
 pub use verdict::{Decided, Verdict};
 pub use want::{Product, Want};
-pub use word::{Linted, Methods, Word};
+pub use word::{Best, Family, Goal, Linted, Member, Members, Methods, Parameter, Parameters, Word};
 pub(crate) use word::{Listed, Span};
 
 use serde_json::{Map as Input, Value};
@@ -140,6 +140,7 @@ const ALL: &[Named] = &[
     Named::of::<Bands>(),
     Named::of::<Word>(),
     Named::of::<Methods>(),
+    Named::of::<Family>(),
     Named::of::<System>(),
     Named::of::<Simulate>(),
     Named::of::<Advise>(),

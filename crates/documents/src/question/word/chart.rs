@@ -1,5 +1,5 @@
-//! A word drawn over its step: trace, error of the frequency and bias in aligned panels, unstable steps shaded; of
-//! two forces also the plane of the step and the ratio of frequencies.
+//! A word drawn over its step: trace, error of the frequency and bias in aligned panels, unstable steps
+//! shaded; of two forces also the plane of the step and the ratio of frequencies.
 
 use std::f64::consts::{PI, TAU};
 
@@ -24,7 +24,8 @@ const TRACE: f64 = 3.2;
 /// Beyond this the bias is cut.
 const BIAS: f64 = 4.0;
 
-/// Rows of a plane of words of so many powers of the force; with more of these, and in balls, each takes longer.
+/// Rows of a plane of words of so many powers of the force; with more of these, and in balls, each takes
+/// longer.
 const ROWS: u64 = 96;
 const POWERS: u64 = 12;
 const LEAST_ROWS: u64 = 24;
@@ -174,8 +175,8 @@ fn trace(samples: &[Sample], bars: &Spans, range: [f64; 2], is_first: bool) -> P
     if is_first { panel.legend(Place::Above) } else { panel }
 }
 
-/// The error of the frequency in per cent, beside that of the exact motion in units of √Λ1. A step turns by ± the
-/// angle and whole turns: by that which continues the frequency before.
+/// The error of the frequency in per cent, beside that of the exact motion in units of √Λ1. A step turns by ±
+/// the angle and whole turns: by that which continues the frequency before.
 fn errors(samples: &[Sample], exact: f64) -> Vec<[f64; 2]> {
     let mut before = exact;
     let mut error = |Sample { x, at, .. }: &Sample| {

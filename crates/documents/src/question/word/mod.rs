@@ -3,12 +3,14 @@
 mod asked;
 mod catalogue;
 mod chart;
+mod family;
 mod linted;
 mod orders;
 mod shown;
 
 pub use asked::Word;
 pub use catalogue::{Listed, Methods};
+pub use family::{Best, Family, Goal, Member, Members, Parameter, Parameters};
 pub use linted::{Linted, Span};
 
 use super::asking::{Question, Work};
@@ -36,6 +38,7 @@ impl Question for Word {
         "word \"K(1/6) D(1/2) K(2/3, -1/36) D(1/2) K(1/6)\"",
         "word --method pefrl",
         "word --method respa-4 --lambda1 pi^2 --lambda2 pi^2/25 --h 1 --h-range 0..3",
+        "word \"K(b) D(1/2) K(1-2*b) D(1/2) K(b)\" --parameter b=0.15..0.25:1/100 --minimize error",
         "word --method bcss-2 --output word.svg",
         "word --list",
     ];

@@ -43,7 +43,7 @@ impl Linted {
 }
 
 /// The first terms of an error, and how many more there are.
-fn commutators(terms: &[ErrorTerm], most: usize) -> String {
+pub(super) fn commutators(terms: &[ErrorTerm], most: usize) -> String {
     let term = |term: &ErrorTerm| format!("{} {}", shown(&term.coefficient), term.commutator);
     let shown: Vec<String> = terms.iter().take(most).map(term).collect();
     let more = terms.len().saturating_sub(most);
