@@ -119,6 +119,8 @@ const LINES: &[&str] = &[
     "aperture --bond OH:morse:D=485.72kJ/mol,a=22.87/nm,15.999,1.008 --steps 1.95fs,2.8fs --h-range 2.3fs..2.31fs",
     "aperture --bond CH:k=340kcal/mol/A^2,12.011,1.008 --substeps 2 --slow 40fs --steps 1fs",
     "word --list",
+    "word K(b)D(1/2)K(1-2*b)D(1/2)K(b) --parameter b=0.15..0.25:1/20 --minimize error",
+    "word K2(b)D(1/2)K1(1)D(c)K2(1-b) --parameter b=1/5..4/5:1/5,c=1/4..1/2:1/4",
     "word --method symplectic-euler --lambda1 1 --h 3",
     "word --check data/words/claims.toml",
     "word --method impulse --lambda1 pi^2/25 --lambda2 pi^2/400 --h 4 --h-range 0..16",

@@ -32,7 +32,7 @@ from kickdrift._simulate import Run, simulate
 from kickdrift._system import System, SystemVerdict
 from kickdrift._tongues import Closings, Tongues, closings, tongues
 from kickdrift._verdict import Verdict, Verdicts, decide, verdicts
-from kickdrift._word import Methods, Word, methods, word
+from kickdrift._word import Family, Methods, Word, family, methods, word
 
 #: The version of the package, and of the program in it.
 __version__ = _version("kickdrift")
@@ -47,6 +47,7 @@ __all__ = [
     "Curves",
     "Document",
     "Exact",
+    "Family",
     "Half",
     "Intervals",
     "KickdriftError",
@@ -77,6 +78,7 @@ __all__ = [
     "decide",
     "exact",
     "explore",
+    "family",
     "half",
     "main",
     "map",

@@ -86,11 +86,11 @@ class Asked(Frozen):
 
     def svg(self) -> str:
         """The answer as the program draws it."""
-        words = ["kickdrift", self.name]
+        words = ["kickdrift", {"family": "word"}.get(self.name, self.name)]
         for name, value in {**self.fields, **self.files}.items():
             flag = "--" + {"width": "resolution"}.get(name, name.replace("_", "-"))
             several = [value] if isinstance(value, str) else value
-            if name == "file":
+            if name == "file" or (name == "word" and words[1] == "word"):
                 words += several
             elif name not in ("system", "columns"):
                 words += [word for text in several for word in ([flag] if text == "true" else [flag, text])]

@@ -1,4 +1,4 @@
-"""Integrators: a word as its author writes it, and the catalogue."""
+"""Integrators: a word as its author writes it, with parameters, and the catalogue."""
 
 from __future__ import annotations
 
@@ -16,6 +16,40 @@ class Word(Table):
     >>> found.data["order"], found.data["edge"]["exact"]
     (4, '12')
     """
+
+    def to_svg(self) -> str:
+        """The program's figure: trace, frequency error and bias over the step, unstable steps shaded.
+
+        Examples
+        --------
+        >>> import kickdrift as kd
+        >>> kd.word(method="pefrl").to_svg().startswith("<svg")
+        True
+        """
+        return self._asked.svg()
+
+
+class Family(Table):
+    """A word with a parameter: what is known of it at each value, and the best one.
+
+    Examples
+    --------
+    >>> import kickdrift as kd
+    >>> found = kd.family("K(b) D(1) K(1-b)", parameter="b=0..1:1/4")
+    >>> [row["order"] for row in found]
+    [1, 1, 2, 1, 1]
+    """
+
+    def to_svg(self) -> str:
+        """The program's figure: unstable steps, efficiency, error and bias over the parameter.
+
+        Examples
+        --------
+        >>> import kickdrift as kd
+        >>> kd.family("K(b) D(1) K(1-b)", parameter="b=0..1:1/4").to_svg().startswith("<svg")
+        True
+        """
+        return self._asked.svg()
 
 
 class Methods(Table):
@@ -85,6 +119,62 @@ def word(
         h=optional_text("h", h),
         h_range=optional_range("h_range", h_range),
         friction=optional_text("friction", friction),
+    )
+
+
+def family(
+    word: str,
+    *,
+    parameter: str,
+    maximize: str | None = None,
+    minimize: str | None = None,
+    up_to: Exact | None = None,
+    lambda1: Exact | None = None,
+    lambda2: Exact | None = None,
+    budget: int | None = None,
+) -> Family:
+    """Decide order, error, stable steps and cost of a word at each value of a parameter, and the best value.
+
+    Parameters
+    ----------
+    word : str
+        As :func:`word` has it; coefficients may have names, as "K(b) D(1/2) K(1-2*b) D(1/2) K(b)".
+    parameter : str
+        Their values, as "b=0.15..0.25:1/100"; further names behind commas, one more with a range, others with a value.
+    maximize, minimize : str, optional
+        "edge" or "efficiency" is to be greatest; or "error" or "bias" least.
+    up_to : Exact, optional
+        The omega h up to which the bias counts; the evaluations of the first force unless given.
+    lambda1, lambda2 : Exact, optional
+        The stiffnesses of K1 (or K) and K2; both where the word names two forces, lambda2/lambda1 rational.
+    budget : int, optional
+        The most members times powers of the force; 20000 unless given.
+
+    Raises
+    ------
+    KickdriftError, BudgetError
+        A text that is no word at some value, with the place; more members than the budget allows.
+
+    Examples
+    --------
+    >>> import kickdrift as kd
+    >>> two = "K(b) D(1/2) K(1-2*b) D(1/2) K(b)"
+    >>> found = kd.family(two, parameter="b=0.15..0.25:1/100", maximize="edge")
+    >>> found.data["best"]["value"], found[-1]["edge"]
+    ('1/4', {'lo': 4.0, 'hi': 4.0})
+    """
+    return answered(
+        Family,
+        "family",
+        "members",
+        budget,
+        word=word,
+        parameter=parameter,
+        maximize=maximize,
+        minimize=minimize,
+        up_to=optional_text("up_to", up_to),
+        lambda1=optional_text("lambda1", lambda1),
+        lambda2=optional_text("lambda2", lambda2),
     )
 
 

@@ -109,7 +109,9 @@ enum Command {
 impl Command {
     /// Whether its output may be more than a document: a figure, arrays, files of its own.
     fn draws(&self) -> bool {
-        use Command::{Advise, Aperture, Bands, Cite, Compare, Generate, Map, Merge, Run, System, Tongues};
+        use Command::{
+            Advise, Aperture, Bands, Cite, Compare, Generate, Map, Merge, Run, System, Tongues, Word,
+        };
         matches!(
             self,
             Advise(_)
@@ -121,6 +123,7 @@ impl Command {
                 | Merge(_)
                 | Tongues(_)
                 | System(_)
+                | Word(_)
                 | Run(_)
                 | Generate(_)
         )

@@ -4,10 +4,12 @@ use std::path::{Path, PathBuf};
 
 use num_traits::Zero;
 
-use super::args::{Columns, Common};
+use super::args::{Columns, Common, unused};
+use super::asked::Flags;
+use super::paper::Paper;
 use super::verdict::within;
 use documents::format::Format;
-use documents::question::{Linted, Methods, Question, Word, WordCheck};
+use documents::question::{Family, Linted, Methods, Question, Word, WordCheck};
 use documents::report::certificate;
 use documents::report::file::write_output;
 use number::error::{Error, Result};
@@ -16,14 +18,17 @@ use number::{Laurent, file};
 /// Flags of `word`: the question, its table, or the catalogue in its place.
 #[derive(Debug, clap::Args)]
 pub struct Args {
+    // Its flags come first: its word may have names.
     #[command(flatten)]
-    question: Word,
+    family: Flags<Family>,
+    #[command(flatten)]
+    asked: Flags<Word>,
     /// Also write a Coq proof of the verdict at --h, where all numbers are fractions;
     /// proofs/tools/certificate.sh checks it.
     #[arg(long, value_name = "FILE.v")]
     certificate: Option<PathBuf>,
     /// Shows the catalogue.
-    #[arg(long, conflicts_with_all = ["word", "method", "lambda1", "lambda2", "h", "h_range", "certificate"])]
+    #[arg(long, conflicts_with_all = ["word", "method", "lambda1", "lambda2", "h", "h_range", "certificate", "parameter"])]
     list: bool,
     /// Holds words against what their authors claim: files of TOML with lines [[word]], word = "K(1/2) D(1)
     /// K(1/2)", order = 2, symmetric = true, limit = 2 for each.
@@ -36,6 +41,8 @@ pub struct Args {
     check: Vec<PathBuf>,
     #[command(flatten)]
     columns: Columns,
+    #[command(flatten)]
+    paper: Paper,
 }
 
 /// Coq multiplies 400 letters of small fractions in some 10 s, and twice as many in four times that.
@@ -43,23 +50,10 @@ const WORTH_CERTIFYING: u64 = 400;
 
 impl Args {
     pub fn run(&self, common: &Common) -> Result<u8> {
-        let work = common.work();
         if !self.check.is_empty() {
             return self.check(common);
         }
-        let document = if self.list {
-            Methods {}.ask(&work)?
-        } else {
-            self.certificate.as_ref().map_or(Ok(()), |path| common.apart_from_output("certificate", path))?;
-            let answer = self.question.answer(&work)?;
-            if let Some(path) = &self.certificate {
-                self.certify(&answer, path, common.budget)?;
-                common.wrote(path.display());
-            }
-            self.question.document(&answer)
-        };
-        common.write(&self.columns.of(document)?, Format::Text)?;
-        Ok(0)
+        self.ask(common).map(|()| 0)
     }
 
     /// 1 where a claim does not hold.
@@ -78,16 +72,62 @@ impl Args {
         Ok(u8::from(!WordCheck::all_hold(&answer)))
     }
 
-    fn certify(&self, answer: &Linted, path: &Path, budget: Option<u64>) -> Result<()> {
-        let Word { h: Some(h), lambda1: Some(lambda1), lambda2, .. } = &self.question else {
-            return Err(Error::missing("h", "a certificate is of one step: give --lambda1 and --h"));
-        };
-        within(answer.word.len(), WORTH_CERTIFYING, budget)?;
-        let name = path.file_name().unwrap_or_default().to_string_lossy();
-        let (none, lambda2) = (Laurent::zero(), lambda2.as_ref());
-        let found = answer.at.as_ref().expect("a step was given");
-        let numbers = [h, lambda1, lambda2.unwrap_or(&none)];
-        let text = certificate::coq_of_word(&answer.word, found, numbers, &name)?;
-        write_output(Some(path), text.as_bytes())
+    fn ask(&self, common: &Common) -> Result<()> {
+        let forms: &[Format] = if self.list { &Format::DOCUMENT } else { &Format::DOCUMENT_OR_FIGURE };
+        let format = common.format(forms, Format::Text)?;
+        self.paper.check(format.is_figure())?;
+        let work = common.work();
+        if self.list {
+            return common.write(&self.columns.of(Methods {}.ask(&work)?)?, Format::Text);
+        }
+        if self.family.has("parameter") {
+            let of_one =
+                [("--method", "method"), ("--h", "h"), ("--h-range", "h_range"), ("--friction", "friction")];
+            let of_one = of_one.map(|(flag, field)| (flag, self.asked.has(field)));
+            unused(&of_one, "goes with one word: leave it out, or --parameter")?;
+            unused(&[("--certificate", self.certificate.is_some())], "is of one word: leave it out")?;
+            let question = self.family.question()?;
+            return self.answered(&question, &question.answer(&work)?, format, common);
+        }
+        self.certificate.as_ref().map_or(Ok(()), |path| common.apart_from_output("certificate", path))?;
+        let question = self.asked.question()?;
+        let answer = question.answer(&work)?;
+        if let Some(path) = &self.certificate {
+            certify(&question, &answer, path, common.budget)?;
+            common.wrote(path.display());
+        }
+        self.answered(&question, &answer, format, common)
     }
+
+    /// The document, or the figure and the document in words.
+    fn answered<Q: Question>(
+        &self,
+        question: &Q,
+        answer: &Q::Answer,
+        format: Format,
+        common: &Common,
+    ) -> Result<()> {
+        let document = self.columns.of(question.document(answer))?;
+        let figure = if format.is_figure() { question.figure(answer, &common.work())? } else { None };
+        match figure {
+            None => common.write(&document, Format::Text),
+            Some(figure) => {
+                self.paper.write(figure, format, common.output.as_deref(), common)?;
+                common.tell_beside_output(&document)
+            }
+        }
+    }
+}
+
+fn certify(question: &Word, answer: &Linted, path: &Path, budget: Option<u64>) -> Result<()> {
+    let Word { h: Some(h), lambda1: Some(lambda1), lambda2, .. } = question else {
+        return Err(Error::missing("h", "a certificate is of one step: give --lambda1 and --h"));
+    };
+    within(answer.word.len(), WORTH_CERTIFYING, budget)?;
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let (none, lambda2) = (Laurent::zero(), lambda2.as_ref());
+    let found = answer.at.as_ref().expect("a step was given");
+    let numbers = [h, lambda1, lambda2.unwrap_or(&none)];
+    let text = certificate::coq_of_word(&answer.word, found, numbers, &name)?;
+    write_output(Some(path), text.as_bytes())
 }

@@ -170,6 +170,13 @@ impl Panel {
         self
     }
 
+    /// Replaces its horizontal axis: of panels that share one the last has its name.
+    #[must_use]
+    pub fn over(mut self, x: Axis) -> Self {
+        self.x = x;
+        self
+    }
+
     /// Gives it a legend of its labelled layers.
     #[must_use]
     pub fn legend(mut self, place: Place) -> Self {

@@ -18,17 +18,19 @@ const MAX_BITS: u64 = 4000;
 
 /// The text of a word and the place in it. An error is the place, counted in characters from 0, and what to
 /// do.
-pub(super) struct Reader {
+pub(super) struct Reader<'a> {
     pub characters: Vec<char>,
     pub at: usize,
     pub depth: u32,
     /// A number of the largest field so far.
     pub known: Radical,
+    /// Numbers that have names.
+    pub named: &'a [(&'a str, Radical)],
 }
 
 pub(super) type Read<T> = Result<T, (usize, String)>;
 
-impl Arithmetic for Reader {
+impl Arithmetic for Reader<'_> {
     type Value = Radical;
     type Error = (usize, String);
 
@@ -79,7 +81,7 @@ impl Arithmetic for Reader {
     }
 }
 
-impl Reader {
+impl Reader<'_> {
     pub fn peek(&self) -> Option<char> {
         self.characters.get(self.at).copied()
     }
@@ -148,7 +150,7 @@ impl Reader {
         if k >= 0 { Ok(power) } else { power.inverse().map_or_else(|| self.wrong(at, "divides by zero"), Ok) }
     }
 
-    /// atom = decimal | "sqrt" "(" sum ")" | "(" sum ")"
+    /// atom = decimal | name | "sqrt" "(" sum ")" | "(" sum ")"
     fn atom(&mut self) -> Read<Radical> {
         if self.skip('(') {
             let value = self.nested(Self::sum)?;
@@ -159,9 +161,16 @@ impl Reader {
             Some(c) if c.is_ascii_digit() || c == '.' => self.decimal(),
             Some(c) if c.is_alphabetic() => {
                 let name = self.taken(char::is_alphabetic);
+                if let Some((_, value)) = self.named.iter().find(|(known, _)| *known == name) {
+                    return Ok(value.clone());
+                }
                 if name != "sqrt" {
-                    return self
-                        .wrong(at, format!("{name} is no number; there are decimals, sqrt(c) and c^(1/n)"));
+                    return self.wrong(
+                        at,
+                        format!(
+                            "{name} is no number; there are decimals, sqrt(c) and c^(1/n), and names with values: parameter {name}=1/6..1/4:1/100"
+                        ),
+                    );
                 }
                 self.expect('(', "after sqrt")?;
                 let value = self.nested(Self::sum)?;

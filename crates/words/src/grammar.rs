@@ -24,6 +24,24 @@ impl FromStr for Word {
     /// # Errors
     /// A text that is no word: the place, and what stands there.
     fn from_str(text: &str) -> Result<Word> {
+        Word::with(text, &[])
+    }
+}
+
+impl Word {
+    /// Reads a word in which names stand for numbers.
+    ///
+    /// ```
+    /// use kickdrift_words::{Word, number::{Radical, rational::ratio}};
+    /// let quarter = Radical::from_rational(&ratio(1, 4));
+    /// let word = Word::with("K(b) D(1/2) K(1-2*b) D(1/2) K(b)", &[("b", quarter)])?;
+    /// assert_eq!(word.to_string(), "K(1/4) D(1/2) K(1/2) D(1/2) K(1/4)");
+    /// # Ok::<(), kickdrift_words::number::error::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// A text that is no word: the place, and what stands there.
+    pub fn with(text: &str, named: &[(&str, Radical)]) -> Result<Word> {
         if text.chars().nth(MAX_CHARACTERS).is_some() {
             return Err(Error::input(
                 "word",
@@ -32,7 +50,7 @@ impl FromStr for Word {
             ));
         }
         let mut reader =
-            Reader { characters: text.chars().collect(), at: 0, depth: 0, known: Radical::zero() };
+            Reader { characters: text.chars().collect(), at: 0, depth: 0, known: Radical::zero(), named };
         let items = reader.items().and_then(|items| match reader.peek() {
             None if items.is_empty() => reader.wrong(0, "a word has letters, as K(1/2) D(1) K(1/2)"),
             None => Ok(items),
@@ -54,7 +72,7 @@ const FILTERS: &str =
 /// The largest power of a filter's factor, and of all together.
 const MAX_FILTER: i32 = 16;
 
-impl Reader {
+impl Reader<'_> {
     /// items = (letter | digits "*" "(" items ")")*
     fn items(&mut self) -> Read<Vec<Item>> {
         let mut items = Vec::new();

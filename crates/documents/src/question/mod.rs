@@ -68,7 +68,7 @@ pub use system::{Answer as SystemAnswer, Found, System, Verdict as SystemVerdict
 pub use tongues::{Colour, Columns, Form, FoundTongues, Tongues};
 pub use verdict::{Decided, Verdict};
 pub use want::{Product, Want};
-pub use word::{Linted, Methods, Word};
+pub use word::{Best, Family, Goal, Linted, Member, Members, Methods, Parameter, Parameters, Word};
 pub(crate) use word::{Listed, Span};
 
 use serde_json::{Map as Input, Value};
@@ -177,6 +177,7 @@ const ALL: &[Named] = &[
     Named::of::<Word>(),
     Named::of::<Methods>(),
     Named::of::<WordCheck>(),
+    Named::of::<Family>(),
     Named::of::<System>(),
     Named::of::<Simulate>(),
     Named::of::<Advise>(),

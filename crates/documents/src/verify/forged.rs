@@ -6,8 +6,8 @@ use serde_json::{Value, json};
 use super::context::{Context, Options};
 use super::kind::Verify;
 use crate::question::{
-    Advised, Bands, Closings, Compare, CompareMethods, Curves, Found, Half, Methods, Polynomial, Proposition,
-    Safe, Simulate, Survey, System, SystemAnswer, SystemVerdict, Tongues, Verdict, Word,
+    Advised, Bands, Closings, Compare, CompareMethods, Curves, Family, Found, Half, Methods, Polynomial,
+    Proposition, Safe, Simulate, Survey, System, SystemAnswer, SystemVerdict, Tongues, Verdict, Word,
 };
 use clocks::propagator::{TwoClocks, half_period};
 use clocks::verdict::{Kind, Side, Verdict as Decided};
@@ -219,6 +219,17 @@ fn forged_integrators_are_found() {
         ],
     );
     finds::<Word>(stiff("molly-long"), &[|linted| linted.pieces.as_mut().unwrap().all[0].stable ^= true]);
+    let family = json!({"word": "K(b) D(1/2) K(1-2*b) D(1/2) K(b)", "parameter": "b=0.15..0.25:1/20", "minimize": "bias"});
+    finds::<Family>(
+        family,
+        &[
+            |members| members.all[0].values = members.all[1].values.clone(),
+            |members| members.all[1].linted.order.order += 1,
+            |members| members.all[1].linted.stability.as_mut().unwrap().intervals[0].stable ^= true,
+            |members| members.all[0].bias = members.all[1].bias.clone(),
+            |members| members.best.as_mut().unwrap().member.values = members.all[2].values.clone(),
+        ],
+    );
     finds::<Methods>(
         json!({}),
         &[|all| {

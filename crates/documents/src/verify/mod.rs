@@ -73,7 +73,7 @@ use self::kind::{Kind, asked};
 use crate::input::json;
 use crate::input::kind::{is_asked, of_another_kind};
 use crate::question::{
-    Advised, Aperture, Bands, Closings, Compare, CompareMethods, Curves, Half, Methods, Polynomial,
+    Advised, Aperture, Bands, Closings, Compare, CompareMethods, Curves, Family, Half, Methods, Polynomial,
     Proposition, Simulate, Survey, System, Tongues, Verdict, Word, WordCheck,
 };
 use number::error::{Error, Result};
@@ -98,6 +98,7 @@ const KINDS: &[Kind] = &[
     Kind::of::<Word>("word", "intervals"),
     Kind::of::<Methods>("methods", "methods"),
     Kind::of::<WordCheck>("word-check", "checks"),
+    Kind::of::<Family>("family", "members"),
     Kind::of::<Advised>("advise", "rows"),
     Kind::of::<Advised>("advise-system", "rows"),
     Kind::of::<Advised>("advise-direct", "rows"),

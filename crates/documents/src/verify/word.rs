@@ -6,7 +6,7 @@ use num_traits::{One, Zero};
 use super::context::{Checked, Context, Failure, Outcome, holds, same};
 use super::kind::Verify;
 use super::side::step;
-use crate::question::{Held, Linted, Listed, Methods, Span, Word, WordCheck};
+use crate::question::{Family, Held, Linted, Listed, Member, Members, Methods, Span, Word, WordCheck};
 use number::error::Result;
 use number::{ExactSign, Radical, Rational, Real, Ring, Sign, rational};
 use words::anharmonic::order_shown;
@@ -205,5 +205,54 @@ impl Verify for WordCheck {
             whole.failures.extend(about_words);
         }
         Ok(whole)
+    }
+}
+
+impl Verify for Family {
+    fn check(&self, members: &Members, context: &Context) -> Result<Outcome> {
+        let best = members.best.iter().try_for_each(|best| is_member(self, &best.member));
+        context.outcome(ROUTE, best, &members.all, |member| is_member(self, member))
+    }
+}
+
+/// Steps at which the bias is looked at, and the part of the worst one that these may miss.
+const STEPS: i64 = 60;
+const MISSED: f64 = 0.05;
+
+/// No step has a worse energy error than the worst one, and some step is nearly as bad.
+fn is_worst(family: &Family, member: &Member, rho: &Rational) -> Checked {
+    let Some(worst) = &member.bias else { return Ok(()) };
+    let (up_to, sum) = (family.up_to(&member.linted), Rational::one() + rho);
+    let at = |n: i64| {
+        let omega_h = &up_to * rational::ratio(n, STEPS);
+        let square = &omega_h * &omega_h;
+        let product = product(&member.linted.word, &square, rho);
+        let [b, c] = [(0, 1), (1, 0)].map(|at| product[at].enclosure(64).mid_f64());
+        let bias = -rational::to_f64(&(&square * &sum)) * b / c;
+        (bias + 1.0 / bias) / 2.0 - 1.0
+    };
+    let seen = (1..=STEPS).map(at).fold(0.0, f64::max);
+    let worst = worst.mid_f64();
+    // A few roundings beside numbers of size 1.
+    let is_so = seen <= worst + 1e-12 && seen >= (1.0 - MISSED) * worst - 1e-12;
+    holds(is_so, || format!("steps have an energy error of {seen} at most"))
+}
+
+/// The word is that of its values; its orders, its bias and the answers between its edges.
+fn is_member(family: &Family, member: &Member) -> Checked {
+    let Member { values, linted, .. } = member;
+    holds(family.word_at(values)? == linted.word, || "its word is another one".into())?;
+    let rho = linted.rho.clone().unwrap_or_default();
+    match &linted.pieces {
+        None => {
+            has_order(linted)?;
+            is_worst(family, member, &rho)?;
+            linted.spans(None).iter().try_for_each(|span| is_so(span, &linted.word, &rho))
+        }
+        Some(_) => {
+            has_general_orders(linted)?;
+            let rho = rational::to_f64(&rho);
+            linted.spans(None).iter().try_for_each(|span| is_so_in_doubles(span, &linted.word, rho, 0.0))
+        }
     }
 }

@@ -1,7 +1,5 @@
 //! Elements of the Lie algebra of drifts and kicks in commutators of Lyndon words.
 
-use num_traits::One;
-
 use super::series::{Generator, Scalar, Series};
 use number::Radical;
 
@@ -42,7 +40,7 @@ impl Bracket {
         Bracket::Pair(Box::new([Bracket::standard(&word[..at]), Bracket::standard(&word[at..])]))
     }
 
-    fn series(&self) -> Series<Radical> {
+    fn series<T: Scalar>(&self) -> Series<T> {
         match self {
             Bracket::Letter(one) => Series::generator(*one),
             Bracket::Pair(pair) => pair[0].series().commutator(&pair[1].series()),
@@ -78,20 +76,25 @@ fn is_lyndon(word: &[Generator]) -> bool {
     (1..word.len()).all(|at| word < &word[at..])
 }
 
-/// What a sum of commutators of one degree is, times `scale`, in commutators of Lyndon words. The bracketing of
-/// such a word is the word and later ones, so that the first monomial names the next commutator.
+/// What a sum of commutators of one degree is, times `scale`, in commutators of Lyndon words: in whole
+/// numbers, for fractions would be reduced at every step. The bracketing of such a word is the word and later
+/// ones, so that the first monomial names the next commutator.
 ///
-/// In the algebra of a potential, and for kicks that commute, the Lyndon words whose first monomial is rewritten do
-/// not occur, and the others stay a basis: no relation overlaps with itself.
-pub(super) fn in_commutators(mut sum: Series<Radical>, scale: &Radical, algebra: Algebra) -> Vec<ErrorTerm> {
+/// In the algebra of a potential, and for kicks that commute, the Lyndon words whose first monomial is
+/// rewritten do not occur, and the others stay a basis: no relation overlaps with itself.
+pub(super) fn in_commutators<T: Scalar>(
+    mut sum: Series<T>,
+    scale: &Radical,
+    algebra: Algebra,
+) -> Vec<ErrorTerm> {
     let mut terms = Vec::new();
     while let Some((monomial, value)) = sum.first() {
         let bracket = Bracket::standard(&monomial.generators());
-        let series = algebra.reduced(bracket.series());
-        debug_assert_eq!(series.first(), Some((monomial, Radical::one())));
+        let series = algebra.reduced(bracket.series::<T>());
+        debug_assert!(series.first().is_some_and(|(first, one)| first == monomial && one.is_one()));
         sum = sum.sum(&series, &-value.clone());
         let (commutator, turned) = bracket.text(algebra.two_forces);
-        let coefficient = &value * scale;
+        let coefficient = &value.radical() * scale;
         terms.push(ErrorTerm { commutator, coefficient: if turned { -coefficient } else { coefficient } });
     }
     terms

@@ -21,6 +21,9 @@ pub(super) enum Generator {
 
 const GENERATORS: [Generator; 3] = [Generator::B1, Generator::B2, Generator::A];
 
+/// The lower bit of every generator in a monomial.
+const LOWER_BITS: u32 = 0x5555_5555;
+
 /// A product of generators in the order of time, B1 before B2 where they touch: two bits a generator below a
 /// leading 1. Monomials of one degree are in lexicographic order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -46,10 +49,12 @@ impl Monomial {
         let mut product = self.0 << bits | next.0 & ((1 << bits) - 1);
         // A run of kicks may go on across the seam: B2 B1 = B1 B2, from the seam outwards.
         let (b1, b2) = (Generator::B1 as u32, Generator::B2 as u32);
-        let mut sorted = bits == 0;
+        let end = 2 * self.degree() + bits;
+        // Of the generators B2 alone has a lower bit.
+        let mut sorted = bits == 0 || (product ^ 1 << end) & LOWER_BITS == 0;
         while !sorted {
             sorted = true;
-            for at in (0..2 * (self.degree() + next.degree()) - 2).step_by(2) {
+            for at in (0..end - 2).step_by(2) {
                 if product >> at & 15 == b2 << 2 | b1 {
                     product = product & !(15 << at) | (b1 << 2 | b2) << at;
                     sorted = false;
@@ -61,7 +66,9 @@ impl Monomial {
 }
 
 /// Numbers that series have: whole ones, or whole ones of a field of one root.
-pub(super) trait Scalar: Clone + Zero + One + Neg<Output = Self> + AddAssign + MulAssign {
+pub(super) trait Scalar:
+    Clone + PartialEq + Zero + One + Neg<Output = Self> + AddAssign + MulAssign
+{
     /// A number of the word that is whole, in a word whose numbers are of this kind.
     fn of(x: &Radical) -> Self;
 
@@ -161,10 +168,10 @@ impl<T: Scalar> Series<T> {
         self.terms().next().map(|(monomial, value)| (monomial, value.clone()))
     }
 
-    /// The part of one degree, as numbers of a field.
-    pub(super) fn part(&self, degree: usize) -> Series<Radical> {
+    /// The part of one degree.
+    pub(super) fn part(&self, degree: usize) -> Series<T> {
         let part = self.terms().filter(|(monomial, _)| monomial.degree() == degree);
-        Series(part.map(|(monomial, value)| (monomial, value.radical())).collect())
+        Series(part.map(|(monomial, value)| (monomial, value.clone())).collect())
     }
 
     /// This + factor · other.

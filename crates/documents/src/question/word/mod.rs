@@ -2,12 +2,15 @@
 
 mod asked;
 mod catalogue;
+mod chart;
+mod family;
 mod linted;
 mod orders;
 mod shown;
 
 pub use asked::Word;
 pub use catalogue::{Listed, Methods};
+pub use family::{Best, Family, Goal, Member, Members, Parameter, Parameters};
 pub use linted::{Linted, Span};
 pub(super) use orders::{commutators, shown};
 
@@ -36,6 +39,8 @@ impl Question for Word {
         "word \"K(1/6) D(1/2) K(2/3, -1/36) D(1/2) K(1/6)\"",
         "word --method pefrl",
         "word --method respa-4 --lambda1 pi^2 --lambda2 pi^2/25 --h 1 --h-range 0..3",
+        "word \"K(b) D(1/2) K(1-2*b) D(1/2) K(b)\" --parameter b=0.15..0.25:1/100 --minimize error",
+        "word --method bcss-2 --output word.svg",
         "word --list",
         "word --check data/words/claims.toml",
     ];
@@ -97,6 +102,10 @@ impl Question for Word {
         columns.extend(self.lambda1.iter().flat_map(|_| ["h_lower", "h_upper"]));
         let people = chosen(&rows, &columns);
         document.rows(rows).for_people(people).summary(&answer.lines(self))
+    }
+
+    fn figure(&self, answer: &Linted, _: &Work) -> Result<Option<plot::Figure>> {
+        chart::figure(self, answer).map(Some)
     }
 
     fn command(&self) -> String {

@@ -1,0 +1,68 @@
+//! Words with a parameter: what is known of a word at each value, and the best value.
+
+mod asked;
+mod chart;
+mod member;
+mod search;
+mod shown;
+
+pub use asked::{Family, Goal, Parameter, Parameters};
+pub use member::Member;
+pub use search::{Best, Members};
+
+use crate::question::asking::{Fields, Question, Work};
+use crate::report::document::Document;
+use crate::report::shape::Schema;
+use number::error::{Error, Result};
+use number::parallel::try_map;
+
+/// Members times powers of the force, unless a budget says otherwise: some seconds.
+const MOST: u64 = 20_000;
+
+impl Question for Family {
+    const NAME: &'static str = "family";
+    type Answer = Members;
+
+    fn schema() -> Option<Schema> {
+        Some(shown::schema())
+    }
+
+    fn answer(&self, work: &Work) -> Result<Members> {
+        self.check()?;
+        let places = self.parameter.places()?;
+        let first = self.word_at(&places[0])?;
+        let cost = first.degree().max(1).saturating_mul(places.len() as u64);
+        let most = work.budget.unwrap_or(MOST);
+        if cost > most {
+            let what =
+                format!("these {} members cost {cost} powers of a force, the budget is {most}", places.len());
+            return Err(Error::budget(what, cost).or("choose a larger spacing"));
+        }
+        let bar = work.count(places.len() as u64, "members");
+        let all = try_map(&places, |place| {
+            let member = self.member(place, work);
+            bar.advance(1);
+            member
+        })?;
+        let degree = all.iter().filter_map(Member::nystrom_order).min().map(|order| order + 1);
+        let best = self.goal().map_or(Ok(None), |goal| self.best(goal, &all, degree, work))?;
+        Ok(Members { all, degree, best })
+    }
+
+    fn show(&self, members: &Members) -> Document {
+        shown::document(self, members)
+    }
+
+    fn figure(&self, members: &Members, _: &Work) -> Result<Option<plot::Figure>> {
+        chart::figure(self, members).map(Some)
+    }
+
+    fn command(&self) -> String {
+        let rest = Fields::input(self).into_iter().filter(|(key, _)| *key != "word");
+        let flag = |(key, value): (&str, serde_json::Value)| {
+            let value = crate::report::text::quoted(value.as_str().unwrap_or_default()).to_string();
+            format!(" --{} {value}", key.replace('_', "-"))
+        };
+        format!("kickdrift word \"{}\"{}", self.word, rest.map(flag).collect::<String>())
+    }
+}
