@@ -458,7 +458,7 @@ mod nearest {
 
 #[test]
 fn what_intervals_cost_is_asked_before_them_by_the_library_too() {
-    let text = include_str!("../data/scenes/water4.json");
+    let text = include_str!("../../data/scenes/water4.json");
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/data/scenes");
     let scene = SystemScene::from_json_in(folder, serde_json::from_str(text).unwrap()).unwrap();
     let limits = Limits { products: 30_000_000, ..Limits::default() };

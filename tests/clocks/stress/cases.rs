@@ -9,8 +9,8 @@ use num_integer::Integer;
 use num_traits::{Signed, ToPrimitive};
 use rayon::prelude::*;
 
-use crate::random::Random;
-use crate::record::Record;
+use crate::stress::random::Random;
+use crate::stress::record::Record;
 
 /// Coprime numbers up to `most`.
 fn coprime(random: &mut Random, most: u64) -> (u64, u64) {

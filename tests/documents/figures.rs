@@ -25,7 +25,7 @@ fn a_tiny_figure_is_the_same_to_the_byte() {
     if svg != golden {
         let found = std::env::temp_dir().join("kickdrift-tiny.svg");
         std::fs::write(&found, &svg).unwrap();
-        panic!("the tiny figure changed: compare tests/figures/tiny.svg with {}", found.display());
+        panic!("the tiny figure changed: compare tests/documents/figures/tiny.svg with {}", found.display());
     }
 }
 

@@ -1,7 +1,7 @@
 //! Every tier's claims on inputs built to break them. Quick parts always; the long run of ten million random
 //! and a million adversarial cases, whose log is in data/published, by
 //!
-//!     cargo test --release --test stress -- --ignored --nocapture ten_million
+//!     cargo test --release --test clocks -- --ignored --nocapture ten_million
 
 mod cases;
 mod edges;
@@ -41,7 +41,7 @@ fn neighbouring_doubles_and_hairs_about_an_edge_are_never_wrong() {
 #[test]
 #[ignore = "minutes"]
 fn ten_million_random_and_a_million_adversarial_cases() {
-    println!("cargo test --release --test stress -- --ignored --nocapture ten_million");
+    println!("cargo test --release --test clocks -- --ignored --nocapture ten_million");
     println!("seed {SEED}\n");
     let random = random(SEED, 10_000_000);
     println!("random\n{random}\n");

@@ -126,7 +126,7 @@ fn json() -> impl Strategy<Value = Value> {
     })
 }
 
-const CLAIMS: &str = include_str!("../data/words/claims.toml");
+const CLAIMS: &str = include_str!("../../data/words/claims.toml");
 
 /// As many cases as PROPTEST_CASES says, else so many.
 fn cases(most: u32) -> ProptestConfig {
@@ -135,7 +135,7 @@ fn cases(most: u32) -> ProptestConfig {
 }
 
 const SCENES: [&str; 2] =
-    [include_str!("../data/scenes/figure1.json"), include_str!("../data/scenes/small.json")];
+    [include_str!("../../data/scenes/figure1.json"), include_str!("../../data/scenes/small.json")];
 
 /// Every value inside a JSON value, by its path.
 fn paths(value: &Value, here: String, all: &mut Vec<String>) {
