@@ -111,7 +111,8 @@ pub fn band_of(measurement: &Measurement, step: &Rational, band: &Rational) -> V
 /// Where somebody has stopped the work.
 pub fn hottest(measurement: &Measurement, steps: &[Rational]) -> Result<Option<Hottest>> {
     let mut found: Option<Hottest> = None;
-    for step in steps {
+    // The longest is the step itself, and others matter where they lose a bond at less.
+    for step in steps.iter().rev() {
         let least = found.as_ref().and_then(|found| found.aperture).unwrap_or(f64::INFINITY);
         let aperture = measurement.aperture_below(step, least)?;
         if found.is_none() || aperture.is_some() {
