@@ -1,5 +1,5 @@
-//! `kickdrift mcp`: the questions as tools of the Model Context Protocol, for assistants. A line of standard input is a
-//! message of JSON-RPC, a line of standard output its answer.
+//! `kickdrift mcp`: the questions as tools of the Model Context Protocol, for assistants. A line of standard
+//! input is a message of JSON-RPC, a line of standard output its answer.
 
 use std::io::{BufRead, stdin};
 

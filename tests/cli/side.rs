@@ -48,7 +48,7 @@ fn words_of_one_force_are_compared_by_cost_and_the_least_unstable_share_comes_fi
     );
     assert_eq!(desk.run(&[words(line), vec!["--output", "side.json"]].concat()).code, Some(0));
     assert_eq!(desk.run(&["verify", "side.json"]).code, Some(0));
-    // Without it all take the same steps, as they were asked for, and the longest interval is Forest and Ruth's last.
+    // Without it all take the same steps, and the rows stand as they were asked for.
     let same = desk.run(&words(&line.replace("--by-cost ", "")));
     assert!(
         same.stdout.contains("\nforest-ruth ") && !same.stdout.contains("evaluations"),
@@ -84,7 +84,7 @@ fn what_is_no_integrator_or_no_grid_is_refused_in_a_line() {
         ),
         ("--methods pefrl --h-range 0..1 --h-step 1/9999 --rho-range 0..1 --rho-step 1/9999", "--budget"),
         ("--methods impulse", "h-range"),
-        ("--methods impulse --h-range 0..1 --h-step 1/4", "rho-range missing"),
+        ("--methods impulse --h-range 0..1 --h-step 1/4", "rho_range missing"),
     ] {
         let told = desk.run(&words(&format!("compare {line}")));
         assert!(

@@ -54,8 +54,8 @@ question! {
         consistent: Option<Truth>,
         /// Whether the word reads the same backwards.
         symmetric: Option<Truth>,
-        /// The first unstable omega h, sqrt(lambda1) h for two forces; one with decimals is held to half a unit
-        /// of its last decimal, another one (2, sqrt(12)) exactly; "none" for no limit.
+        /// The first unstable omega h, sqrt(lambda1) h for two forces; one with decimals is held to half a
+        /// unit of its last decimal, another one (2, sqrt(12)) exactly; "none" for no limit.
         limit: Option<Limit>,
     }
 }
