@@ -73,7 +73,7 @@ fn step(word: &Word, quadratic: bool, h: &Fixed, start: &[Fixed; 2]) -> Option<[
     let cube = times(&times(h, h), h);
     for letter in word.letters() {
         match letter {
-            Letter::Friction(_) => (),
+            Letter::Friction { .. } => (),
             Letter::Drift(time) => {
                 let velocity = if quadratic { v.clone() } else { &v + times(&v, &v) };
                 x += times(&by(time, h), &velocity);
