@@ -49,9 +49,13 @@ fn first_edges_are_those_known() {
     has_edge(&of("forest-ruth"), 1.5735, GRID);
     has_edge(&of("pefrl"), 2.9895, GRID);
     has_edge(&of("4mn5fv"), 3.1421, GRID);
+    has_edge(&of("predescu-3"), 4.583_768, 1e-6);
+    has_edge(&of("vefrl"), 3.469_636, 1e-6);
+    has_edge(&of("fg-adada"), 2.926_948, 1e-6);
+    has_edge(&of("fg-badadadab"), 2.184_445, 1e-6);
     has_edge(&of("bcss-4"), 5.35, 5e-3);
-    // The published decimals of these two open unstable intervals, which exact coefficients close.
-    for (name, strict) in [("bcss-3-decimals", 2.97632), ("bcss-4", 3.04299)] {
+    // The published decimals of these open unstable intervals, which exact coefficients close.
+    for (name, strict) in [("bcss-3-decimals", 2.97632), ("bcss-4", 3.04299), ("predescu-3", 2.96718)] {
         let edge = stability(&of(name)).first_edge().unwrap().s().sqrt(96).unwrap().mid_f64();
         assert!((edge - strict).abs() < 2e-5, "{name}: {edge}");
     }
@@ -93,7 +97,15 @@ fn a_word_that_was_asked_about_is_not_consistent() {
 
 #[test]
 fn the_catalogue_is_what_its_sources_say() {
-    let asymmetric = ["symplectic-euler", "mclachlan-atela-2", "mclachlan-atela-4"];
+    let asymmetric = [
+        "symplectic-euler",
+        "mclachlan-atela-2",
+        "ruth-3",
+        "mclachlan-atela-3",
+        "mclachlan-atela-4",
+        "mclachlan-atela-5",
+        "bbk",
+    ];
     for method in METHODS {
         let word = method.word();
         let order = word.order();
@@ -118,6 +130,9 @@ fn the_catalogue_is_what_its_sources_say() {
         ("bcss-2", 2),
         ("midpoint", 2),
         ("avi-3-2", 2),
+        ("ruth-3", 3),
+        ("takahashi-imada", 2),
+        ("saba-3", 2),
     ] {
         let own = of(name).order();
         assert_eq!((own.order, own.nominal), (order, order), "{name}");
@@ -772,6 +787,16 @@ fn damped_springs_are_stable_up_to_the_published_steps() {
                 "{text} {k:?} {c:?}: {lo}..{hi} {edge}"
             );
         }
+    }
+}
+
+/// Half of the friction explicit, half of it implicit: the trace is 1 + d times cos θ of Verlet, d the determinant.
+#[test]
+fn brunger_brooks_and_karplus_are_stable_as_verlet_whatever_the_friction() {
+    let text = method("bbk").unwrap().text;
+    for friction in [(1, 100), (1, 1), (3, 1), (100, 1)] {
+        let (lo, hi) = damped_edge(text, (1, 1), friction, 3.0);
+        assert!(lo <= 2.0 && 2.0 <= hi && hi - lo < 1e-12, "{friction:?}: {lo}..{hi}");
     }
 }
 

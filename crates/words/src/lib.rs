@@ -50,6 +50,7 @@ mod letters;
 mod order;
 mod point;
 mod product;
+mod published;
 mod stability;
 mod trigonometric;
 
@@ -66,5 +67,6 @@ pub use letters::{Cost, Force, Item, Letter, Place, Word};
 pub use order::{MOST_ORDER, Order};
 pub use point::{At, at};
 pub use product::{Forces, Polynomials, Product};
+pub use published::{LIMITS, Limit};
 pub use stability::{Edge, Interval, Stability};
 pub use trigonometric::{Shape, Trigonometric};

@@ -64,6 +64,11 @@ pub(super) trait Setting<S: Ring> {
 
     /// γ c h.
     fn friction(&self, c: &Radical) -> S;
+
+    /// An entry without what is not asked for: products of series grow.
+    fn trimmed(&self, x: S) -> S {
+        x
+    }
 }
 
 /// Terms of the series of flows and filters in [`Forces`]: orders up to twice as many are found.
@@ -156,6 +161,7 @@ impl<S: Ring> Product<S> {
                 let [cos, sinc] = setting.flow(*force, time);
                 let back = -S::product(&setting.force(*force), &sinc);
                 self.matrix = Matrix2::new(cos.clone(), sinc, back, cos) * &self.matrix;
+                self.matrix = self.matrix.map(|entry| setting.trimmed(entry));
             }
             Letter::Midpoint { force, time } => {
                 let (force, time) = (setting.force(*force), setting.embed(time));
