@@ -90,7 +90,7 @@ def word(
     h_range : Range, optional
         Only the intervals that meet this range of steps.
     friction : Exact, optional
-        The friction of letters O, in 1/time; without it they do nothing.
+        The friction of letters O, F and I, in 1/time; without it they do nothing.
     budget : int, optional
         The most kicks of a word; 100 unless given.
 

@@ -16,10 +16,18 @@ const BITS: u32 = 1000;
 /// Bits after the point of the ratio of two errors.
 const RATIO_BITS: u32 = 40;
 
+/// Errors below so many last bits are those of rounding.
+const ROUNDING_BITS: u32 = 50;
+
 /// The most terms of a Taylor series: those left out are below h^60, and below the last bit where fewer do.
 const MOST_TERMS: u32 = 60;
 
 type Fixed = BigInt;
+
+/// The terms for steps of 2^-`step_log2`.
+fn terms(step_log2: u32) -> u32 {
+    MOST_TERMS.min(BITS / step_log2 + 2)
+}
 
 fn fixed(x: &Rational) -> Fixed {
     (x.numer() << BITS) / x.denom()
@@ -30,19 +38,23 @@ fn times(a: &Fixed, b: &Fixed) -> Fixed {
 }
 
 /// The order that a word shows at the steps 2^-`step_log2` and half of it, to about the shorter one; rounded
-/// coefficients show theirs at long steps, and what they leave at short ones. `None` where a letter is no kick and
-/// no drift, where a force gradient meets a kinetic energy that is not quadratic, and where nothing is off.
+/// coefficients show theirs at long steps, and what they leave at short ones. `None` where a letter is no kick, no
+/// drift and no flow, where a force gradient meets a kinetic energy that is not quadratic, and where nothing is off.
 pub fn order_shown(word: &Word, quadratic: bool, step_log2: u32) -> Option<f64> {
     let start = [(3, 10), (2, 5)].map(|(n, d): (i64, i64)| fixed(&Rational::new(n.into(), d.into())));
     let error = |log2: u32| {
         let h = BigInt::from(1) << (BITS - log2);
         let (step, solution) = (
-            step(word, quadratic, &h, &start)?,
-            solution(quadratic, &h, &start, MOST_TERMS.min(BITS / log2 + 2)),
+            step(word, quadratic, &h, log2, &start)?,
+            solution(quadratic, Force::All, &h, &start, terms(log2)),
         );
         Some([0, 1].iter().map(|&i| (&step[i] - &solution[i]).abs()).sum::<Fixed>())
     };
     let (coarse, fine) = (error(step_log2)?, error(step_log2 + 1)?);
+    // Flows are followed to the last bits.
+    if fine.bits() < u64::from(ROUNDING_BITS) {
+        return None;
+    }
     let ratio = (coarse << RATIO_BITS).checked_div(&fine)?.to_f64()?;
     (ratio > 0.0).then(|| ratio.log2() - f64::from(RATIO_BITS) - 1.0)
 }
@@ -67,13 +79,13 @@ fn slope(force: Force, x: &Fixed) -> Fixed {
     }
 }
 
-fn step(word: &Word, quadratic: bool, h: &Fixed, start: &[Fixed; 2]) -> Option<[Fixed; 2]> {
+fn step(word: &Word, quadratic: bool, h: &Fixed, log2: u32, start: &[Fixed; 2]) -> Option<[Fixed; 2]> {
     let [mut x, mut v] = start.clone();
     let by = |c: &Radical, time: &Fixed| times(&fixed(&c.enclosure(BITS).upper()), time);
     let cube = times(&times(h, h), h);
     for letter in word.letters() {
         match letter {
-            Letter::Friction(_) => (),
+            Letter::Friction { .. } => (),
             Letter::Drift(time) => {
                 let velocity = if quadratic { v.clone() } else { &v + times(&v, &v) };
                 x += times(&by(time, h), &velocity);
@@ -91,14 +103,17 @@ fn step(word: &Word, quadratic: bool, h: &Fixed, start: &[Fixed; 2]) -> Option<[
                     v -= times(&by(strength, &cube), &times(&slope(*named, &x), &pull));
                 }
             }
-            Letter::Flow { .. } | Letter::Midpoint { .. } => return None,
+            Letter::Flow { force, time } => {
+                [x, v] = solution(quadratic, *force, &by(time, h), &[x, v], terms(log2));
+            }
+            Letter::Midpoint { .. } => return None,
         }
     }
     Some([x, v])
 }
 
-/// The solution after h by its Taylor series.
-fn solution(quadratic: bool, h: &Fixed, start: &[Fixed; 2], terms: u32) -> [Fixed; 2] {
+/// The solution after h, moved by one force or by both, by its Taylor series.
+fn solution(quadratic: bool, force: Force, h: &Fixed, start: &[Fixed; 2], terms: u32) -> [Fixed; 2] {
     let coefficient =
         |a: &[Fixed], b: &[Fixed], n: usize| (0..=n).map(|k| times(&a[k], &b[n - k])).sum::<Fixed>();
     let [mut x, mut v] = start.clone().map(|value| vec![value]);
@@ -106,7 +121,12 @@ fn solution(quadratic: bool, h: &Fixed, start: &[Fixed; 2], terms: u32) -> [Fixe
     for n in 0..terms as usize {
         squares.push(coefficient(&x, &x, n));
         let velocity = if quadratic { v[n].clone() } else { &v[n] + coefficient(&v, &v, n) };
-        let pull = -(&x[n] + &squares[n] + coefficient(&squares, &x, n));
+        let (first, second) = (-(&x[n] + &squares[n]), -coefficient(&squares, &x, n));
+        let pull = match force {
+            Force::First => first,
+            Force::Second => second,
+            Force::All => first + second,
+        };
         x.push(velocity / (n + 1));
         v.push(pull / (n + 1));
     }

@@ -1,15 +1,16 @@
 //! Words with exact flows, filters or friction, in balls.
 //!
-//! Of the step's matrix over its denominator q, with T its trace and E its determinant, the powers are
-//! bounded if |T| < q (1 + E) and E ≤ 1 (Jury's conditions for two eigenvalues inside the unit circle; for
-//! E = 1 they are on it and differ), and unbounded if |T| > q (1 + E). Over an interval of steps q (1 + E) ∓
-//! T is enclosed by its value in the middle and the balls of its derivative over the whole, so that the width
+//! A step's matrix is divided by q e, q of midpoints and e of implicit friction; with T the matrix's trace and
+//! d/e the step's determinant, the powers are bounded if |T| < q (e + d) and d ≤ e, q and e being positive (Jury's
+//! conditions for two eigenvalues inside the unit circle; for d = e they are on it and differ), and unbounded if
+//! |T| > q (e + d) or d > e. Over an interval of steps q (e + d) ∓ T is enclosed by its value in the middle and the balls of its derivative over the whole, so that the width
 //! of cells falls with the distance from an edge, and not with its square where the trace only touches ±2.
 
 use std::cell::Cell;
 
 use num_traits::One;
 
+use super::exactly::Exact;
 use super::filter::Filter;
 use super::letters::{Force, Word};
 use super::point::At;
@@ -26,14 +27,20 @@ pub(super) const HALVINGS: u32 = 44;
 /// The most cells of one range.
 const MOST_CELLS: usize = 200_000;
 
+/// Exponents of repulsive flows and of friction beyond this, e^(2^14), are left undecided.
+const MOST_EXPONENT_LOG2: u32 = 14;
+
 type Jet = jet::Jet<BITS>;
 
-/// An oscillator that a word integrates, its stiffnesses positive where the word has their exact flow.
+/// An oscillator that a word integrates.
 #[derive(Clone, Debug)]
 pub struct Enclosed<'a> {
     word: &'a Word,
-    stiffness: [Ball; 2],
+    /// Λ1, Λ2 and their sum.
+    stiffness: [Ball; 3],
     friction: Ball,
+    /// The same, where numbers are known that may be rational.
+    exactly: Option<Exact>,
 }
 
 /// Steps with one answer, each end enclosed. Between two neighbours of the same answer lies a place of which
@@ -48,9 +55,9 @@ pub struct Piece {
 /// The letters at one step or over an interval of steps h.
 struct Steps {
     h: Jet,
-    stiffness: [Ball; 2],
+    stiffness: [Ball; 3],
     friction: Ball,
-    /// Cleared where a filter has a pole.
+    /// Cleared where a filter has a pole, and where exponents are too large.
     defined: Cell<bool>,
 }
 
@@ -60,28 +67,58 @@ impl Steps {
     }
 
     /// Λ of a force.
-    fn stiffness(&self, force: Force) -> Ball {
-        let [fast, slow] = &self.stiffness;
+    fn stiffness(&self, force: Force) -> &Ball {
+        let [fast, slow, sum] = &self.stiffness;
         match force {
-            Force::All => fast.add(slow, BITS),
-            Force::First => fast.clone(),
-            Force::Second => slow.clone(),
+            Force::All => sum,
+            Force::First => fast,
+            Force::Second => slow,
         }
     }
 
-    /// √Λ of a force; 0 for what is not positive.
-    fn frequency(&self, force: Force) -> Ball {
-        self.stiffness(force).sqrt_clipped(BITS).unwrap_or_else(|| {
-            self.defined.set(false);
-            Ball::zero()
-        })
+    fn undefined(&self) -> Ball {
+        self.defined.set(false);
+        Ball::zero()
+    }
+
+    /// √|Λ| of a force, and whether it repels; 0 where its sign is not known.
+    fn frequency(&self, force: Force) -> (Ball, bool) {
+        let stiffness = self.stiffness(force);
+        let repels = stiffness.sign() == Some(Sign::Negative);
+        let size = if repels { stiffness.neg() } else { stiffness.clone() };
+        (size.sqrt_clipped(BITS).unwrap_or_else(|| self.undefined()), repels)
+    }
+
+    fn exp(&self, x: &Ball) -> Ball {
+        let limit = Ball::one().scale2(MOST_EXPONENT_LOG2.into());
+        if x.compare(&limit) == Some(std::cmp::Ordering::Less) { x.exp(BITS) } else { self.undefined() }
+    }
+
+    /// cosh x and sinh x.
+    fn hyperbolic(&self, x: &Ball) -> [Ball; 2] {
+        let (up, down) = (self.exp(x), self.exp(&x.neg()));
+        [up.add(&down, BITS).scale2(-1), up.sub(&down, BITS).scale2(-1)]
+    }
+
+    /// cosh x and sinh x / x, for x ≥ 0; about 0 by the bounds 1 ≤ sinh x / x ≤ cosh x, whose slope is at most
+    /// x/3 cosh x.
+    fn repelled(&self, x: &Jet) -> [Jet; 2] {
+        let ball = &x.value;
+        let [cosh, sinh] = self.hyperbolic(ball);
+        let (sinhc, slope) = if ball.is_away_from_zero() {
+            let sinhc = self.over(&sinh, ball);
+            let slope = self.over(&cosh.sub(&sinhc, BITS), ball);
+            (sinhc, slope)
+        } else {
+            let third = Ball::from_rational(&Rational::new(1.into(), 3.into()), BITS);
+            let most = ball.mul(&cosh, BITS).mul(&third, BITS);
+            (Ball::one().union(&cosh, BITS), Ball::zero().union(&most, BITS))
+        };
+        [x.chained(cosh, &sinh), x.chained(sinhc, &slope)]
     }
 
     fn over(&self, x: &Ball, by: &Ball) -> Ball {
-        x.div(by, BITS).unwrap_or_else(|| {
-            self.defined.set(false);
-            Ball::zero()
-        })
+        x.div(by, BITS).unwrap_or_else(|| self.undefined())
     }
 
     /// cos x.
@@ -106,7 +143,7 @@ impl Steps {
 
 impl Setting<Jet> for Steps {
     fn force(&self, force: Force) -> Jet {
-        Jet::product(&Jet::product(&self.h, &self.h), &self.constant(self.stiffness(force)))
+        Jet::product(&Jet::product(&self.h, &self.h), &self.constant(self.stiffness(force).clone()))
     }
 
     fn embed(&self, c: &Radical) -> Jet {
@@ -114,17 +151,18 @@ impl Setting<Jet> for Steps {
     }
 
     fn flow(&self, force: Force, c: &Radical) -> [Jet; 2] {
-        let c = c.enclosure(BITS);
+        let (c, (frequency, repels)) = (c.enclosure(BITS), self.frequency(force));
         // Both are even in c.
-        let x = Jet::product(&self.h, &self.constant(self.frequency(force).mul(&c.abs(), BITS)));
-        [Steps::cos(&x), Jet::product(&self.sinc(&x), &self.constant(c))]
+        let x = Jet::product(&self.h, &self.constant(frequency.mul(&c.abs(), BITS)));
+        let [cos, sinc] = if repels { self.repelled(&x) } else { [Steps::cos(&x), self.sinc(&x)] };
+        [cos, Jet::product(&sinc, &self.constant(c))]
     }
 
     fn filter(&self, filter: Filter) -> Jet {
         if filter.zero {
             return self.constant(Ball::zero());
         }
-        let half = Jet::product(&self.h, &self.constant(self.frequency(Force::First).scale2(-1)));
+        let half = Jet::product(&self.h, &self.constant(self.frequency(Force::First).0.scale2(-1)));
         let power = |x: Jet, n: i32| {
             let jet = (0..n.unsigned_abs()).fold(Jet::one(), |product, _| Jet::product(&product, &x));
             if n >= 0 {
@@ -138,10 +176,13 @@ impl Setting<Jet> for Steps {
     }
 
     fn damping(&self, c: &Radical) -> Jet {
-        let rate = self.friction.mul(&c.enclosure(BITS), BITS).neg();
-        let x = Jet::product(&self.h, &self.constant(rate));
-        let value = x.value.exp(BITS);
+        let x = -self.friction(c);
+        let value = self.exp(&x.value);
         x.chained(value.clone(), &value)
+    }
+
+    fn friction(&self, c: &Radical) -> Jet {
+        Jet::product(&self.h, &self.constant(self.friction.mul(&c.enclosure(BITS), BITS)))
     }
 }
 
@@ -149,14 +190,23 @@ impl<'a> Enclosed<'a> {
     /// A word, its stiffnesses, its friction γ ≥ 0.
     pub fn new(word: &'a Word, fast: &Laurent, slow: &Laurent, friction: &Laurent) -> Enclosed<'a> {
         let ball = |x: &Laurent| x.enclosure(BITS);
-        Enclosed { word, stiffness: [ball(fast), ball(slow)], friction: ball(friction) }
+        let sum = fast.clone() + slow.clone();
+        let exactly = word.is_algebraic() && word.is_damped_rationally();
+        Enclosed {
+            word,
+            stiffness: [ball(fast), ball(slow), ball(&sum)],
+            friction: ball(friction),
+            exactly: exactly
+                .then(|| Exact { stiffness: [fast, slow].map(Clone::clone), friction: friction.clone() }),
+        }
     }
 
     /// At h² Λ1 = s and h² Λ2 = ρ s, h being 1; no friction.
     pub(super) fn scaled(word: &'a Word, s: &Laurent, rho: &Rational) -> Enclosed<'a> {
         let fast = s.enclosure(BITS);
-        let slow = fast.mul(&Ball::from_rational(rho, BITS), BITS);
-        Enclosed { word, stiffness: [fast, slow], friction: Ball::zero() }
+        let times = |x: &Rational| fast.mul(&Ball::from_rational(x, BITS), BITS);
+        let stiffness = [fast.clone(), times(rho), times(&(rho + Rational::one()))];
+        Enclosed { word, stiffness, friction: Ball::zero(), exactly: None }
     }
 
     /// The product over all steps of a ball; `None` where a filter has a pole.
@@ -171,13 +221,6 @@ impl<'a> Enclosed<'a> {
         steps.defined.get().then_some(product)
     }
 
-    /// q (1 + E) − T and q (1 + E) + T.
-    fn margins(product: &Product<Jet>) -> [Jet; 2] {
-        let (trace, q) = (product.trace(), &product.denominator);
-        let sum = Jet::product(q, &(Jet::one() + product.damping.clone()));
-        [&sum - &trace, &sum + &trace]
-    }
-
     /// Whether all steps of [lo, hi] are stable or all unstable; `None` where that is undecided.
     fn verdict(&self, lo: f64, hi: f64) -> Option<bool> {
         let exact = |x: f64| {
@@ -188,7 +231,7 @@ impl<'a> Enclosed<'a> {
         let (middle, cell) = (exact(lo + (hi - lo) / 2.0), lower.union(&upper, BITS));
         let (here, over) = (self.product(middle.clone())?, self.product(cell.clone())?);
         let off = cell.sub(&middle, BITS);
-        let pairs = Self::margins(&here).into_iter().zip(Self::margins(&over));
+        let pairs = here.margins().into_iter().zip(over.margins());
         // The value in the middle and the mean value theorem.
         let signs: Vec<Option<Sign>> = pairs
             .map(|(here, over)| {
@@ -198,19 +241,21 @@ impl<'a> Enclosed<'a> {
         stable(&over, [signs[0], signs[1]])
     }
 
-    /// The answer at one step h > 0. `kind` is `edge` where balls of 128 bits cannot decide, and `damped`
-    /// where friction draws all to 0.
+    /// The answer at one step h > 0. `kind` is `edge` where balls of 128 bits cannot decide, `damped` where
+    /// friction draws all to 0, and `marginal` where an eigenvalue is on the unit circle and the other one inside.
+    /// Where every number is rational it is decided.
     pub fn at(&self, h: &Laurent) -> Option<At> {
         let product = self.product(h.enclosure(BITS))?;
         let q = &product.denominator.value;
-        let trace = product.trace().value.div(q, BITS)?;
-        let determinant = product.damping.value.clone();
-        let [above, below] = Self::margins(&product).map(|margin| margin.value.sign());
+        let implicit = &product.implicit.value;
+        let trace = product.trace().value.div(&q.mul(implicit, BITS), BITS)?;
+        let determinant = product.damping.value.div(implicit, BITS)?;
+        let [above, below] = product.margins().map(|margin| margin.value.sign());
         let damped = determinant.compare(&Ball::one()) == Some(std::cmp::Ordering::Less);
         let stable = stable(&product, [above, below]);
         let mut found = At {
             kind: match stable {
-                None => "edge",
+                None => self.exactly.as_ref().and_then(|exact| exact.kind(self.word, h)).unwrap_or("edge"),
                 Some(false) => "hyperbolic",
                 Some(true) if damped => "damped",
                 Some(true) => "elliptic",
@@ -256,14 +301,18 @@ impl<'a> Enclosed<'a> {
 /// Whether a step is stable: both margins are positive. `None` where neither this nor a negative margin is
 /// proven.
 fn stable(product: &Product<Jet>, margins: [Option<Sign>; 2]) -> Option<bool> {
-    // Letters O that sum to less than 0 feed energy in.
-    match product.damping.value.compare(&Ball::one()) {
-        Some(std::cmp::Ordering::Greater) => return Some(false),
-        None => return None,
-        Some(_) => (),
+    let (damping, implicit) = (&product.damping.value, &product.implicit.value);
+    let side = implicit.sign()?;
+    // Friction below 0 feeds energy in; an explicit step that is too long does, too.
+    match (damping.compare(implicit)?, side) {
+        (_, Sign::Zero) => return None,
+        (std::cmp::Ordering::Greater, Sign::Positive) | (std::cmp::Ordering::Less, Sign::Negative) => {
+            return Some(false);
+        }
+        _ => (),
     }
     // A negative denominator turns both.
-    let margins = match product.denominator.value.sign()? {
+    let margins = match product.denominator.value.sign()? * side {
         Sign::Positive => margins,
         Sign::Negative => margins.map(|margins| margins.map(|sign| sign * Sign::Negative)),
         Sign::Zero => return None,

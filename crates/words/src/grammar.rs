@@ -3,6 +3,7 @@
 use std::str::FromStr;
 
 use super::coefficient::{Read, Reader, TWO_FIELDS};
+use super::damping::Damping;
 use super::filter::Filter;
 use super::letters::{Force, Item, Letter, Word};
 use num_traits::Zero;
@@ -64,7 +65,7 @@ impl Word {
     }
 }
 
-const LETTERS: &str = "the letters are K, K1, K2, D, C, C1, C2, R, R1, R2, O and n*(...)";
+const LETTERS: &str = "the letters are K, K1, K2, D, C, C1, C2, R, R1, R2, O, F, I and n*(...)";
 
 const FILTERS: &str =
     "a filter is made of sinc(x), sinc(x/2), cos(x/2), their powers, 1 and 0, as [sinc(x/2)^2]";
@@ -81,7 +82,7 @@ impl Reader<'_> {
             self.skip('\0');
             match self.peek() {
                 Some(c) if c.is_ascii_digit() => items.push(self.repeated()?),
-                Some('K' | 'D' | 'C' | 'R' | 'O') => items.push(Item::Letter(self.letter()?)),
+                Some('K' | 'D' | 'C' | 'R' | 'O' | 'F' | 'I') => items.push(Item::Letter(self.letter()?)),
                 _ => return Ok(items),
             }
         }
@@ -129,10 +130,12 @@ impl Reader<'_> {
             (b'K', _) => self.wrong(at, format!("a kick has {MAX_POWERS} powers of the force at most")),
             (_, 2..) => self.wrong(at, format!("{name} has one coefficient")),
             (b'D', _) if force == Force::All => Ok(Letter::Drift(powers.remove(0))),
-            (b'O', _) if force == Force::All => Ok(Letter::Friction(powers.remove(0))),
             (b'C', _) => Ok(Letter::Midpoint { force, time: powers.remove(0) }),
             (b'R', _) => Ok(Letter::Flow { force, time: powers.remove(0) }),
-            _ => self.wrong(at, format!("{name} is no letter; {LETTERS}")),
+            (letter, _) => match Damping::of(letter.into()).filter(|_| force == Force::All) {
+                Some(damping) => Ok(Letter::Friction { damping, time: powers.remove(0) }),
+                None => self.wrong(at, format!("{name} is no letter; {LETTERS}")),
+            },
         }
     }
 

@@ -4,6 +4,7 @@ use std::fmt;
 
 use num_traits::{One, Zero};
 
+use super::damping::Damping;
 use super::filter::Filter;
 use number::{Radical, Rational};
 
@@ -29,8 +30,8 @@ pub enum Letter {
     Midpoint { force: Force, time: Radical },
     /// R(c): the exact flow of x'' + Λ x = 0 over c h.
     Flow { force: Force, time: Radical },
-    /// O(c): friction alone over c h, v ← exp(−γ c h) v.
-    Friction(Radical),
+    /// O(c), F(c), I(c): friction alone over c h.
+    Friction { damping: Damping, time: Radical },
 }
 
 /// A letter, or a word that is repeated.
@@ -89,7 +90,7 @@ impl Letter {
     fn numbers(&mut self) -> &mut [Radical] {
         match self {
             Letter::Drift(time)
-            | Letter::Friction(time)
+            | Letter::Friction { time, .. }
             | Letter::Midpoint { time, .. }
             | Letter::Flow { time, .. } => std::slice::from_mut(time),
             Letter::Kick { powers, .. } => powers,
@@ -100,7 +101,7 @@ impl Letter {
     pub(super) fn coefficients(&self) -> &[Radical] {
         match self {
             Letter::Drift(time)
-            | Letter::Friction(time)
+            | Letter::Friction { time, .. }
             | Letter::Midpoint { time, .. }
             | Letter::Flow { time, .. } => std::slice::from_ref(time),
             Letter::Kick { powers, .. } => powers,
@@ -113,7 +114,7 @@ impl Letter {
 
     pub(super) fn force(&self) -> Option<Force> {
         match self {
-            Letter::Drift(_) | Letter::Friction(_) => None,
+            Letter::Drift(_) | Letter::Friction { .. } => None,
             Letter::Kick { force, .. } | Letter::Midpoint { force, .. } | Letter::Flow { force, .. } => {
                 Some(*force)
             }
@@ -125,8 +126,12 @@ impl Letter {
         if let Letter::Kick { filter, .. } = self { Some(*filter) } else { None }
     }
 
+    fn damping(&self) -> Option<Damping> {
+        if let Letter::Friction { damping, .. } = self { Some(*damping) } else { None }
+    }
+
     fn moves(&self) -> bool {
-        !matches!(self, Letter::Kick { .. } | Letter::Friction(_))
+        !matches!(self, Letter::Kick { .. } | Letter::Friction { .. })
     }
 }
 
@@ -203,7 +208,7 @@ impl Word {
     }
 
     /// Whether its entries are algebraic in h: it has neither exact flows nor filters. Friction is not
-    /// counted: without it O does nothing.
+    /// counted: without it O, F and I do nothing.
     pub fn is_algebraic(&self) -> bool {
         !self.any(|letter| match letter {
             Letter::Flow { .. } => true,
@@ -212,14 +217,14 @@ impl Word {
         })
     }
 
-    /// Whether it has letters O.
+    /// Whether it has letters O, F or I.
     pub fn has_friction(&self) -> bool {
-        self.any(|letter| matches!(letter, Letter::Friction(_)))
+        self.any(|letter| matches!(letter, Letter::Friction { .. }))
     }
 
-    /// Whether exact flows need a force beside the first one to attract.
-    pub fn turns_second(&self) -> bool {
-        self.any(|letter| matches!(letter, Letter::Flow { force: Force::All | Force::Second, .. }))
+    /// Whether its friction is rational in h: it has no letters O.
+    pub fn is_damped_rationally(&self) -> bool {
+        !self.any(|letter| matches!(letter, Letter::Friction { damping: Damping::Exact, .. }))
     }
 
     /// The letters one by one. Its length is [`Word::len`]: to be known before.
@@ -258,7 +263,7 @@ impl Word {
     }
 
     /// Σ of the drifts, of the kicks of each force that the word names (midpoints and flows are both; a kick
-    /// whose filter is 0 is none), and of friction where there is some; consistent iff each is 1.
+    /// whose filter is 0 is none), and of O, F and I together where there are some; consistent iff each is 1.
     pub fn sums(&self) -> Vec<(&'static str, Radical)> {
         let names = if self.names_forces() { &["D", "K1", "K2"][..] } else { &["D", "K"] };
         let friction = self.has_friction().then_some("O");
@@ -267,7 +272,7 @@ impl Word {
         for letter in self.letters() {
             let (drift, force, c) = match letter {
                 Letter::Drift(time) => (true, None, time),
-                Letter::Friction(time) => (false, None, time),
+                Letter::Friction { time, .. } => (false, None, time),
                 Letter::Kick { filter, .. } if filter.zero => continue,
                 Letter::Kick { force, powers, .. } => (false, Some(*force), &powers[0]),
                 Letter::Midpoint { force, time } | Letter::Flow { force, time } => (true, Some(*force), time),
@@ -382,11 +387,16 @@ fn join(all: &mut Vec<Letter>, letter: Letter) {
     let place =
         all.iter().rposition(|letter| !matches!(letter, Letter::Kick { .. })).map_or(0, |last| last + 1);
     match &letter {
-        Letter::Drift(time) | Letter::Friction(time) | Letter::Flow { time, .. } => {
+        // Two steps of them are none over the sum of both.
+        Letter::Midpoint { .. } | Letter::Friction { damping: Damping::Explicit | Damping::Implicit, .. } => {
+            all.push(letter);
+        }
+        Letter::Drift(time) | Letter::Friction { time, .. } | Letter::Flow { time, .. } => {
             // Flows of one force over two times are one over their sum.
             let last = all.last_mut().filter(|own| {
                 std::mem::discriminant(*own) == std::mem::discriminant(&letter)
                     && own.force() == letter.force()
+                    && own.damping() == letter.damping()
             });
             let Some(element) = last.and_then(|letter| letter.numbers().first_mut()) else {
                 return all.push(letter);
@@ -396,7 +406,6 @@ fn join(all: &mut Vec<Letter>, letter: Letter) {
                 all.pop();
             }
         }
-        Letter::Midpoint { .. } => all.push(letter),
         Letter::Kick { force, filter, powers } => {
             let key = (Some(*force), Some(*filter));
             let of = |letter: &Letter| (letter.force(), letter.filter());
@@ -450,7 +459,7 @@ impl fmt::Display for Letter {
         let number = |x: &Radical| x.text(text);
         match self {
             Letter::Drift(time) => write!(f, "D({})", number(time)),
-            Letter::Friction(time) => write!(f, "O({})", number(time)),
+            Letter::Friction { damping, time } => write!(f, "{}({})", damping.letter(), number(time)),
             Letter::Midpoint { time, .. } => write!(f, "C{name}({})", number(time)),
             Letter::Flow { time, .. } => write!(f, "R{name}({})", number(time)),
             Letter::Kick { powers, filter, .. } => {

@@ -6,8 +6,8 @@ use number::{Ball, ExactSign, Laurent, Polynomial, Radical, Real, Ring, Sign};
 /// The propagator of one step at s = h² Λ1.
 #[derive(Clone, Debug)]
 pub struct At {
-    /// `elliptic`, `hyperbolic`, `parabolic` or `coexistence`, decided; of words in balls also `damped`, and
-    /// `edge` where they cannot decide it.
+    /// `elliptic`, `hyperbolic`, `parabolic` or `coexistence`, decided; with friction also `damped`, both
+    /// eigenvalues inside the unit circle, and `marginal`, one on it; `edge` where balls cannot decide it.
     pub kind: &'static str,
     /// 1 where the trace is at least 2, −1 where it is at most −2, else 0.
     pub side: i8,
@@ -21,7 +21,7 @@ pub struct At {
 }
 
 impl At {
-    /// Whether the powers are bounded.
+    /// Whether the powers are bounded; with friction, whether they fall to 0.
     pub fn is_stable(&self) -> bool {
         matches!(self.kind, "elliptic" | "coexistence" | "damped")
     }

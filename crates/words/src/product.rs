@@ -3,6 +3,7 @@
 use nalgebra::Matrix2;
 use num_traits::{One, Zero};
 
+use super::damping::Damping;
 use super::filter::Filter;
 use super::letters::{Force, Item, Letter, Word};
 use clocks::propagator::methods::respa::power;
@@ -15,14 +16,17 @@ pub struct Forces<S> {
     pub embed: fn(&Radical) -> S,
 }
 
-/// A product of letters in the coordinates (x, h v): the matrix divided by the denominator. The matrix's
-/// determinant is the square of the denominator times the damping; the denominator is 1 without midpoints.
+/// A product of letters in the coordinates (x, h v): the matrix divided by the denominator and by what
+/// implicit friction divides by, q and e. The matrix's determinant is q² e d, d the damping, so the step's is d/e.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Product<S> {
     pub matrix: Matrix2<S>,
+    /// q: 1 without midpoints.
     pub denominator: S,
-    /// The product of all exp(−γ c h): 1 without friction.
+    /// d: the product of all exp(−γ c h) of letters O and 1 − γ c h of letters F; 1 without friction.
     pub damping: S,
+    /// e: the product of all 1 + γ c h of letters I; 1 without friction.
+    pub implicit: S,
 }
 
 /// The entries as polynomials in s = h² Λ1.
@@ -57,6 +61,14 @@ pub(super) trait Setting<S: Ring> {
 
     /// exp(−γ c h).
     fn damping(&self, c: &Radical) -> S;
+
+    /// γ c h.
+    fn friction(&self, c: &Radical) -> S;
+
+    /// An entry without what is not asked for: products of series grow.
+    fn trimmed(&self, x: S) -> S {
+        x
+    }
 }
 
 /// Terms of the series of flows and filters in [`Forces`]: orders up to twice as many are found.
@@ -106,23 +118,32 @@ impl<S: Ring> Setting<S> for Forces<S> {
     fn damping(&self, _: &Radical) -> S {
         S::one()
     }
+
+    fn friction(&self, _: &Radical) -> S {
+        S::zero()
+    }
 }
 
 impl<S: Ring> Product<S> {
     fn identity() -> Self {
         let unit = Matrix2::new(S::one(), S::zero(), S::zero(), S::one());
-        Product { matrix: unit, denominator: S::one(), damping: S::one() }
+        Product { matrix: unit, denominator: S::one(), damping: S::one(), implicit: S::one() }
     }
 
     fn times(&mut self, letter: &Letter, setting: &impl Setting<S>) {
         match letter {
             Letter::Drift(time) => apply_drift(&mut self.matrix, &setting.embed(time)),
-            Letter::Friction(time) => {
-                let damping = setting.damping(time);
+            Letter::Friction { damping, time } => {
+                let (row, factor) = match damping {
+                    Damping::Exact => (1, setting.damping(time)),
+                    Damping::Explicit => (1, S::one() + -setting.friction(time)),
+                    // Positions by it, and all over it.
+                    Damping::Implicit => (0, S::one() + setting.friction(time)),
+                };
                 for column in 0..2 {
-                    self.matrix[(1, column)] *= damping.clone();
+                    self.matrix[(row, column)] *= factor.clone();
                 }
-                self.damping *= damping;
+                *(if row == 1 { &mut self.damping } else { &mut self.implicit }) *= factor;
             }
             Letter::Kick { force, filter, powers } => {
                 let force = setting.force(*force);
@@ -140,6 +161,7 @@ impl<S: Ring> Product<S> {
                 let [cos, sinc] = setting.flow(*force, time);
                 let back = -S::product(&setting.force(*force), &sinc);
                 self.matrix = Matrix2::new(cos.clone(), sinc, back, cos) * &self.matrix;
+                self.matrix = self.matrix.map(|entry| setting.trimmed(entry));
             }
             Letter::Midpoint { force, time } => {
                 let (force, time) = (setting.force(*force), setting.embed(time));
@@ -162,21 +184,30 @@ impl<S: Ring> Product<S> {
             match item {
                 Item::Letter(letter) => product.times(letter, setting),
                 Item::Repeat(times, inside) => {
-                    let Product { matrix, denominator, damping } = Product::items(inside, setting);
+                    let Product { matrix, denominator, damping, implicit } = Product::items(inside, setting);
                     product.matrix = power(matrix, *times) * &product.matrix;
-                    let scalars = Matrix2::new(denominator, S::zero(), S::zero(), damping);
-                    let scalars = power(scalars, *times);
-                    product.denominator *= scalars[(0, 0)].clone();
-                    product.damping *= scalars[(1, 1)].clone();
+                    let raised = |x: S| {
+                        power(Matrix2::new(x, S::zero(), S::zero(), S::zero()), *times)[(0, 0)].clone()
+                    };
+                    product.denominator *= raised(denominator);
+                    product.damping *= raised(damping);
+                    product.implicit *= raised(implicit);
                 }
             }
         }
         product
     }
 
-    /// The trace times the denominator.
+    /// The trace times q e.
     pub fn trace(&self) -> S {
         self.matrix[(0, 0)].clone() + self.matrix[(1, 1)].clone()
+    }
+
+    /// q (e + d) − T and q (e + d) + T, T the trace times q e.
+    pub(super) fn margins(&self) -> [S; 2] {
+        let sum = S::product(&self.denominator, &(self.implicit.clone() + self.damping.clone()));
+        let trace = self.trace();
+        [sum.clone() + -trace.clone(), sum + trace]
     }
 }
 
@@ -197,7 +228,7 @@ impl Word {
     pub fn degree(&self) -> u64 {
         fn of(items: &[Item]) -> u64 {
             let one = |item: &Item| match item {
-                Item::Letter(Letter::Drift(_) | Letter::Friction(_)) => 0,
+                Item::Letter(Letter::Drift(_) | Letter::Friction { .. }) => 0,
                 Item::Letter(Letter::Flow { .. }) => TERMS as u64,
                 Item::Letter(Letter::Kick { powers, .. }) => powers.len() as u64,
                 Item::Letter(Letter::Midpoint { .. }) => 1,

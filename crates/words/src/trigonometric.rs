@@ -145,7 +145,7 @@ impl Shape {
     /// whatever order and shares they stand around each other.
     pub fn of(word: &Word) -> Option<Shape> {
         let mut letters: Vec<Letter> = word.joined();
-        letters.retain(|letter| !matches!(letter, Letter::Friction(_)));
+        letters.retain(|letter| !matches!(letter, Letter::Friction { .. }));
         if letters.len() == 3 {
             // Their traces are those of the words that begin elsewhere.
             let last = letters.pop()?;

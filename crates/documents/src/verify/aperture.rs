@@ -47,7 +47,7 @@ impl Plain {
     /// A bond at a temperature in K by a word; `slow` is the slow force's period in fs.
     pub fn of(bond: &Bond, word: &Word, temperature: &Rational, slow: Option<&Rational>) -> Plain {
         let letters = word.letters();
-        let is_thermostat = |letter: &Letter| matches!(letter, Letter::Friction(_));
+        let is_thermostat = |letter: &Letter| matches!(letter, Letter::Friction { .. });
         let ends = letters.iter().enumerate().filter(|(_, letter)| is_thermostat(letter));
         let is_within = ends.map(|(at, _)| at).any(|at| at > 0 && at + 1 < letters.len());
         let double = |x: &Radical| x.enclosure(64).mid_f64();

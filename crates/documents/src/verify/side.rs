@@ -6,7 +6,7 @@ use crate::question::{CompareMethods, Side};
 use number::error::Result;
 use number::rational::to_f64;
 use number::{Radical, Real};
-use words::{Bounded, Force, Integrator, Letter, Word};
+use words::{Bounded, Damping, Force, Integrator, Letter, Word};
 
 const ROUTE: &str = "the trace at every point in doubles, letter by letter; points within 1e-7 of an edge may fall on either side";
 
@@ -59,6 +59,10 @@ fn sinc(x: f64) -> f64 {
     if x == 0.0 { 1.0 } else { x.sin() / x }
 }
 
+fn sinhc(x: f64) -> f64 {
+    if x == 0.0 { 1.0 } else { x.sinh() / x }
+}
+
 /// Trace and determinant of a word, letter by letter in doubles, at h² Λ1 = s, Λ2 = ρ Λ1, γ h = `friction`.
 pub(super) fn step(word: &Word, s: f64, rho: f64, friction: f64) -> (f64, f64) {
     let number = |c: &Radical| c.enclosure(64).mid_f64();
@@ -74,7 +78,14 @@ pub(super) fn step(word: &Word, s: f64, rho: f64, friction: f64) -> (f64, f64) {
             let before = (*x, *v);
             match letter {
                 Letter::Drift(time) => *x += number(time) * *v,
-                Letter::Friction(time) => *v *= (-friction * number(time)).exp(),
+                Letter::Friction { damping, time } => {
+                    let rate = friction * number(time);
+                    *v *= match damping {
+                        Damping::Exact => (-rate).exp(),
+                        Damping::Explicit => 1.0 - rate,
+                        Damping::Implicit => 1.0 / (1.0 + rate),
+                    };
+                }
                 Letter::Kick { force, filter, powers } => {
                     let f = strength(*force);
                     let kick = powers.iter().rev().fold(0.0, |sum, c| (sum + number(c)) * f);
@@ -84,9 +95,10 @@ pub(super) fn step(word: &Word, s: f64, rho: f64, friction: f64) -> (f64, f64) {
                 }
                 Letter::Flow { force, time } => {
                     let (c, f) = (number(time), strength(*force));
-                    let y = c.abs() * f.sqrt();
-                    *x = y.cos() * before.0 + c * sinc(y) * before.1;
-                    *v = -c * f * sinc(y) * before.0 + y.cos() * before.1;
+                    let y = c.abs() * f.abs().sqrt();
+                    let (cos, sinc) = if f < 0.0 { (y.cosh(), sinhc(y)) } else { (y.cos(), sinc(y)) };
+                    *x = cos * before.0 + c * sinc * before.1;
+                    *v = -c * f * sinc * before.0 + cos * before.1;
                 }
                 Letter::Midpoint { force, time } => {
                     let (c, f) = (number(time), strength(*force));

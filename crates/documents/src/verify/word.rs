@@ -36,8 +36,8 @@ fn product(word: &words::Word, s: &Rational, rho: &Rational) -> Matrix2<Radical>
         |product, letter| {
             let matrix = match letter {
                 Letter::Drift(time) => Matrix2::new(one.clone(), time.clone(), zero.clone(), one.clone()),
-                // Without friction O does nothing; words with flows take another route.
-                Letter::Friction(_) | Letter::Flow { .. } => return product,
+                // Without friction O, F and I do nothing; words with flows take another route.
+                Letter::Friction { .. } | Letter::Flow { .. } => return product,
                 Letter::Kick { filter, .. } if filter.zero => return product,
                 Letter::Kick { force: named, powers, .. } => {
                     let force = force(*named);

@@ -17,7 +17,7 @@ pub struct Stage {
 /// A method of kicks and drifts.
 ///
 /// A run is `first`, then `stages` again and again: the last kick of a step and the first one of the next
-/// are one. A letter O is where a thermostat acts; here there is no friction.
+/// are one. A letter O, F or I is where a thermostat acts; here there is no friction.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Map {
     pub first: Stage,
@@ -42,7 +42,7 @@ impl Map {
             return refused("write 10000 letters at most");
         }
         let letters = word.letters();
-        let is_thermostat = |letter: &&Letter| matches!(letter, Letter::Friction(_));
+        let is_thermostat = |letter: &&Letter| matches!(letter, Letter::Friction { .. });
         let within = letters.get(1..letters.len().saturating_sub(1)).unwrap_or_default();
         let is_thermal_within = within.iter().any(is_thermostat);
         let mut all: Vec<Stage> = Vec::new();
@@ -58,7 +58,7 @@ impl Map {
                     };
                     Stage::kicked(&mut all, bond, slow);
                 }
-                Letter::Friction(_) => {}
+                Letter::Friction { .. } => {}
                 _ => return refused("an aperture is of kicks K, K1, K2 and drifts D alone"),
             }
         }

@@ -85,7 +85,7 @@ const LOG_MULTIPLE: i64 = 2520;
 const SMALL_LOG2: usize = 30;
 
 impl Word {
-    /// The order on all problems. Letters O, friction, are left out, as in [`Word::order`].
+    /// The order on all problems. Friction is left out, as in [`Word::order`].
     ///
     /// # Errors
     /// Letters that are no exponentials of commutators.
@@ -185,7 +185,7 @@ impl<'a, T: Scalar> Expansion<'a, T> {
         let drift = Series::generator(Generator::A);
         Ok(match letter {
             Letter::Drift(time) => times(drift, time),
-            Letter::Friction(_) => Series::zero(),
+            Letter::Friction { .. } => Series::zero(),
             Letter::Flow { force, time } => times(self.kick(*force).sum(&drift, &T::one()), time),
             Letter::Midpoint { .. } => return Err(NoGeneralOrder::Midpoint),
             Letter::Kick { filter, .. } if filter.zero => Series::zero(),

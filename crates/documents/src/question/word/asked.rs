@@ -15,8 +15,8 @@ notation! {
 question! {
     /// Consistency, symmetry, order, stable steps, cost of an integrator; its verdict at one step.
     args struct Word {
-        /// The integrator: kicks K, K1, K2, drifts D, midpoints C, exact flows R, friction O, n*(...), as
-        /// "K(1/2) D(1) K(1/2)".
+        /// The integrator: kicks K, K1, K2, drifts D, midpoints C, exact flows R, friction O, F, I,
+        /// n*(...), as "K(1/2) D(1) K(1/2)".
         #[arg(value_name = "WORD", value_parser = flag::<words::Word>)]
         word: Option<words::Word>,
         /// One of the catalogue, which --list shows.
@@ -34,7 +34,7 @@ question! {
         /// Only intervals that meet this closed range of steps.
         #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<StepRange>)]
         h_range: Option<StepRange>,
-        /// The friction of letters O, in 1/time; without it they do nothing.
+        /// The friction of letters O, F and I, in 1/time; without it they do nothing.
         #[arg(long, value_name = "G", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
         friction: Option<Laurent>,
     }
@@ -46,7 +46,7 @@ impl Word {
         !word.is_algebraic() || self.friction.is_some()
     }
 
-    /// Refuses friction without a letter O, and exact flows of repulsive forces.
+    /// Refuses friction without a letter that feels it, and a second force of flows or filters that is 0.
     pub(super) fn check(&self, word: &words::Word) -> Result<()> {
         if let Some(friction) = &self.friction {
             if friction.sign() != Sign::Positive {
@@ -60,7 +60,7 @@ impl Word {
                 return Err(Error::input(
                     "friction",
                     friction,
-                    "the word has no letter O, so nothing feels it",
+                    "the word has no letter O, F or I, so nothing feels it",
                 ));
             }
             if self.lambda1.is_none() {
@@ -68,9 +68,6 @@ impl Word {
             }
         }
         match &self.lambda2 {
-            Some(lambda2) if word.turns_second() && lambda2.sign() != Sign::Positive => {
-                Err(Error::input("lambda2", lambda2, "the exact flow R2 or R is of a positive stiffness"))
-            }
             Some(lambda2) if !word.is_algebraic() && lambda2.sign() == Sign::Zero => {
                 Err(Error::input("lambda2", lambda2, "give a stiffness that is not 0"))
             }

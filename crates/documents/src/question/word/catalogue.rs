@@ -68,13 +68,14 @@ impl Question for Methods {
             "Published integrators: order on oscillators, cost a step, stable steps, efficiency, engines",
             all.iter(),
         );
-        let lines = [
+        let mut lines = vec![
             format!("{} integrators; kickdrift word --method NAME shows one in full", all.len()),
             "order on oscillators; general: on all problems; Nystrom: where the kinetic energy is quadratic"
                 .into(),
             "two forces: omega1 h below which they are stable at lambda2/lambda1 = 1/16 (periods 1:4)".into(),
             "free: no unstable step there before the slow force's own limit omega2 h = 2".into(),
         ];
+        lines.extend(all.iter().filter_map(Listed::disagreement));
         let people = chosen(
             &table,
             &[
@@ -152,6 +153,21 @@ fn record() -> Record<'static, Listed> {
         .says(Shape::OrNull(&FLAG), "For two forces with lambda2/lambda1 = 1/16: whether no step is unstable before sqrt(lambda2) h = 2; null for one force.")
         .field(Column::new("engines").left(), engines)
         .says(Shape::OrNull(&TEXT), "Programs that have it, each with what to write there; null where none is known here.")
+        .field(Column::new("published_order").aside(), |listed| listed.method.order.into())
+        .says(INTEGER, "The order that its source states, where the kinetic energy is quadratic.")
+        .field(Column::new("published_edge").aside(), |listed| {
+            listed.method.limit().map_or(Cell::Missing, |limit| Cell::Text(limit.omega_h.into()))
+        })
+        .says(Shape::OrNull(&TEXT), "omega h below which it is published to be stable; null where no such limit is known here.")
+        .field(Column::new("published_edge_source").left().aside(), |listed| {
+            listed.method.limit().map_or(Cell::Missing, |limit| Cell::Text(limit.source.into()))
+        })
+        .says(Shape::OrNull(&TEXT), "Where that is published.")
+        .field(Column::new("disagreement").left().aside(), |listed| {
+            let reason = listed.method.limit().and_then(|limit| limit.disagrees);
+            reason.map_or(Cell::Missing, |reason| Cell::Text(reason.into()))
+        })
+        .says(Shape::OrNull(&TEXT), "Why the edge is another one than that; null where it is not.")
         .field(Column::new("word").left().aside(), |listed| Cell::exact(&listed.linted.word))
         .says(TEXT, "The word, its coefficients exact.")
         .field(Column::new("source").left().aside(), |listed| listed.method.source.into())
@@ -173,6 +189,13 @@ fn slow_range() -> StepRange {
 }
 
 impl Listed {
+    /// Where a published limit is not the one found here, and why.
+    fn disagreement(&self) -> Option<String> {
+        let (limit, edge) = (self.method.limit()?, self.linted.edge_omega_h()?);
+        let (name, published, edge) = (self.method.name, limit.omega_h, edge.mid_f64());
+        Some(format!("{name}: published omega h below {published}, here {edge:.5}: {}", limit.disagrees?))
+    }
+
     /// Whether no step below √Λ2 h = 2 is unstable at Λ2/Λ1 = 1/16: that is free of resonance. `None` for one
     /// force, and where edges that touch are not separated.
     pub fn is_free(&self) -> Option<bool> {

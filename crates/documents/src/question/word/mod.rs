@@ -70,7 +70,7 @@ impl Question for Word {
                 let friction = self.friction.clone().unwrap_or_else(Laurent::zero);
                 let at = Enclosed::new(&word, lambda1, &lambda2, &friction).at(h);
                 found = Some(at.ok_or_else(|| {
-                    Error::input("h", h, "a filter has a pole at this step: choose another one")
+                    Error::input("h", h, "a filter or a letter I has a pole at this step, or it is too long for balls: choose another one")
                 })?);
             }
         } else if let Some(rho) = &rho {

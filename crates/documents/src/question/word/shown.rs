@@ -9,7 +9,7 @@ use crate::report::shape::{FLAG, GROUP, GROUP_OR_NULL, INTEGER, SIGN, Schema, Sh
 use crate::report::table::{Cell, Column, Table};
 use num_traits::Zero;
 use number::{Ball, Laurent, Radical, Rational, Real};
-use words::{At, Edge, MOST_ORDER, Order};
+use words::{At, Damping, Edge, Letter, MOST_ORDER, Order};
 
 impl Linted {
     /// Every interval with one answer.
@@ -28,10 +28,16 @@ impl Linted {
         std::iter::once(self.word.to_string()).chain(lines).collect()
     }
 
+    /// The name of a sum: friction is O unless it has other letters.
+    fn named(&self, sum: &'static str) -> &'static str {
+        let is_other = |letter: &&Letter| matches!(letter, Letter::Friction { damping, .. } if *damping != Damping::Exact);
+        if sum == "O" && self.word.letters().iter().any(is_other) { "friction" } else { sum }
+    }
+
     /// What its letters alone say.
     fn identity(&self) -> Vec<Line> {
         let sums: Vec<String> =
-            self.sums.iter().map(|(name, sum)| format!("{name} {}", beside_one(sum))).collect();
+            self.sums.iter().map(|(name, sum)| format!("{} {}", self.named(name), beside_one(sum))).collect();
         let consistent = if self.word.is_consistent() { "yes" } else { "no" };
         let consistent = format!("{consistent}: the coefficients sum to {}", sums.join(", "));
         let palindrome = self.word.asymmetry().map_or("yes".into(), |place| {
@@ -102,7 +108,8 @@ impl Linted {
                 "friction",
                 match &question.friction {
                     Some(friction) => format!("{friction}: stable steps draw every start to 0, noise aside"),
-                    None => "not given: O does nothing, and the results are of the word without it".into(),
+                    None => "not given: O, F and I do nothing, and the results are of the word without them"
+                        .into(),
                 },
             ));
         }
@@ -135,6 +142,7 @@ impl Linted {
         let (Some(found), Some(h)) = (&self.at, &question.h) else { return Vec::new() };
         let stable = match (found.kind, found.is_stable()) {
             ("edge", _) => "on an edge or nearer to one than balls can decide",
+            ("marginal", _) => "on an edge: bounded, but not drawn to 0",
             (_, true) => "stable",
             (_, false) => "unstable",
         };
@@ -223,9 +231,10 @@ pub(super) fn record(question: &Word) -> Record<'_, Linted> {
         .json("consistent", |linted| linted.word.is_consistent().into())
         .says(FLAG, "Whether every sum of coefficients is 1.");
     for name in ["D", "K", "K1", "K2", "O"] {
-        record = record
-            .json(&format!("sums.{name}"), move |linted| sum(linted, name))
-            .says(TEXT_OR_NULL, format!("Of {name}."));
+        record = record.json(&format!("sums.{name}"), move |linted| sum(linted, name)).says(
+            TEXT_OR_NULL,
+            if name == "O" { "Of O, F and I together.".into() } else { format!("Of {name}.") },
+        );
     }
     record = record
         .json("palindrome", |linted| linted.word.asymmetry().is_none().into())
@@ -300,11 +309,11 @@ pub(super) fn record(question: &Word) -> Record<'_, Linted> {
         .json("efficiency", |linted| linted.efficiency().into())
         .says(ENDS_OR_NULL, "omega h at the nominal edge per evaluation, gradient and solve.")
         .json("verdict.kind", |linted| linted.at.as_ref().map(|found| found.kind).into())
-        .says(VERDICT, "The verdict, decided; edge where balls of 128 bits do not tell it, damped where friction draws every start to 0.")
+        .says(VERDICT, "The verdict, decided; edge where balls of 128 bits do not tell it, damped where friction draws every start to 0, marginal where friction leaves an eigenvalue on the unit circle.")
         .json("verdict.stable", |linted| {
             linted.at.as_ref().filter(|place| place.kind != "edge").map(At::is_stable).into()
         })
-        .says(Shape::OrNull(&FLAG), "Whether powers are bounded; null on an edge.")
+        .says(Shape::OrNull(&FLAG), "Whether powers are bounded, with friction whether they fall to 0; null on an edge that balls do not tell.")
         .json("verdict.side", |linted| linted.at.as_ref().map(|found| i64::from(found.side)).into())
         .says(SIGN, "1 where the trace is at least 2, -1 where it is at most -2.")
         .json("verdict.trace", |linted| linted.at.as_ref().map(|found| found.trace.to_f64_enclosure()).into())
@@ -363,7 +372,7 @@ const TEXT_OR_NULL: Shape = Shape::OrNull(&TEXT);
 const ENDS_OR_NULL: Shape = Shape::OrNull(&WIDE_ENCLOSURE);
 const SIDE_OR_NULL: Shape = Shape::Plain(r#"{"enum": [-1, 1, null]}"#);
 const VERDICT: Shape =
-    Shape::OneOf(&["elliptic", "hyperbolic", "parabolic", "coexistence", "damped", "edge"]);
+    Shape::OneOf(&["elliptic", "hyperbolic", "parabolic", "coexistence", "damped", "marginal", "edge"]);
 
 /// The polynomial of an edge, its coefficients exact.
 fn polynomial(edge: &Edge) -> String {
