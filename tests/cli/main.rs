@@ -14,5 +14,7 @@ mod scenes;
 mod side;
 mod support;
 mod tamper;
+#[cfg(target_os = "linux")]
+mod terminal;
 mod tongues;
 mod verify;
