@@ -4,6 +4,7 @@ use std::fmt::Display;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
+use super::screen::{self, Colour};
 use clocks::map::Products;
 use documents::format::Format;
 use documents::question::flag;
@@ -34,6 +35,9 @@ pub struct Common {
     /// Nothing on standard error but errors: neither progress nor the names of written files.
     #[arg(long, global = true)]
     pub quiet: bool,
+    /// Colours the verdict [default: at a terminal, unless NO_COLOR is set].
+    #[arg(long, global = true, value_name = "WHEN", value_enum, default_value_t, hide_default_value = true)]
+    pub color: Colour,
     /// The most work that an answer may cost, in the unit that a refusal names: as a rule kicks of one pair
     /// of steps [default: 100000000].
     #[arg(long, global = true, value_name = "KICKS", value_parser = flag::<u64>)]
@@ -60,9 +64,20 @@ impl Common {
     pub fn write(&self, document: &Document, default: Format) -> Result<()> {
         let format = self.format(&Format::DOCUMENT, default)?;
         let text = document.clone().floated(self.float).render_with(format, TO_SEE_ROWS)?;
-        write_output(self.output.as_deref(), text.as_bytes())?;
-        self.wrote_output();
-        Ok(())
+        self.write_in_form(&text, format)
+    }
+
+    /// Writes a rendered document where the flags say: a text on standard output as a person reads it.
+    pub fn write_in_form(&self, text: &str, format: Format) -> Result<()> {
+        if format == Format::Text && self.output.is_none() {
+            return self.write_to_person(text);
+        }
+        self.write_text(text)
+    }
+
+    /// Writes a text to standard output, fitted to a terminal and coloured as the flags say.
+    pub fn write_to_person(&self, text: &str) -> Result<()> {
+        write_output(None, screen::shown(text, self.color).as_bytes())
     }
 
     /// Writes a text where the flags say.
@@ -89,7 +104,7 @@ impl Common {
         if self.output.is_none() || self.quiet {
             return Ok(());
         }
-        write_output(None, document.render(Format::Text)?.as_bytes())
+        self.write_to_person(&document.render(Format::Text)?)
     }
 
     /// Says on standard error that the file of `--output` is written, where there is one.

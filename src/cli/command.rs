@@ -7,7 +7,8 @@ use clap::{Arg, ArgMatches, Command, ValueHint};
 use documents::report::text::quoted;
 
 /// Flags that change no byte of a figure: where it goes, how it is computed.
-const ELSEWHERE: [&str; 7] = ["output", "threads", "quiet", "budget", "resume", "certificate", "format"];
+const ELSEWHERE: [&str; 9] =
+    ["output", "threads", "quiet", "budget", "resume", "certificate", "format", "color", "details"];
 
 /// Flags that choose the pairs of a map.
 const OF_MAPS: [&str; 11] = [

@@ -18,6 +18,7 @@ mod merge;
 mod paper;
 mod progress;
 mod run;
+mod screen;
 mod simulate;
 mod system;
 mod tongues;
@@ -166,7 +167,7 @@ pub fn program(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         Ok(cli) => cli,
         Err(error) if matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) => {
             let text = format!("{}\n", error.to_string().trim_end());
-            return write_output(None, text.as_bytes())
+            return write_output(None, screen::shown(&text, screen::Colour::Never).as_bytes())
                 .map_or_else(|error| failure(&error.to_string()), |()| 0);
         }
         Err(error) => return failure(&usage::explained(&error, &whole()).to_string()),
@@ -254,6 +255,6 @@ fn run(cli: &Cli) -> Result<u8> {
 
 fn failure(message: &str) -> u8 {
     // Where standard error is closed too, the exit code alone has to say it.
-    let _ = writeln!(std::io::stderr(), "kickdrift: {message}");
+    let _ = writeln!(std::io::stderr(), "{}", screen::message(&format!("kickdrift: {message}")));
     2
 }

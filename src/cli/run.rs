@@ -50,7 +50,12 @@ impl Args {
         let document = scene.summary(folder.path(), &products);
         folder.keep();
         let format = common.format.unwrap_or(Format::Text);
-        write_output(None, document.render(format)?.as_bytes())
+        let text = document.render(format)?;
+        if format == Format::Text {
+            common.write_to_person(&text)
+        } else {
+            write_output(None, text.as_bytes())
+        }
     }
 
     /// The text of the scene file; no more of it than a scene may have.

@@ -8,7 +8,7 @@ const WATER: &str = "advise --period OH=10fs --period slow=40fs --steps 0.5fs,4f
 #[test]
 fn an_answer_has_twelve_lines_and_says_where_the_rest_is() {
     let scenes = concat!(env!("CARGO_MANIFEST_DIR"), "/data/scenes");
-    let many: String = (1..=14).map(|n| format!(" --steps 0.5fs,{}fs", f64::from(n) / 2.0)).collect();
+    let many: String = (2..=14).map(|n| format!(" --steps 0.5fs,{}fs", f64::from(n) / 2.0)).collect();
     for line in [
         WATER.to_string(),
         format!("advise --period OH=10fs --period 40fs{many}"),

@@ -1,5 +1,7 @@
 //! The contract: keys, formats, exit codes.
 
+#[cfg(unix)]
+use super::support::at_a_terminal;
 use super::support::{Desk, json, keys, run, stdout, words};
 
 /// h2 just below T½: resonant. And a plainly stable neighbour.
@@ -137,32 +139,12 @@ fn people_get_text_from_verdict_and_scripts_get_json_from_tables() {
     assert!(stdout(&words("curves --samples 5", &[])).starts_with("{\n  \"schema\": \"kickdrift/curves/1\""));
 }
 
-/// A terminal of its own, on which the command's standard output is.
-#[cfg(unix)]
-fn at_a_terminal(line: &str) -> String {
-    use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
-    use std::io::Read;
-    let master = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).unwrap();
-    grantpt(&master).and_then(|()| unlockpt(&master)).unwrap();
-    let name = ptsname(&master, Vec::new()).unwrap().into_string().unwrap();
-    let desk = Desk::new();
-    let terminal = std::fs::OpenOptions::new().write(true).open(name).unwrap();
-    let mut command = desk.command(&words(line, &[]));
-    assert!(command.stdout(terminal).status().unwrap().success());
-    // The terminal must be closed on our side: then its reader comes to an end, which Linux tells by an
-    // error.
-    drop(command);
-    let (mut shown, mut screen) = (Vec::new(), std::fs::File::from(master));
-    let _ = screen.read_to_end(&mut shown);
-    String::from_utf8(shown).unwrap()
-}
-
 #[cfg(unix)]
 #[test]
 fn a_table_is_text_at_a_terminal() {
-    let map = at_a_terminal(&format!("map {GRID}"));
+    let map = at_a_terminal(&format!("map {GRID}"), None, &[]);
     assert!(map.contains(" pairs, each decided: ") && !map.contains("schema"), "{map}");
-    let tongues = at_a_terminal("tongues --ratio 7/3 --rho 1/25");
+    let tongues = at_a_terminal("tongues --ratio 7/3 --rho 1/25", None, &[]);
     assert!(tongues.starts_with("9 tongues of h2/h1 = 7/3"), "{tongues}");
 }
 

@@ -16,5 +16,7 @@ mod scenes;
 mod side;
 mod support;
 mod tamper;
+#[cfg(target_os = "linux")]
+mod terminal;
 mod tongues;
 mod verify;

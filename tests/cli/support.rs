@@ -104,3 +104,29 @@ pub fn words<'a>(text: &'a str, more: &[&'a str]) -> Vec<&'a str> {
 pub fn keys(object: &Value) -> Vec<&str> {
     object.as_object().unwrap().keys().map(String::as_str).collect()
 }
+
+/// A terminal of its own, on which the command's standard output is; so many columns wide, where it says.
+#[cfg(unix)]
+pub fn at_a_terminal(line: &str, columns: Option<usize>, variables: &[(&str, &str)]) -> String {
+    use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
+    use std::io::Read;
+    let master = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).unwrap();
+    grantpt(&master).and_then(|()| unlockpt(&master)).unwrap();
+    let name = ptsname(&master, Vec::new()).unwrap().into_string().unwrap();
+    let desk = Desk::new();
+    let terminal = std::fs::OpenOptions::new().write(true).open(&name).unwrap();
+    if let Some(columns) = columns {
+        let set =
+            Command::new("stty").args(["-F", &name, "cols", &columns.to_string(), "rows", "40"]).status();
+        assert!(set.unwrap().success());
+    }
+    let mut command = desk.command(&words(line, &[]));
+    command.env_remove("NO_COLOR").env("TERM", "xterm").envs(variables.iter().copied());
+    assert!(command.stdout(terminal).status().unwrap().success());
+    // The terminal must be closed on our side: then its reader comes to an end, which Linux tells by an
+    // error.
+    drop(command);
+    let (mut shown, mut screen) = (Vec::new(), std::fs::File::from(master));
+    let _ = screen.read_to_end(&mut shown);
+    String::from_utf8(shown).unwrap()
+}

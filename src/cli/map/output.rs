@@ -98,7 +98,10 @@ impl Output<'_> {
         if self.format == Format::Text && count > most {
             text += &format!("\n{count} rows: use --format csv or latex to see them\n");
         }
-        write_output(path, text.as_bytes())
+        match path {
+            None if self.format == Format::Text => self.common.write_to_person(&text),
+            _ => write_output(path, text.as_bytes()),
+        }
     }
 
     fn csv(&self, source: &Source, path: Option<&Path>) -> Result<()> {

@@ -86,6 +86,11 @@ impl Args {
             question.columns.get_or_insert_with(Columns::edges);
         }
         let form = Form { format, float: common.float, to_see: TO_SEE_ROWS };
+        if format == Format::Text {
+            let mut text = Vec::new();
+            question.write(&common.work(), form, &mut text)?;
+            return common.write_in_form(&String::from_utf8_lossy(&text), format);
+        }
         write_with(common.output.as_deref(), |sink| question.write(&common.work(), form, sink).map(drop))?;
         common.wrote_output();
         Ok(())
