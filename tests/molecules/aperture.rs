@@ -1,8 +1,6 @@
 //! The aperture of a bond beside the table of a loop in C, and beside loops written here.
 
-use kickdrift::advise::aperture::{
-    Bond, EARLY, LATE, Measurement, PHASES, Step, band_of, hottest, rungs,
-};
+use kickdrift::advise::aperture::{Bond, EARLY, LATE, Measurement, PHASES, Step, band_of, hottest, rungs};
 use kickdrift::advise::{Advice, Bound, Mode, Question, Scheme, Status};
 use kickdrift::error::Result;
 use kickdrift::number::Rational;
