@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 use std::io::{IsTerminal, stderr};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::time::Duration;
 
@@ -29,8 +29,12 @@ pub fn announce(quiet: bool, work: &str, seconds: f64) {
     if seconds > 1.0 && !quiet && stderr().is_terminal() {
         let work = visible(work).replace('\n', " ");
         eprintln!("kickdrift: {work}: some {seconds:.0} s of one core");
+        EXPECTED_SECONDS.fetch_add(seconds as u64, Ordering::Relaxed);
     }
 }
+
+/// All that was announced, seconds of one core.
+static EXPECTED_SECONDS: AtomicU64 = AtomicU64::new(0);
 
 /// Whether a bar has counted something.
 static COUNTED: AtomicBool = AtomicBool::new(false);
@@ -49,7 +53,10 @@ impl Patience {
             let (mut passed, mut next) = (0, 2);
             while ended.recv_timeout(Duration::from_secs(next - passed)) == Err(RecvTimeoutError::Timeout) {
                 if !COUNTED.load(Ordering::Relaxed) {
-                    eprintln!("kickdrift: {next} s so far");
+                    match EXPECTED_SECONDS.load(Ordering::Relaxed) {
+                        0 => eprintln!("kickdrift: {next} s so far"),
+                        expected => eprintln!("kickdrift: {next} s so far, of some {expected} s of one core"),
+                    }
                 }
                 (passed, next) = (next, 2 * next);
             }
