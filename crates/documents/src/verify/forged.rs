@@ -396,7 +396,13 @@ fn forged_advice_on_hessians_is_found() {
             |safe| more(findings(safe).first.as_mut().unwrap()),
             |safe| findings(safe).rate = findings(safe).rate.map(|rate| rate + 1e-3),
             |safe| *findings(safe).band_edge.as_mut().unwrap() *= 1.2,
+        ],
+    );
+    finds::<Advised>(
+        asked("tests/cli/data/tiny.json", json!(["1/2", "4"])),
+        &[
             |safe| findings(safe).bias.as_mut().unwrap().bias *= 1.01,
+            |safe| findings(safe).bias = None,
             |safe| findings(safe).safe_bias.as_mut().unwrap().bias *= 1.01,
             |safe| findings(safe).safe_bias = None,
         ],

@@ -131,26 +131,47 @@ impl Dense {
 
     /// The mean of ξᵀ M ξ + ηᵀ M η in the middles of all drifts.
     fn spread(&self, x: &DMatrix<f64>, p: &DMatrix<f64>) -> Vec<f64> {
+        let (mass, inverse_mass) = (Entries::of(&self.mass), Entries::of(&self.inverse_mass));
+        let stiffnesses: Vec<Entries> =
+            self.stiffnesses.iter().map(|(matrix, _)| Entries::of(matrix)).collect();
         let nothing = DMatrix::zeros(x.nrows(), x.ncols());
         let mut both = [(x.clone(), nothing.clone()), (nothing, p.clone())];
         let (mut sums, mut time) = (vec![0.0; x.ncols()], 0.0);
         for (drift, kicks) in &self.events {
             time += drift;
             for (x, p) in &mut both {
-                let half = 0.5 * *drift * (&self.inverse_mass * &*p);
+                let half = 0.5 * *drift * inverse_mass.times(p);
                 let middle = &*x + &half;
-                let weighted = &self.mass * &middle;
+                let weighted = mass.times(&middle);
                 for (k, sum) in sums.iter_mut().enumerate() {
                     *sum += drift * middle.column(k).dot(&weighted.column(k));
                 }
                 *x = middle + half;
                 for &(clock, share) in kicks {
-                    let (stiffness, step) = &self.stiffnesses[clock];
-                    *p -= share * *step * (stiffness * &*x);
+                    *p -= share * self.stiffnesses[clock].1 * stiffnesses[clock].times(x);
                 }
             }
         }
         sums.into_iter().map(|sum| sum / time).collect()
+    }
+}
+
+/// The entries of a matrix that are not 0, row by row.
+struct Entries(Vec<Vec<(usize, f64)>>);
+
+impl Entries {
+    fn of(matrix: &DMatrix<f64>) -> Entries {
+        let row = |i: usize| {
+            let entries = (0..matrix.ncols()).map(|j| (j, matrix[(i, j)]));
+            entries.filter(|(_, entry)| *entry != 0.0).collect()
+        };
+        Entries((0..matrix.nrows()).map(row).collect())
+    }
+
+    fn times(&self, matrix: &DMatrix<f64>) -> DMatrix<f64> {
+        DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |i, k| {
+            self.0[i].iter().map(|&(j, entry)| entry * matrix[(j, k)]).sum::<f64>()
+        })
     }
 }
 
