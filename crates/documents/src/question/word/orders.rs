@@ -43,7 +43,7 @@ impl Linted {
 }
 
 /// The first terms of an error, and how many more there are.
-pub(in crate::question) fn commutators(terms: &[ErrorTerm], most: usize) -> String {
+pub(crate) fn commutators(terms: &[ErrorTerm], most: usize) -> String {
     let term = |term: &ErrorTerm| format!("{} {}", shown(&term.coefficient), term.commutator);
     let shown: Vec<String> = terms.iter().take(most).map(term).collect();
     let more = terms.len().saturating_sub(most);
@@ -97,7 +97,7 @@ pub(super) fn with_orders(mut record: Record<'_, Linted>) -> Record<'_, Linted> 
 }
 
 /// An exact number where it is short, else its first digits.
-pub(in crate::question) fn shown(x: &Radical) -> String {
+pub(crate) fn shown(x: &Radical) -> String {
     const SHORT: usize = 24;
     let text = x.text(ToString::to_string);
     if text.len() <= SHORT { text } else { format!("{:.6e}", x.enclosure(64).mid_f64()) }
