@@ -196,17 +196,30 @@ class Map(Frozen):
             return _plot.growth(self.h1, self.h2, self.growth_rate, ax)
         return _plot.verdicts(self.h1, self.h2, self.verdict, VERDICTS, ax)
 
-    def to_svg(self) -> str:
-        """The program's figure of the verdicts as SVG.
+    def to_svg(self, colour: Literal["verdict", "bias"] = "verdict") -> str:
+        """The program's figure as SVG.
+
+        Parameters
+        ----------
+        colour : "verdict" or "bias"
+            The kinds of unstable pairs; or of stable ones how far their potential energy is off where the clocks kick, the
+            larger of R and 1/R, in doubles.
+
+        Raises
+        ------
+        KickdriftError
+            Another colour.
 
         Examples
         --------
         >>> import kickdrift as kd
         >>> small = kd.map(lambda1="pi^2", lambda2=1, step="1/10", h1=("1/10", "1/2"), h2=("1/10", 1))
-        >>> small.to_svg().startswith("<svg")
-        True
+        >>> small.to_svg().startswith("<svg"), small.to_svg("bias") != small.to_svg()
+        (True, True)
         """
-        return self._writer().svg(self.verdict, self.tier)
+        if colour not in ("verdict", "bias"):
+            raise KickdriftError("colour", colour, "is verdict or bias")
+        return self._writer().svg(self.verdict, self.tier, colour == "bias")
 
     def _repr_svg_(self) -> str | None:
         return self.to_svg() if self.verdict.size <= _FEW else None

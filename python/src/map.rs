@@ -215,15 +215,22 @@ impl Map {
         Ok(String::from_utf8_lossy(&text).into_owned())
     }
 
-    /// The picture of the verdicts, from the arrays.
-    fn svg(&self, verdict: &Bound<'_, PyArray2<u8>>, tier: &Bound<'_, PyArray2<u8>>) -> PyResult<String> {
+    /// The picture of the verdicts, or of the biases of stable pairs, from the arrays.
+    fn svg(
+        &self,
+        verdict: &Bound<'_, PyArray2<u8>>,
+        tier: &Bound<'_, PyArray2<u8>>,
+        by_bias: bool,
+    ) -> PyResult<String> {
         let (verdict, tier) = (verdict.readonly(), tier.readonly());
         let (verdict, tier) = (verdict.as_slice()?, tier.as_slice()?);
-        let mut chart = Chart::new(&self.grid, Colouring::Verdict);
+        let (colouring, flag) =
+            if by_bias { (Colouring::Bias, " --colour bias") } else { (Colouring::Verdict, "") };
+        let mut chart = Chart::new(&self.grid, colouring);
         self.bands(verdict, tier).for_each(|band| chart.add(&self.grid, &band));
         let figure = chart.figure(&self.grid, &self.tally.counts, &[]).footed(&self.asked.foot());
-        let bytes =
-            file(figure, &self.asked.bare().command(), Format::Svg).map_err(|error| raised(&error))?;
+        let bytes = file(figure, &(self.asked.bare().command() + flag), Format::Svg)
+            .map_err(|error| raised(&error))?;
         Ok(String::from_utf8_lossy(&bytes).into_owned())
     }
 }

@@ -210,7 +210,8 @@ impl Grid {
         lines.extend(self.rows.iter().flat_map(|row| self.folded(row, &widths, false)));
         if !left_out.is_empty() {
             lines.push(String::new());
-            let note = format!("left out here: {}; a wider terminal or --format json has them", left_out.join(", "));
+            let note =
+                format!("left out here: {}; a wider terminal or --format json has them", left_out.join(", "));
             lines.extend(wrapped(&note, most));
         }
         lines

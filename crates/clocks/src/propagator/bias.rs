@@ -147,6 +147,13 @@ pub fn enclosed_bias<S: Real>(clocks: &TwoClocks<S>) -> Option<Bias<Ball>> {
         .or_else(|| enclosed_in::<4096, S>(clocks))
 }
 
+/// R at the kicks as doubles have it, for pictures: no bound is known of its rounding. `None` where it is no
+/// positive number, as of a pair that is not elliptic.
+pub fn rounded_bias(clocks: &TwoClocks<f64>) -> Option<f64> {
+    let Fractions { above, below, .. } = Fractions::new(clocks);
+    Some(above.at_kicks / below).filter(|bias| bias.is_finite() && *bias > 0.0)
+}
+
 /// As [`enclosed_bias`], of one mass under any clocks that all kick at the start; `None` also where it is not
 /// known to be elliptic. The unit of time is the step of the first clock, and each strength is a step times
 /// its stiffness over mass; `stiffness` is the sum of these.
@@ -277,6 +284,9 @@ mod tests {
             let (exact, enclosed) = (bias(&clocks).unwrap(), enclosed_bias(&clocks).unwrap());
             assert!(enclosed.at_kicks.contains(&exact.at_kicks), "{clocks:?}");
             assert!(enclosed.in_drifts.contains(&exact.in_drifts), "{clocks:?}");
+            // Some ten kicks of numbers of size 1, each with a rounding or two.
+            let rounded = rounded_bias(&clocks.map(rational::to_f64)).unwrap();
+            assert!((rounded / rational::to_f64(&exact.at_kicks) - 1.0).abs() < 1e-13, "{clocks:?}");
         }
         let long = TwoClocks::with_rho("501/499".parse().unwrap(), ratio(1, 5000), ratio(1, 25));
         assert!(enclosed_bias(&long).is_some());

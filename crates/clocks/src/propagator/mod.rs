@@ -30,7 +30,7 @@ mod half;
 pub mod methods;
 mod signs;
 
-pub use bias::{Bias, MAX_BIAS_KICKS, bias, enclosed_bias, enclosed_bias_of};
+pub use bias::{Bias, MAX_BIAS_KICKS, bias, enclosed_bias, enclosed_bias_of, rounded_bias};
 pub use builder::OscillatorBuilder;
 pub use clocks::{LongClocks, Oscillator, TwoClocks};
 pub use elementary::{apply_drift, apply_kick, drift, kick};

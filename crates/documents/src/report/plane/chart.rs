@@ -7,8 +7,10 @@ use super::lines::{lines_in, stroke};
 use super::raster::Raster;
 use crate::report::map::{Counts, Found, marked};
 use clocks::map::{Band, Enclosure, Grid, Products};
+use clocks::propagator::rounded_bias;
 use clocks::resonance::{Curve, Window};
 use clocks::verdict::Kind;
+use number::{Laurent, parallel};
 
 /// The meaning of colours.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
@@ -22,6 +24,8 @@ pub enum Colouring {
     Family,
     /// Slow steps until the amplitude is tenfold.
     Tenfold,
+    /// How far the potential energy of stable pairs is off at the kicks: the larger of R and 1/R, in doubles.
+    Bias,
 }
 
 impl Colouring {
@@ -39,7 +43,7 @@ impl Colouring {
         // Growth so slow that its rate rounds to 0 is still shown, as the weakest.
         let positive = |x: Option<f64>| x.filter(|&x| x > 0.0).unwrap_or(f64::MIN_POSITIVE);
         match self {
-            Colouring::Verdict => 1.0,
+            Colouring::Verdict | Colouring::Bias => 1.0,
             Colouring::Growth => positive(found.rate.map(Enclosure::middle)),
             Colouring::Tenfold => positive(found.tenfold.map(|steps| steps.middle().recip())),
             Colouring::Family => found.family.map_or(f64::NEG_INFINITY, |(a, _)| -rank(a)),
@@ -71,6 +75,8 @@ pub struct Chart {
     colouring: Colouring,
     growing: Raster<f64>,
     edges: Raster<Edge>,
+    /// The larger of R and 1/R.
+    biased: Raster<f64>,
 }
 
 /// Families with a colour of their own; the others share the next, nearly a grey.
@@ -78,10 +84,12 @@ pub(super) const FAMILIES: usize = 7;
 /// Pairs in points of paper; on an edge they are few and should be found.
 const PAIR: f64 = 0.35;
 const EDGE: f64 = 3.4;
+/// An energy that is off by more has the colour of this one.
+const WORST_BIAS: f64 = 10.0;
 
 impl Chart {
     pub fn new(grid: &Grid, colouring: Colouring) -> Self {
-        Chart { colouring, growing: Raster::new(grid), edges: Raster::new(grid) }
+        Chart { colouring, growing: Raster::new(grid), edges: Raster::new(grid), biased: Raster::new(grid) }
     }
 
     /// Puts a band in.
@@ -93,6 +101,27 @@ impl Chart {
                 Kind::Parabolic => self.edges.put(pair.i, pair.j, Edge::Parabolic),
                 Kind::Coexistence => self.edges.put(pair.i, pair.j, Edge::Coexistence),
             }
+        }
+        if self.colouring == Colouring::Bias {
+            self.add_biases(grid, band);
+        }
+    }
+
+    /// R of the elliptic pairs; of the pairs in a cell the one that is most off is shown.
+    fn add_biases(&mut self, grid: &Grid, band: &Band) {
+        let biased = |n: usize| {
+            let (i, j) = band.multipliers(grid, n);
+            let clocks = grid.clocks(i, j).ok()?.map(Laurent::to_f64);
+            rounded_bias(&clocks).map(|bias| (i, j, bias.max(bias.recip())))
+        };
+        let is_elliptic = |n: &usize| band.decision(*n).verdict.kind() == Kind::Elliptic;
+        let column = |&column: &usize| -> Vec<_> {
+            let positions = column * band.rows..(column + 1) * band.rows;
+            positions.filter(is_elliptic).filter_map(biased).collect()
+        };
+        let columns: Vec<usize> = (0..band.columns).collect();
+        for (i, j, bias) in parallel::map(&columns, column).into_iter().flatten() {
+            self.biased.put(i, j, bias);
         }
     }
 
@@ -109,6 +138,7 @@ impl Chart {
             Colouring::Verdict => self.by_verdict(panel, steps),
             Colouring::Growth | Colouring::Tenfold => self.by_growth(panel, steps),
             Colouring::Family => self.by_family(panel, steps),
+            Colouring::Bias => self.by_bias(panel, steps),
         };
         let (origin, pitch) = self.edges.geometry(steps);
         for (edge, shape, colour, name) in [
@@ -124,7 +154,8 @@ impl Chart {
                 panel = panel.with(Layer::dots(found, shape, EDGE, colour).labelled(name));
             }
         }
-        let wide = if self.colouring.by_growth() { 150.0 } else { 135.0 };
+        let has_bar = self.colouring.by_growth() || self.colouring == Colouring::Bias;
+        let wide = if has_bar { 150.0 } else { 135.0 };
         Figure::new(wide, 135.0)
             .named(&format!("Stability map; {}", grid.fingerprint()))
             .with(panel.legend(Place::Above))
@@ -143,6 +174,20 @@ impl Chart {
             cells.push(k, l, bar.class(self.shown(strength), ColourBar::SHADES));
         }
         panel.with(Layer::cells(cells)).bar(bar)
+    }
+
+    fn by_bias(&self, panel: Panel, steps: [f64; 2]) -> Panel {
+        let axis = Axis::log("*R* or 1/*R*, the larger one", 1.0, WORST_BIAS);
+        let biases = self.biased.filled().map(|(_, _, bias)| bias);
+        let bar = ColourBar::new(axis, Gradient::on_white()).over(biases);
+        let mut stable = cells(&self.biased, steps, bar.steps(ColourBar::SHADES));
+        for (k, l, bias) in self.biased.filled() {
+            stable.push(k, l, bar.class(bias, ColourBar::SHADES));
+        }
+        let mut unstable = cells(&self.growing, steps, vec![GREY]);
+        self.growing.filled().for_each(|(k, l, _)| unstable.push(k, l, 0));
+        let unstable = Layer::cells(unstable).labelled("exponential growth (hyperbolic)");
+        panel.with(Layer::cells(stable)).with(unstable).bar(bar)
     }
 
     /// The quantity on the bar.
