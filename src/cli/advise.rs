@@ -33,8 +33,7 @@ pub struct Args {
     /// Draws what would let the step grow, a bar a row: FILE.svg, .pdf or .png.
     #[arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath, conflicts_with = "no_levers")]
     levers: Option<PathBuf>,
-    /// Exit with 0 if all steps asked about, those of --engine too, are proven stable for all periods within
-    /// the band; with 1 if one is not, or is advised against.
+    /// Exit with 1 if a step asked about is advised against or not proven stable for all periods in the band.
     #[arg(long)]
     exit_code: bool,
     /// Also the reasons, every lever and the tables, in text; other forms have them.

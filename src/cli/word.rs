@@ -30,13 +30,15 @@ pub struct Args {
     /// Shows the catalogue.
     #[arg(long, conflicts_with_all = ["word", "method", "lambda1", "lambda2", "h", "h_range", "certificate", "parameter"])]
     list: bool,
-    /// Holds words against what their authors claim: files of TOML with lines [[word]], word = "K(1/2) D(1)
-    /// K(1/2)", order = 2, symmetric = true, limit = 2 for each.
+    /// Holds words against what their authors claim: files of TOML; exits with 1 where a claim does not hold.
     ///
-    /// Exits with 1 and a line for each claim that does not hold. A claim is order (on oscillators),
-    /// general_order, nystrom_order, consistent, symmetric, limit (the first unstable omega h). A limit with
-    /// decimals is held to half a unit of its last one, another limit exactly. Orders, sums and limits of
-    /// coefficients with decimals leave out what is below 2^-30.
+    /// For each word [[word]], word = "K(1/2) D(1) K(1/2)", order = 2, symmetric = true, limit = 2.
+    ///
+    /// Claims: order (on oscillators), general_order, nystrom_order, consistent, symmetric, limit (first unstable omega h).
+    ///
+    /// A limit with decimals is held to half a unit of its last one, another limit exactly.
+    ///
+    /// Coefficients with decimals are taken nominally: an error below 2^-30 counts as 0.
     #[arg(long, value_name = "FILE", num_args = 1.., value_hint = clap::ValueHint::FilePath, conflicts_with_all = ["word", "method", "lambda1", "lambda2", "h", "h_range", "friction", "certificate", "list"])]
     check: Vec<PathBuf>,
     #[command(flatten)]

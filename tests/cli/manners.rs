@@ -27,7 +27,7 @@ fn whoever_names_a_file_reads_that_it_is_written() {
         ("tongues --ratio 7/3 --rho 1/25 --output t.csv".into(), "kickdrift: wrote t.csv\n"),
         ("closings --max-sum 6 --output c.json".into(), "kickdrift: wrote c.json\n"),
         (certificate.into(), "kickdrift: wrote v.v\n"),
-        ("generate man".into(), "kickdrift: wrote 22 files to out/man\n"),
+        ("generate man".into(), "kickdrift: wrote 23 files to out/man\n"),
         (format!("{MAP} --output m.svg --quiet"), ""),
     ] {
         let ended = desk.run(&words(&line, &[]));

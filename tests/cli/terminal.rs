@@ -25,7 +25,7 @@ fn no_line_is_wider_than_the_terminal_and_no_word_is_broken() {
             let shown = at_a_terminal(&line, Some(columns), &[("NO_COLOR", "1")]).replace('\r', "");
             let wide: Vec<&str> = shown.lines().filter(|line| line.chars().count() > columns).collect();
             assert!(wide.is_empty(), "{columns} {line}: {wide:#?}");
-            let note = "left out here: ; --columns or --format json has them";
+            let note = "left out here: ; a wider terminal or --format json has them";
             let is_new =
                 |word: &&str| !known.contains(word) && !note.contains(word.trim_end_matches([';', ',']));
             let broken: Vec<&str> = shown.split_whitespace().filter(is_new).collect();

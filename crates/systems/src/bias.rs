@@ -23,7 +23,7 @@ use faer::{Mat, MatRef, Side};
 use crate::half::compose::{Program, Row, cost};
 use crate::half::period::Stiffness;
 use crate::linear::system::System;
-use crate::verdict::limits::{DENSE, Limits};
+use crate::verdict::limits::DENSE;
 use clocks::propagator::Bias;
 use clocks::schedule::{Clock, Event, Schedule};
 use number::named;
@@ -54,7 +54,7 @@ named! {
     }
 }
 
-/// The most products that it may cost: a verdict alone need not wait longer.
+/// The most products that it may cost: a verdict alone need not wait longer. No budget changes an answer.
 const MOST_PRODUCTS: u64 = 2_000_000_000;
 
 /// Eigenvalues of n rows take so many n³ products.
@@ -78,15 +78,15 @@ struct Motion<'a> {
 }
 
 /// That half a period of this cost may be followed twice, and the modes be found.
-fn allow(half_period: u64, n: usize, limits: &Limits) -> Result<(), NoBias> {
+fn allow(half_period: u64, n: usize) -> Result<(), NoBias> {
     let eigen = EIGEN.saturating_mul((n as u64).saturating_pow(3)) / DENSE;
     let work = half_period.saturating_mul(2).saturating_add(eigen);
-    if work > MOST_PRODUCTS.min(limits.products) { Err(NoBias::Cost) } else { Ok(()) }
+    if work > MOST_PRODUCTS { Err(NoBias::Cost) } else { Ok(()) }
 }
 
 /// The modes of a system that is known to be stable.
-pub(crate) fn of_system(system: &System, limits: &Limits) -> Result<Vec<BiasedMode>, NoBias> {
-    allow(cost(system), system.size(), limits)?;
+pub(crate) fn of_system(system: &System) -> Result<Vec<BiasedMode>, NoBias> {
+    allow(cost(system), system.size())?;
     let Program { inverse_mass, kicks, .. } = Program::rounded(system);
     let mass = |i: usize| system.mass().row(i).iter().map(|(&j, x)| (j, to_f64(x))).collect();
     let motion = Motion {
@@ -111,7 +111,7 @@ pub(crate) fn of_levels(
     };
     let strikes = |step: u64| schedule.period() / step / 2 + 1;
     let each = kicks.iter().zip(schedule.clocks()).map(|(kick, clock)| entries(kick) * strikes(clock.step()));
-    allow(each.sum::<u64>().saturating_mul(2 * n as u64), n, &Limits::default())?;
+    allow(each.sum::<u64>().saturating_mul(2 * n as u64), n)?;
     let tick = to_f64(schedule.tick());
     let in_ticks = |(kick, clock): (Stiffness, &Clock)| {
         let factor = tick * tick * clock.step() as f64;
@@ -404,7 +404,7 @@ mod tests {
     }
 
     fn modes(system: &System) -> Vec<BiasedMode> {
-        of_system(system, &Limits::default()).unwrap()
+        of_system(system).unwrap()
     }
 
     /// Some roundings of numbers near 1, of matrices whose condition is below 100.
@@ -477,16 +477,15 @@ mod tests {
 
     #[test]
     fn where_there_is_none_the_reason_is_told() {
-        let of = |system: &System, limits: &Limits| of_system(system, limits).unwrap_err();
+        let of = |system: &System| of_system(system).unwrap_err();
         let (stiff, soft) = (symmetric(&[&[1]], &ratio(1, 1)), symmetric(&[&[-11]], &ratio(1, 10)));
         let one = |step, stiffness: &Symmetric| (step, stiffness.clone());
-        let verlet = system(&[1], &[one(ratio(1, 1), &stiff)]);
-        assert_eq!(of(&verlet, &Limits { products: 10, ..Limits::default() }), NoBias::Cost);
+        assert_eq!(allow(MOST_PRODUCTS / 2 + 1, 1), Err(NoBias::Cost));
         let off = Potential { stiffness: stiff.clone(), step: ratio(1, 1), phase: ratio(1, 2) };
         let late = System::new(Symmetric::diagonal(&[ratio(1, 1)]), vec![off]).unwrap();
-        assert_eq!(of(&late, &Limits::default()), NoBias::Phases);
+        assert_eq!(of(&late), NoBias::Phases);
         // A saddle that the steps keep in place: stable, and no mode of it has a temperature.
         let held = system(&[1], &[one(ratio(9, 10), &stiff), one(ratio(9, 5), &soft)]);
-        assert_eq!(of(&held, &Limits::default()), NoBias::Sum);
+        assert_eq!(of(&held), NoBias::Sum);
     }
 }

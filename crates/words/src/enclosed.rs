@@ -176,6 +176,10 @@ impl Setting<Jet> for Steps {
     }
 
     fn damping(&self, c: &Radical) -> Jet {
+        // exp(0) is 1 itself: in a ball around it no margin of a step on an edge would have a sign.
+        if self.friction.sign() == Some(Sign::Zero) {
+            return self.constant(Ball::one());
+        }
         let x = -self.friction(c);
         let value = self.exp(&x.value);
         x.chained(value.clone(), &value)

@@ -33,7 +33,7 @@ impl Word {
     /// Reads a word in which names stand for numbers.
     ///
     /// ```
-    /// use kickdrift_words::{Word, number::{Radical, rational::ratio}};
+    /// use kickdrift_words::{Word, number::{Radical, Ring, rational::ratio}};
     /// let quarter = Radical::from_rational(&ratio(1, 4));
     /// let word = Word::with("K(b) D(1/2) K(1-2*b) D(1/2) K(b)", &[("b", quarter)])?;
     /// assert_eq!(word.to_string(), "K(1/4) D(1/2) K(1/2) D(1/2) K(1/4)");

@@ -115,8 +115,7 @@ question! {
         /// A slow harmonic force about the bond's rest: the period that it would give the bond alone, as 40fs.
         #[arg(long, value_name = "TIME", value_parser = flag::<Time>)]
         slow: Option<Time>,
-        /// The least E* of all bonds whose periods are longer by up to this, too, as 5%: neighbours make them
-        /// so. It is that of the steps h/(1 + band) to h.
+        /// Also the least E* of bonds whose periods are longer by up to this, as 5%: of steps h/(1 + band) to h.
         #[arg(long, value_name = "PART")]
         band: Option<String>,
         /// The bonds of the system that is meant.

@@ -182,7 +182,7 @@ impl System {
         let nearest = width.map(nearest).transpose()?;
         let no_gradient = model.jacobians().map(Jacobians::no_gradient);
         let bias = match analysis.kind {
-            Some(Stability::Elliptic) => Some(model.biased_modes(&limits)?),
+            Some(Stability::Elliptic) => Some(model.biased_modes()?),
             Some(kind) if kind.is_stable() => Some(Err(NoBias::Edge)),
             _ => None,
         };

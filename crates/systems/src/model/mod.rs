@@ -189,11 +189,11 @@ pub trait Model: Debug + Send + Sync {
     ///
     /// # Errors
     /// As [`Model::moving`].
-    fn biased_modes(&self, limits: &Limits) -> Result<std::result::Result<Vec<BiasedMode>, NoBias>> {
+    fn biased_modes(&self) -> Result<std::result::Result<Vec<BiasedMode>, NoBias>> {
         if !self.has_system() || self.method() != Method::Respa || self.local_steps().is_some() {
             return Ok(Err(NoBias::Kind));
         }
-        Ok(bias::of_system(self.moving()?.as_ref(), limits))
+        Ok(bias::of_system(self.moving()?.as_ref()))
     }
 
     /// The effect of friction of a rate per unit time, O in the middle of every drift.

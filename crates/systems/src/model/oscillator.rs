@@ -94,8 +94,8 @@ impl Model for Oscillator {
         Ok(self.clocks.half_signs().verdict().kind())
     }
 
-    fn biased_modes(&self, limits: &Limits) -> Result<std::result::Result<Vec<BiasedMode>, NoBias>> {
-        let mut found = bias::of_system(&self.rounded, limits);
+    fn biased_modes(&self) -> Result<std::result::Result<Vec<BiasedMode>, NoBias>> {
+        let mut found = bias::of_system(&self.rounded);
         let unit = if self.has_rational_steps { 1.0 } else { self.unit.to_f64() };
         found.iter_mut().flatten().for_each(|mode| mode.period *= unit);
         Ok(found)

@@ -203,7 +203,7 @@ const ROUTE: &str = "the ends of the first region and of the band by the action 
 
 /// The bias at the outer step and at the safe one by a rational system of the doubles given; false where it
 /// would cost too much.
-fn bias(scene: &SystemScene, finding: &Finding, limits: &Limits) -> Checked<bool> {
+fn bias(scene: &SystemScene, finding: &Finding) -> Checked<bool> {
     let (unit, moving) = (scene.femtoseconds()?, scene.model().moving()?);
     let is_stable = finding.holds == Holds::Stable;
     let scheme = &finding.scheme;
@@ -219,7 +219,7 @@ fn bias(scene: &SystemScene, finding: &Finding, limits: &Limits) -> Checked<bool
             |(potential, step): (&Potential, Rational)| Potential::new(potential.stiffness.clone(), step);
         let all = moving.potentials().iter().zip(steps).map(potential);
         let system = System::new(moving.mass().clone(), all.collect())?;
-        let Some(truth) = most_off(&system, limits)? else {
+        let Some(truth) = most_off(&system)? else {
             is_seen = false;
             continue;
         };
@@ -247,7 +247,7 @@ pub fn check(
         }
         spent = cost;
         outcome.failures.extend(failure(row, other.row(finding))?);
-        let seen = bias(scene, finding, &limits);
+        let seen = bias(scene, finding);
         is_bias_seen &= !matches!(seen, Ok(false));
         outcome.failures.extend(failure(row, seen.map(drop))?);
     }

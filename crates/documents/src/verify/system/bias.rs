@@ -9,7 +9,7 @@ use crate::input::SystemScene;
 use crate::verify::context::{Checked, holds, same};
 use clocks::verdict::Kind;
 use number::rational::to_f64;
-use systems::{Analysis, BiasedMode, Limits, Model, NoBias, Symmetric, System, full_period};
+use systems::{Analysis, BiasedMode, Model, NoBias, Symmetric, System, full_period};
 
 /// Eigenvectors of multipliers that lie together are right to half the digits of doubles.
 const ROUNDED: f64 = 1e-7;
@@ -32,8 +32,8 @@ pub fn check(
 
 /// R at the kicks of the mode that is most off, all modes being held against the dense full period; `None`
 /// where it is not computed.
-pub fn most_off(system: &System, limits: &Limits) -> Checked<Option<f64>> {
-    let Ok(modes) = system.biased_modes(limits)? else { return Ok(None) };
+pub fn most_off(system: &System) -> Checked<Option<f64>> {
+    let Ok(modes) = system.biased_modes()? else { return Ok(None) };
     Dense::new(system, 1.0).check(&modes, &full_period(system))?;
     Ok(modes.iter().map(|mode| mode.bias.at_kicks).max_by(|a, b| a.ln().abs().total_cmp(&b.ln().abs())))
 }
@@ -178,7 +178,7 @@ impl Entries {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use systems::Route;
+    use systems::{Limits, Route};
 
     #[test]
     fn the_dense_period_agrees_on_molecules_and_finds_what_is_wrong_from_the_start() {
@@ -189,7 +189,7 @@ mod tests {
             let scene = SystemScene::from_json_in(folder, serde_json::from_str(&text).unwrap()).unwrap();
             let limits = Limits::default();
             let analysis = scene.model().decide(Route::Cheapest, &limits).unwrap();
-            let modes = scene.model().biased_modes(&limits).unwrap().unwrap();
+            let modes = scene.model().biased_modes().unwrap().unwrap();
             let farthest = modes.iter().map(|mode| mode.bias.at_kicks);
             let farthest = farthest.max_by(|a, b| a.ln().abs().total_cmp(&b.ln().abs())).unwrap();
             assert_eq!((modes.len(), (farthest * 1000.0).round() / 1000.0), (size, most), "{file}");

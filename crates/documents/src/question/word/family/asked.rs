@@ -159,20 +159,21 @@ question! {
     /// A word whose coefficients are expressions of parameters: order, error, stable steps and cost at each
     /// value; the best value.
     args struct Family {
-        /// The integrator: kicks K, K1, K2, drifts D, midpoints C, exact flows R, friction O, n*(...), as
-        /// "K(1/2) D(1) K(1/2)"; with --parameter as "K(b) D(1/2) K(1-2*b) D(1/2) K(b)".
+        /// The integrator: kicks K, K1, K2, drifts D, midpoints C, exact flows R, friction O, F, I, n*(...), as
+        /// "K(1/2) D(1) K(1/2)".
         #[arg(value_name = "WORD", required = false)]
         word: String,
-        /// Values of names in the word, as b=0.15..0.25:1/100: a row each. Further names behind commas, one
-        /// more with a range, others with a value.
+        /// A row for each value of a name in the word, as b=0.15..0.25:1/100 in K(b)D(1/2)K(1-2*b)D(1/2)K(b).
+        ///
+        /// Further names stand behind commas, one more with a range, others with a value.
         #[arg(long, value_name = "B=LO..HI:STEP", required = false, value_parser = flag::<Parameters>)]
         parameter: Parameters,
         /// With --parameter, the value with the greatest: edge (the longest stable step) or efficiency (the
         /// same for each evaluation).
         #[arg(long, value_name = "GOAL", requires = "parameter", conflicts_with = "minimize", value_parser = flag::<Goal>)]
         maximize: Option<Goal>,
-        /// With --parameter, the value with the least: error (the size of the leading error's coefficients)
-        /// or bias (the mean energy error of the worst step up to --up-to).
+        /// With --parameter, the value with the least: error (of leading order) or bias (energy error of the
+        /// worst step up to --up-to).
         #[arg(long, value_name = "GOAL", requires = "parameter", value_parser = flag::<Goal>)]
         minimize: Option<Goal>,
         /// With --parameter, the omega h up to which the bias counts [default: the evaluations of the first
