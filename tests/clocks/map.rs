@@ -1,5 +1,6 @@
 //! Maps: Figure 1 of the paper, and agreement with tiers that share nothing with the kernel.
 
+use crate::stress::random;
 use kickdrift::error::Kind as ErrorKind;
 use kickdrift::map::{
     Band, Counters, Grid, Map, Pairs, Products, Resources, Shard, Store, instruction_sets, merge,
@@ -10,9 +11,6 @@ use kickdrift::number::rational::ratio;
 use kickdrift::propagator::Oscillator;
 use kickdrift::verdict::{Kind, Limits, Tier, decide, decide_from, growth};
 use rayon::prelude::*;
-
-#[path = "stress/random.rs"]
-mod random;
 
 const BOTH: Products = Products { label: true, growth: true };
 

@@ -5,7 +5,7 @@
 
 mod cases;
 mod edges;
-mod random;
+pub mod random;
 mod record;
 
 use cases::{adversarial, random};

@@ -82,6 +82,9 @@ const MOST: u64 = 2_000_000;
 /// The most integrators: more do not fit a page.
 const MOST_METHODS: usize = 8;
 
+/// A range and a spacing of Λ2/Λ1, or of h2 and then with the ratio.
+type Second<'a> = (&'a (Rational, Rational), &'a Rational, Option<Rational>);
+
 impl CompareMethods {
     /// The names between commas; those in parentheses belong to words.
     fn names(&self) -> Vec<String> {
@@ -127,7 +130,7 @@ impl CompareMethods {
     }
 
     /// The vertical axis: its range, its spacing, and Λ2/Λ1 where it is h2; none for one force.
-    fn second(&self) -> Result<Option<(&(Rational, Rational), &Rational, Option<Rational>)>> {
+    fn second(&self) -> Result<Option<Second<'_>>> {
         let by_ratio = self.rho_range.as_ref().zip(self.rho_step.as_ref());
         let by_step = self.h2_range.as_ref().zip(self.h2_step.as_ref());
         match (by_ratio, by_step) {

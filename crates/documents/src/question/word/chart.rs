@@ -97,9 +97,9 @@ fn range(question: &Word, linted: &Linted) -> [f64; 2] {
         return [pieces.range.0, pieces.range.1].map(|h| h * pieces.root.mid_f64());
     }
     let edge = linted.nominal_edge().map(|edge| edge.mid_f64());
-    let last =
+    let mut last =
         linted.stability.iter().flat_map(|all| &all.intervals).filter_map(|interval| interval.upper.as_ref());
-    let edge = edge.or_else(|| last.last().map(|edge| omega_h(edge).mid_f64()));
+    let edge = edge.or_else(|| last.next_back().map(|edge| omega_h(edge).mid_f64()));
     [0.0, BEYOND * edge.unwrap_or(PI).max(asked(question).unwrap_or(0.0))]
 }
 

@@ -84,7 +84,7 @@ impl Member {
     pub(super) fn closeness(&self) -> Option<Ball> {
         let gap = self.linted.stability.as_ref()?.intervals.get(1).filter(|gap| !gap.stable)?;
         let [lower, upper] = [gap.lower.as_ref()?.s(), gap.upper.as_ref()?.s()];
-        Some(lower.sub(&upper, BITS).div(&lower, BITS)?)
+        lower.sub(&upper, BITS).div(&lower, BITS)
     }
 }
 
