@@ -202,7 +202,7 @@ class Map(Frozen):
         Parameters
         ----------
         colour : "verdict" or "bias"
-            The kinds of unstable pairs; or of stable ones how far their potential energy is off where the clocks kick, the
+            The kinds of unstable pairs; or how far the potential energy of stable ones is off where the clocks kick, the
             larger of R and 1/R, in doubles.
 
         Raises

@@ -311,8 +311,8 @@ class System(HessianSystem):
         followed = self if constraints is None and hmr is None else replace(self, _orbit=None)
         unsaid = _lines(followed._new_warnings(warnings))
         parted = (_parted(question.render(form)) for form in ("text", "details"))
-        told = [followed._orbit_sentence() + sentences + unsaid + rest for sentences, rest in parted]
-        return SystemAdvice(question.render("json"), *told, warnings)
+        text, details = (followed._orbit_sentence() + sentences + unsaid + rest for sentences, rest in parted)
+        return SystemAdvice(question.render("json"), text, details, warnings)
 
     def _orbit_sentence(self) -> str:
         """What is said first: the integrator's own orbit, where a run is about it and not about the minimum."""

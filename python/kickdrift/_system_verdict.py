@@ -103,7 +103,7 @@ class DecidedSystem(Document):
         >>> import kickdrift as kd
         >>> system = kd.System.from_hessians([1.0], {"stiff": ("1/40", [[400.0]]), "soft": ("1/10", [[1.0]])})
         >>> round(system.decide().bias[0]["at_kicks"], 4)
-        1.0667
+        1.072
         """
         found = self.data["bias"]
         return None if found is None else tuple(MappingProxyType(mode) for mode in found)
