@@ -86,8 +86,8 @@ def aperture(
     slow : Exact, optional
         A slow harmonic force about the bond's rest: the period that it would give the bond alone.
     band : Exact, optional
-        A part of the period, as 0.05 or "5%": ``band_aperture`` is the least of all bonds whose periods are longer by up
-        to this, as neighbours make them, and decides ``enough``.
+        A part of the period, as 0.05 or "5%": ``band_aperture`` is the least of all bonds whose periods are longer by
+        up to this, as neighbours make them, and decides ``enough``.
     bonds : int, optional
         The bonds of the system that is meant.
     length : Exact, optional

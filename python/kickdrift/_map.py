@@ -202,8 +202,8 @@ class Map(Frozen):
         Parameters
         ----------
         colour : "verdict" or "bias"
-            The kinds of unstable pairs; or how far the potential energy of stable ones is off where the clocks kick, the
-            larger of R and 1/R, in doubles.
+            The kinds of unstable pairs; or how far the potential energy of stable ones is off where the clocks kick,
+            the larger of R and 1/R, in doubles.
 
         Raises
         ------
