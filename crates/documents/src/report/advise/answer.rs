@@ -4,8 +4,9 @@ use super::words::{cap, named, nearest};
 use molecules::unit::TimeUnit;
 use molecules::{Advice, Bound, Caps, Scheme};
 
-/// Lines of reasons that stand in the answer too: to be written, to beware of, assumed, not known.
-const FIRST: [&str; 8] = ["write", "warning", "assumed", "forces", "fast", "beads", "bias", "unknown"];
+/// Lines of reasons that stand in the answer too: to be written, to beware of in an engine and elsewhere, assumed, not known.
+const FIRST: [&str; 9] =
+    ["write", "note", "warning", "assumed", "forces", "fast", "beads", "bias", "unknown"];
 
 /// Lines at most, with one that says where the rest is.
 const MOST: usize = 11;
