@@ -33,6 +33,8 @@ pub struct Document {
     float: Option<Float>,
     summary: String,
     summary_only: bool,
+    /// The rows that a text has at most.
+    most_rows: usize,
     /// In place of the summary and the tables in text, unless details are asked for.
     answer: Option<Vec<String>>,
     is_detailed: bool,
@@ -65,6 +67,7 @@ impl Document {
             float: None,
             summary: String::new(),
             summary_only: false,
+            most_rows: ROWS_FOR_PEOPLE,
             answer: None,
             is_detailed: false,
         }
@@ -196,6 +199,12 @@ impl Document {
         self
     }
 
+    /// All rows in text, too, of a list that is asked for as one.
+    #[must_use]
+    pub fn with_all_rows(self) -> Self {
+        Document { most_rows: usize::MAX, ..self }
+    }
+
     /// The summary alone.
     pub fn summary_text(&self) -> &str {
         &self.summary
@@ -266,7 +275,7 @@ impl Document {
         let first = self.for_people.as_ref().or(self.table.as_ref());
         for table in first.into_iter().chain(&self.more).filter(|_| !self.summary_only) {
             let rows = table.rows().len();
-            if rows > ROWS_FOR_PEOPLE {
+            if rows > self.most_rows {
                 out += &format!("\n{rows} rows: {to_see}\n");
             } else if rows > 0 {
                 out += &format!("\n{}\n", text::document(&self.for_text(table)).trim_end());

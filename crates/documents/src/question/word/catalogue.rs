@@ -93,7 +93,7 @@ impl Question for Methods {
                 "engines",
             ],
         );
-        Document::new(Self::NAME).rows(table).for_people(people).summary(&lines)
+        Document::new(Self::NAME).rows(table).for_people(people).summary(&lines).with_all_rows()
     }
 }
 
