@@ -49,6 +49,8 @@ pub(super) fn lines(bias: &Biases, unit: &str) -> Vec<String> {
     };
     vec![
         format!("  bias: potential energy over kT/2 at constant energy (rounded): {at_kicks}{others}"),
-        format!("  of the same with a weak thermostat in every drift (BAOAB): {in_drifts}; 1 is right"),
+        format!(
+            "        with a weak thermostat in every drift (BAOAB) these modes have {in_drifts}; 1 is right"
+        ),
     ]
 }
