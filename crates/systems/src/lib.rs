@@ -48,6 +48,7 @@
 mod along;
 pub mod avi;
 mod bias;
+mod columns;
 mod exact;
 pub mod friction;
 mod geometry;

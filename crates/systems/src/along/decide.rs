@@ -7,6 +7,7 @@ use nalgebra::DMatrix;
 
 use super::model::{Along, Rigid, beside};
 use super::scaled::{Scaled, frequency, power, scaled, scales};
+use crate::columns::combined;
 use crate::exact::decide::{MuCount, allow_blocks, judged_blocks};
 use crate::half::float::FloatBlocks;
 use crate::half::norm;
@@ -430,14 +431,7 @@ impl Half<'_> {
     /// A shape in the coordinates given.
     fn lifted(&self, y: &[f64]) -> Vec<f64> {
         let columns = self.frames.as_ref().map(|frames| &frames.start).or(self.basis.as_ref());
-        let whole = columns.map_or_else(
-            || y.to_vec(),
-            |matrix| {
-                (0..matrix.nrows())
-                    .map(|i| y.iter().enumerate().map(|(k, y)| matrix[(i, k)] * y).sum())
-                    .collect()
-            },
-        );
+        let whole = columns.map_or_else(|| y.to_vec(), |columns| combined(columns, y));
         let is_scaled = columns.is_some() || self.along.accuracy.is_some();
         if is_scaled {
             whole.iter().zip(&self.along.masses).map(|(x, m)| x / m.sqrt()).collect()

@@ -7,6 +7,7 @@ use nalgebra::DMatrix;
 use super::friction::MOST_MASKED;
 use super::model::{Clock, Jacobians};
 use super::orbit;
+use crate::columns::combined;
 use crate::exact::decide::{MuCount, allow_blocks, judged_blocks};
 use crate::half::norm;
 use crate::spectrum::discs::Spectrum;
@@ -145,9 +146,7 @@ impl Jacobians {
     }
 
     pub(super) fn lifted(&self, y: &[f64]) -> Vec<f64> {
-        (0..self.lift.nrows())
-            .map(|i| y.iter().enumerate().map(|(k, y)| self.lift[(i, k)] * y).sum())
-            .collect()
+        combined(&self.lift, y)
     }
 
     /// The kind by the characteristic polynomial of S, and where the μ lie: of doubles as the numbers that

@@ -10,6 +10,7 @@ use super::kernel::{AtRatio, Kernel, Outer, highest_frequency};
 use super::nested::Nested;
 use super::search::{Decided, Search, bracket_below};
 use crate::bias::{self, BiasedMode, NoBias};
+use crate::columns::combined;
 use crate::friction::Damping;
 use crate::half::period::Stiffness;
 use crate::verdict::analysis::{Analysis, Instability};
@@ -212,7 +213,7 @@ impl Source for Kernel {
     }
 
     fn shape(&self, x: &[f64]) -> Vec<f64> {
-        lifted(&self.modes, x)
+        combined(&self.modes, x)
     }
 
     fn kernel(&self) -> Option<&Kernel> {
@@ -253,17 +254,12 @@ impl Source for Nested {
     }
 
     fn shape(&self, x: &[f64]) -> Vec<f64> {
-        self.basis.as_ref().map_or_else(|| x.to_vec(), |basis| lifted(basis, x))
+        self.basis.as_ref().map_or_else(|| x.to_vec(), |basis| combined(basis, x))
     }
 }
 
 fn schedule(steps: &[Rational]) -> Result<Schedule> {
     Schedule::new(steps, &vec![Rational::default(); steps.len()])
-}
-
-fn lifted(columns: &Mat<f64>, x: &[f64]) -> Vec<f64> {
-    let row = |i: usize| x.iter().enumerate().map(|(k, x)| columns[(i, k)] * x).sum();
-    (0..columns.nrows()).map(row).collect()
 }
 
 fn outermost(steps: &[Rational]) -> f64 {

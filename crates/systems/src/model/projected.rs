@@ -8,6 +8,7 @@ use nalgebra::DMatrix;
 
 use super::Model;
 use super::measured::{Body, MeasuredSystem, rational};
+use crate::columns::combined;
 use crate::friction::{Friction, damped_system};
 use crate::levels::apart::{Given, common_null_space, of_particles};
 use crate::levels::{Hessians, Motions, Search, Shares};
@@ -211,9 +212,7 @@ impl MeasuredSystem {
 /// columns of `basis`.
 fn lift(analysis: &mut Analysis, basis: &Mat<f64>) {
     let n = basis.nrows();
-    let up = |y: &[f64]| -> Vec<f64> {
-        (0..n).map(|i| y.iter().enumerate().map(|(k, y)| basis[(i, k)] * y).sum()).collect()
-    };
+    let up = |y: &[f64]| combined(basis, y);
     for part in &mut analysis.parts {
         part.dofs = (0..n).collect();
         for instability in &mut part.instabilities {

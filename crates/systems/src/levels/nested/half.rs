@@ -4,6 +4,7 @@ use faer::Mat;
 use num_complex::Complex64;
 
 use super::levels::{ROUNDINGS, Steps};
+use crate::columns::combined;
 use crate::half::float::FloatBlocks;
 use crate::half::norm;
 use crate::half::period::{Drifts, Propagated, Stiff, Stiffness, follow, follow_looking};
@@ -246,10 +247,7 @@ impl Steps<'_> {
         let lifted = |part: fn(&Complex64) -> f64| -> Vec<f64> {
             let values: Vec<f64> = values.iter().map(part).collect();
             match &self.nested.basis {
-                Some(basis) => {
-                    let row = |i: usize| values.iter().enumerate().map(|(k, y)| basis[(i, k)] * y).sum();
-                    (0..basis.nrows()).map(row).collect()
-                }
+                Some(basis) => combined(basis, &values),
                 None => values,
             }
         };
