@@ -3,9 +3,8 @@
 
 use num_traits::Zero;
 
-use super::filter::Filter;
-use super::letters::{Force, Word};
-use super::product::{Forces, Setting};
+use super::letters::Word;
+use super::product::Forces;
 use number::{ExactSign, Laurent, Radical, Rational, Ring, Sign};
 
 /// An oscillator, its numbers as they are given.
@@ -13,38 +12,6 @@ use number::{ExactSign, Laurent, Radical, Rational, Ring, Sign};
 pub(super) struct Exact {
     pub stiffness: [Laurent; 2],
     pub friction: Laurent,
-}
-
-/// The letters at one step, γ h as a number.
-struct Step {
-    forces: Forces<Radical>,
-    rate: Radical,
-}
-
-impl Setting<Radical> for Step {
-    fn force(&self, force: Force) -> Radical {
-        self.forces.force(force)
-    }
-
-    fn embed(&self, c: &Radical) -> Radical {
-        c.clone()
-    }
-
-    fn flow(&self, force: Force, c: &Radical) -> [Radical; 2] {
-        self.forces.flow(force, c)
-    }
-
-    fn filter(&self, filter: Filter) -> Radical {
-        self.forces.filter(filter)
-    }
-
-    fn damping(&self, c: &Radical) -> Radical {
-        self.forces.damping(c)
-    }
-
-    fn friction(&self, c: &Radical) -> Radical {
-        c * &self.rate
-    }
 }
 
 impl Exact {
@@ -55,9 +22,8 @@ impl Exact {
         let square = Laurent::product(h, h);
         let [first, second] =
             [0, 1].map(|i| Laurent::product(&square, &self.stiffness[i]).as_rational().map(|x| rational(&x)));
-        let forces = Forces { of: [first?, second?], embed: Radical::clone };
-        let rate = rational(&Laurent::product(h, &self.friction).as_rational()?);
-        let product = word.product(&Step { forces, rate });
+        let friction = rational(&Laurent::product(h, &self.friction).as_rational()?);
+        let product = word.product(&Forces { friction, ..Forces::new([first?, second?], Radical::clone) });
         let implicit = product.implicit.sign();
         let side = product.denominator.sign() * implicit;
         if side == Sign::Zero {

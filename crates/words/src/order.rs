@@ -2,9 +2,8 @@
 
 use num_traits::{One, Zero};
 
-use super::filter::Filter;
-use super::letters::{Force, Word};
-use super::product::{Forces, Setting, TERMS};
+use super::letters::Word;
+use super::product::{Forces, TERMS};
 use number::{Polynomial, Radical, Rational, Real, Ring, rational};
 
 /// Polynomials in ρ = Λ2/Λ1.
@@ -50,37 +49,9 @@ fn exact(k: usize, offset: i64, named: bool) -> InRho {
     (0..k).fold(InRho::one(), |power, _| &power * &sum).scale(&Radical::from_rational(&(sign / factorial)))
 }
 
-/// Powers series in s, of which flows and filters have the first terms: the others are left out everywhere.
-struct FirstTerms(Forces<Polynomial<InRho>>);
-
-impl Setting<Polynomial<InRho>> for FirstTerms {
-    fn force(&self, force: Force) -> Polynomial<InRho> {
-        self.0.force(force)
-    }
-
-    fn embed(&self, c: &Radical) -> Polynomial<InRho> {
-        self.0.embed(c)
-    }
-
-    fn flow(&self, force: Force, c: &Radical) -> [Polynomial<InRho>; 2] {
-        self.0.flow(force, c)
-    }
-
-    fn filter(&self, filter: Filter) -> Polynomial<InRho> {
-        self.0.filter(filter)
-    }
-
-    fn damping(&self, c: &Radical) -> Polynomial<InRho> {
-        self.0.damping(c)
-    }
-
-    fn friction(&self, c: &Radical) -> Polynomial<InRho> {
-        self.0.friction(c)
-    }
-
-    fn trimmed(&self, x: Polynomial<InRho>) -> Polynomial<InRho> {
-        Polynomial::new(x.coefficients().iter().take(TERMS + 1).cloned().collect())
-    }
+/// A power series in s without the terms that flows and filters leave out.
+fn first_terms(series: Polynomial<InRho>) -> Polynomial<InRho> {
+    Polynomial::new(series.coefficients().iter().take(TERMS + 1).cloned().collect())
 }
 
 fn is_small(f: &InRho) -> bool {
@@ -95,9 +66,11 @@ impl Word {
         let s = Polynomial::<InRho>::variable();
         let rho = if named { InRho::variable() } else { InRho::zero() };
         let embed = |c: &Radical| Polynomial::constant(InRho::constant(c.clone()));
-        let forces = Forces { of: [s.clone(), s.scale(&rho)], embed };
-        let product =
-            if self.is_algebraic() { self.product(&forces) } else { self.product(&FirstTerms(forces)) };
+        let mut forces = Forces::new([s.clone(), s.scale(&rho)], embed);
+        if !self.is_algebraic() {
+            forces.trim = first_terms;
+        }
+        let product = self.product(&forces);
         let below = product.denominator.coefficients();
         // The coefficient of s^k in an entry's numerator less the denominator times the flow: to first order
         // that of the error.

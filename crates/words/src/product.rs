@@ -1,7 +1,7 @@
 //! The product of the letters, over any ring that holds the coefficients.
 
 use nalgebra::Matrix2;
-use num_traits::{One, Zero};
+use num_traits::{One, Zero, pow};
 
 use super::damping::Damping;
 use super::filter::Filter;
@@ -10,10 +10,15 @@ use clocks::propagator::methods::respa::power;
 use clocks::propagator::{apply_drift, apply_kick};
 use number::{Polynomial, Radical, Rational, Ring};
 
-/// h² Λ1 and h² Λ2 in a ring, and how a coefficient is embedded there.
+/// An oscillator at a step in a ring, and how a coefficient is embedded there.
 pub struct Forces<S> {
+    /// h² Λ1 and h² Λ2.
     pub of: [S; 2],
     pub embed: fn(&Radical) -> S,
+    /// γ h, of letters F and I; letters O do nothing.
+    pub friction: S,
+    /// An entry without what is not asked for: products of series grow.
+    pub trim: fn(S) -> S,
 }
 
 /// A product of letters in the coordinates (x, h v): the matrix divided by the denominator and by what
@@ -32,6 +37,13 @@ pub struct Product<S> {
 /// The entries as polynomials in s = h² Λ1.
 pub type Polynomials = Product<Polynomial<Radical>>;
 
+impl<S: Ring> Forces<S> {
+    /// Without friction, and every entry as it comes.
+    pub fn new(of: [S; 2], embed: fn(&Radical) -> S) -> Self {
+        Forces { of, embed, friction: S::zero(), trim: |x| x }
+    }
+}
+
 impl Forces<Polynomial<Radical>> {
     /// Λ2 = 0: the whole force is s.
     pub fn one() -> Self {
@@ -42,7 +54,7 @@ impl Forces<Polynomial<Radical>> {
     pub fn ratio(rho: &Rational) -> Self {
         let s = Polynomial::variable();
         let second = s.scale(&Radical::from_rational(rho));
-        Forces { of: [s, second], embed: |c| Polynomial::constant(c.clone()) }
+        Forces::new([s, second], |c| Polynomial::constant(c.clone()))
     }
 }
 
@@ -79,8 +91,7 @@ fn series<S: Ring>(all: &[S], force: &S) -> S {
     all.iter().rev().fold(S::zero(), |sum, f| S::product(&sum, force) + f.clone())
 }
 
-/// Exact where the word is algebraic; flows and filters by the first terms of their series in F. Friction is
-/// none.
+/// Exact where the word is algebraic; flows and filters by the first terms of their series in F.
 impl<S: Ring> Setting<S> for Forces<S> {
     fn force(&self, force: Force) -> S {
         match force {
@@ -119,8 +130,12 @@ impl<S: Ring> Setting<S> for Forces<S> {
         S::one()
     }
 
-    fn friction(&self, _: &Radical) -> S {
-        S::zero()
+    fn friction(&self, c: &Radical) -> S {
+        S::product(&self.embed(c), &self.friction)
+    }
+
+    fn trimmed(&self, x: S) -> S {
+        (self.trim)(x)
     }
 }
 
@@ -186,9 +201,7 @@ impl<S: Ring> Product<S> {
                 Item::Repeat(times, inside) => {
                     let Product { matrix, denominator, damping, implicit } = Product::items(inside, setting);
                     product.matrix = power(matrix, *times) * &product.matrix;
-                    let raised = |x: S| {
-                        power(Matrix2::new(x, S::zero(), S::zero(), S::zero()), *times)[(0, 0)].clone()
-                    };
+                    let raised = |x: S| pow(x, *times as usize);
                     product.denominator *= raised(denominator);
                     product.damping *= raised(damping);
                     product.implicit *= raised(implicit);

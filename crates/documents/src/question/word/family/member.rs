@@ -61,22 +61,21 @@ impl Member {
 
     /// How good it is: the greater the better. Edges leave out unstable intervals that rounded numbers open.
     pub(super) fn score(&self, goal: Goal, degree: Option<u64>) -> Option<Ball> {
-        let edge = || self.linted.nominal_edge();
+        self.score_by(goal, degree, Linted::nominal_edge)
+    }
+
+    /// The same with edges as they are.
+    pub(super) fn strict_score(&self, goal: Goal, degree: Option<u64>) -> Option<Ball> {
+        self.score_by(goal, degree, Linted::edge_omega_h)
+    }
+
+    fn score_by(&self, goal: Goal, degree: Option<u64>, edge: fn(&Linted) -> Option<Ball>) -> Option<Ball> {
+        let edge = || edge(&self.linted);
         match goal {
             Goal::Edge => edge(),
             Goal::Efficiency => edge()?.div(&Ball::from_integer(&self.linted.cost.total().into()), BITS),
             Goal::Error => self.square(degree?).map(|square| square.enclosure(ERROR_BITS).neg()),
             Goal::Bias => self.bias.as_ref().map(Ball::neg),
-        }
-    }
-
-    /// The same with edges as they are.
-    pub(super) fn strict_score(&self, goal: Goal, degree: Option<u64>) -> Option<Ball> {
-        let total = || Ball::from_integer(&self.linted.cost.total().into());
-        match goal {
-            Goal::Edge => self.linted.edge_omega_h(),
-            Goal::Efficiency => self.linted.edge_omega_h()?.div(&total(), BITS),
-            _ => self.score(goal, degree),
         }
     }
 
