@@ -63,7 +63,8 @@ impl Common {
     /// Writes a document where and how the flags say, in `default` format if they do not.
     pub fn write(&self, document: &Document, default: Format) -> Result<()> {
         let format = self.format(&Format::DOCUMENT, default)?;
-        let text = document.clone().floated(self.float).render_with(format, TO_SEE_ROWS)?;
+        let document = document.clone().floated(self.float).within(self.width());
+        let text = document.render_with(format, TO_SEE_ROWS)?;
         self.write_in_form(&text, format)
     }
 
@@ -73,6 +74,11 @@ impl Common {
             return self.write_to_person(text);
         }
         self.write_text(text)
+    }
+
+    /// Characters a line of the output, where it is a terminal.
+    pub fn width(&self) -> Option<usize> {
+        screen::width_of_output().filter(|_| self.output.is_none())
     }
 
     /// Writes a text to standard output, fitted to a terminal and coloured as the flags say.
@@ -104,6 +110,7 @@ impl Common {
         if self.output.is_none() || self.quiet {
             return Ok(());
         }
+        let document = document.clone().within(screen::width_of_output());
         self.write_to_person(&document.render(Format::Text)?)
     }
 

@@ -34,7 +34,7 @@ impl Args {
         let mut products = scene.products(Some(folder.path()), &common.work())?;
         // All products before the first file: an error leaves nothing behind.
         let written = |&Want { product, format }: &Want| {
-            let form = Form { format, float: common.float, to_see: TO_SEE_ROWS };
+            let form = Form { format, float: common.float, to_see: TO_SEE_ROWS, width: None };
             let draw = |figure| self.paper.bytes(figure, format, &common.command);
             // Arrays are on the disk already.
             let held = (format != Format::Npz).then(|| products.of(product).written(form, draw));

@@ -94,7 +94,7 @@ impl Output<'_> {
         // The columns are chosen already.
         let layout = Layout { columns: None, ..self.columns.layout() };
         let document = report::document(&tally, rows).inputs(self.map.input()).laid_out(&layout)?;
-        let mut text = document.floated(self.common.float).render(self.format)?;
+        let mut text = document.floated(self.common.float).within(self.common.width()).render(self.format)?;
         if self.format == Format::Text && count > most {
             text += &format!("\n{count} rows: use --format csv or latex to see them\n");
         }

@@ -85,7 +85,7 @@ impl Args {
         if format == Format::Latex {
             question.columns.get_or_insert_with(Columns::edges);
         }
-        let form = Form { format, float: common.float, to_see: TO_SEE_ROWS };
+        let form = Form { format, float: common.float, to_see: TO_SEE_ROWS, width: common.width() };
         if format == Format::Text {
             let mut text = Vec::new();
             question.write(&common.work(), form, &mut text)?;

@@ -25,5 +25,24 @@ Two rows.
   7  hyperbolic  2.318285(6)
 -12  -                   1/3
 ";
-    assert_eq!(document(&table), expected);
+    assert_eq!(document(&table, None), expected);
+}
+
+#[test]
+fn tables_fold_headings_and_name_the_columns_left_out() {
+    let columns = vec![
+        Column::new("mode").left(),
+        Column::new("first").in_words("first unstable from").in_unit("fs"),
+        Column::new("moving").left(),
+    ];
+    let mut table = Table::new("t", "", columns);
+    table.push(vec![Cell::Text("OH".into()), Cell::Exact("4.6768".into()), Cell::Text("atom one".into())]);
+    let text = "mode  first unstable from (fs)  moving\n----  ------------------------  --------\nOH                      4.6768  atom one\n";
+    assert_eq!([document(&table, None), document(&table, Some(60))], [text, text]);
+    let folded = "         first\n      unstable\n          from\nmode      (fs)  moving\n----  --------  --------\nOH      4.6768  atom one\n";
+    assert_eq!(document(&table, Some(25)), folded);
+    let narrow = document(&table, Some(16));
+    let (rows, note) = narrow.split_once("\n\n").unwrap();
+    assert!(rows.lines().all(|line| line.chars().count() <= 16), "{narrow}");
+    assert!(note.starts_with("left out here:") && note.contains("moving"), "{narrow}");
 }

@@ -333,9 +333,7 @@ impl Question for CompareMethods {
         } else {
             &["method", "stable", "unstable", "edge", "stable_area", "unstable_area"]
         };
-        let people = table
-            .choose(&shown.iter().map(ToString::to_string).collect::<Vec<_>>())
-            .expect("columns of the table");
+        let people = table.only(shown);
         Document::new(Self::NAME).entry("points", points).rows(table).for_people(people).summary(&[line])
     }
 

@@ -38,6 +38,8 @@ pub struct Document {
     /// In place of the summary and the tables in text, unless details are asked for.
     answer: Option<Vec<String>>,
     is_detailed: bool,
+    /// Characters a line of the tables in text, where a terminal bounds them.
+    width: Option<usize>,
 }
 
 /// The columns and digits that a person asks for.
@@ -70,6 +72,7 @@ impl Document {
             most_rows: ROWS_FOR_PEOPLE,
             answer: None,
             is_detailed: false,
+            width: None,
         }
     }
 
@@ -199,6 +202,12 @@ impl Document {
         self
     }
 
+    /// With tables of at most so many characters a line in text.
+    #[must_use]
+    pub fn within(self, width: Option<usize>) -> Self {
+        Document { width, ..self }
+    }
+
     /// All rows in text, too, of a list that is asked for as one.
     #[must_use]
     pub fn with_all_rows(self) -> Self {
@@ -278,7 +287,7 @@ impl Document {
             if rows > self.most_rows {
                 out += &format!("\n{rows} rows: {to_see}\n");
             } else if rows > 0 {
-                out += &format!("\n{}\n", text::document(&self.for_text(table)).trim_end());
+                out += &format!("\n{}\n", text::document(&self.for_text(table), self.width).trim_end());
             }
         }
         visible(&out)
@@ -297,7 +306,7 @@ pub(super) fn command(name: &'static str) -> &'static str {
         "system-verdict" | "system-map" | "system-intervals" => "system",
         "advise-system" | "advise-direct" => "advise",
         "survey" => "tongues",
-        "methods" | "word-check" => "word",
+        "methods" | "word-check" | "family" => "word",
         "compare-methods" => "compare",
         name => name,
     }

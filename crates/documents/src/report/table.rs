@@ -241,6 +241,23 @@ impl Table {
         Ok(Table { columns: choice.columns, rows, ..self.clone() })
     }
 
+    /// The columns with these keys alone, in this order.
+    ///
+    /// # Panics
+    /// A key that no column has.
+    #[must_use]
+    pub fn only(&self, keys: &[&str]) -> Table {
+        let keys: Vec<String> = keys.iter().map(ToString::to_string).collect();
+        self.choose(&keys).expect("its own keys")
+    }
+
+    /// The columns that are to be kept.
+    #[must_use]
+    pub fn keeping(&self, is_kept: impl Fn(&Column) -> bool) -> Table {
+        let kept = self.columns.iter().filter(|column| is_kept(column));
+        self.only(&kept.map(|column| column.key.as_str()).collect::<Vec<_>>())
+    }
+
     /// The table with so many significant digits at most.
     #[must_use]
     pub fn shortened(&self, digits: u32) -> Table {

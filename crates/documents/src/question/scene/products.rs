@@ -269,7 +269,7 @@ mod tests {
         // Without a folder there is no file for them.
         assert!(products.arrays.is_none());
         for want in &scene.want[1..5] {
-            let form = Form { format: want.format, float: None, to_see: "" };
+            let form = Form { format: want.format, float: None, to_see: "", width: None };
             let written = products.of(want.product).written(form, |_| unreachable!()).unwrap();
             let mut alone = Vec::new();
             match want.product {

@@ -23,6 +23,8 @@ pub struct Form {
     pub float: Option<Float>,
     /// How rows that are left out of a text are to be seen.
     pub to_see: &'static str,
+    /// Characters a line of a text, where a terminal bounds them.
+    pub width: Option<usize>,
 }
 
 /// Rows that a LaTeX table holds at most; text shows them up to a number that fits a terminal.
@@ -126,7 +128,7 @@ impl Tongues {
 
     /// A summary, and the rows where a terminal or a table holds them.
     fn write_for_people(&self, found: &FoundTongues, form: Form, sink: &mut dyn Write) -> Result<()> {
-        let Form { format, float, to_see } = form;
+        let Form { format, float, to_see, width } = form;
         let count = found.tally.count;
         let too_many = count > most_rows(format);
         if too_many && format == Format::Latex {
@@ -134,7 +136,8 @@ impl Tongues {
             return Err(Error::too_much(cost, "write csv or json"));
         }
         let rows = if too_many { &[] } else { &found.tongues[..] };
-        let document = self.tables(found, rows, &found.request).inputs(found.asked.input()).floated(float);
+        let document =
+            self.tables(found, rows, &found.request).inputs(found.asked.input()).floated(float).within(width);
         let mut text = document.render(format)?;
         if too_many {
             text += &format!("\n{count} rows: {to_see}\n");

@@ -4,7 +4,6 @@ use std::sync::OnceLock;
 
 use super::asked::Word;
 use super::linted::Linted;
-use super::shown::chosen;
 use crate::question::asking::{Question, Work, question};
 use crate::question::field::StepRange;
 use crate::report::document::Document;
@@ -13,6 +12,7 @@ use crate::report::shape::{FLAG, INTEGER, Keys, Schema, Shape, TEXT, WIDE_ENCLOS
 use crate::report::table::{Cell, Column};
 use num_traits::Zero;
 use number::error::Result;
+use number::parallel::try_map;
 use number::{Ball, Laurent, Rational, Sign};
 use words::{Edge, METHODS, Method};
 
@@ -58,7 +58,8 @@ impl Question for Methods {
             let two = if linted.word.names_forces() { Some(two().answer(work)?) } else { None };
             Ok(Listed { method, linted, two })
         };
-        let all = METHODS.iter().map(lint).collect::<Result<Vec<_>>>()?;
+        let methods: Vec<&'static Method> = METHODS.iter().collect();
+        let all = try_map(&methods, |&method| lint(method))?;
         Ok(KNOWN.get_or_init(|| all))
     }
 
@@ -76,23 +77,20 @@ impl Question for Methods {
             "free: no unstable step there before the slow force's own limit omega2 h = 2".into(),
         ];
         lines.extend(all.iter().filter_map(Listed::disagreement));
-        let people = chosen(
-            &table,
-            &[
-                "name",
-                "order",
-                "general_order",
-                "nystrom_order",
-                "evaluations",
-                "palindrome",
-                "edge",
-                "nominal_edge",
-                "efficiency",
-                "coupled_edge",
-                "free",
-                "engines",
-            ],
-        );
+        let people = table.only(&[
+            "name",
+            "order",
+            "general_order",
+            "nystrom_order",
+            "evaluations",
+            "palindrome",
+            "edge",
+            "nominal_edge",
+            "efficiency",
+            "coupled_edge",
+            "free",
+            "engines",
+        ]);
         Document::new(Self::NAME).rows(table).for_people(people).summary(&lines).with_all_rows()
     }
 }

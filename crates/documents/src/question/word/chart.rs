@@ -65,26 +65,36 @@ pub(super) fn figure(question: &Word, linted: &Linted) -> Result<Figure> {
         panels.extend(biased(&samples, &bars, rho, range));
     }
     if let (Some(h), Some(x)) = (&question.h, asked(question)) {
-        let line = |end: f64| {
-            Layer::lines(vec![vec![[x, -end], [x, end]]], Stroke::DOTTED.in_colour(PARABOLIC).wide(1.2))
-        };
-        let name = format!("*h* = {}", typeset(h));
-        let label = |(n, line): (usize, Layer)| if n == 0 { line.labelled(&name) } else { line };
-        let lines = panels.iter().map(|_| line(HIGH)).enumerate().map(label).collect::<Vec<_>>();
-        panels = panels.into_iter().zip(lines).map(|(panel, line)| panel.with(line)).collect();
+        panels = marked(panels, x, &format!("*h* = {}", typeset(h)));
     }
-    let count = panels.len();
     let x = Axis::linear(if linted.word.names_forces() { "√*Λ*_1 *h*" } else { "*ωh*" }, range[0], range[1]);
-    let height = 12.0 + 42.0 * count as f64 + if linted.word.names_forces() { 14.0 } else { 0.0 };
-    let sheet = Figure::new(130.0, height).columns(1).named("An integrator over its step");
-    let label = |(n, panel): (usize, Panel)| if n + 1 == count { panel.over(x.clone()) } else { panel };
+    let room = if linted.word.names_forces() { 26.0 } else { 12.0 };
     let mut foot = Foot::default().words(&linted.word.to_string());
     for (name, value) in
         [("*Λ*_1", &question.lambda1), ("*Λ*_2", &question.lambda2), ("*γ*", &question.friction)]
     {
         foot = value.iter().fold(foot, |foot, value| foot.value(name, value));
     }
-    Ok(panels.into_iter().enumerate().map(label).fold(sheet, Figure::with).footed(&foot))
+    Ok(stacked(panels, &x, room, "An integrator over its step").footed(&foot))
+}
+
+/// A line at x in every panel, named in the first one.
+pub(super) fn marked(panels: Vec<Panel>, x: f64, name: &str) -> Vec<Panel> {
+    let line =
+        || Layer::lines(vec![vec![[x, -HIGH], [x, HIGH]]], Stroke::DOTTED.in_colour(PARABOLIC).wide(1.2));
+    let with_line = |(n, panel): (usize, Panel)| match n {
+        0 => panel.with(line().labelled(name)).legend(Place::Above),
+        _ => panel.with(line()),
+    };
+    panels.into_iter().enumerate().map(with_line).collect()
+}
+
+/// Panels one below the other over one axis, with `room` mm for what stands around them.
+pub(super) fn stacked(panels: Vec<Panel>, x: &Axis, room: f64, name: &str) -> Figure {
+    let count = panels.len();
+    let sheet = Figure::new(130.0, room + 42.0 * count as f64).columns(1).named(name);
+    let over = |(n, panel): (usize, Panel)| if n + 1 == count { panel.over(x.clone()) } else { panel };
+    panels.into_iter().enumerate().map(over).fold(sheet, Figure::with)
 }
 
 /// The steps that are drawn, in √Λ1 h.

@@ -21,7 +21,7 @@ use linted::{BITS, Pieces};
 use num_traits::Zero;
 use number::error::{Error, Result};
 use number::{ExactSign, Laurent, Real, Sign};
-use shown::{chosen, record};
+use shown::record;
 use words::{Enclosed, Forces, Stability, at};
 
 /// The most kicks of a word unless a budget says otherwise: roots of polynomials of this degree are isolated
@@ -100,7 +100,7 @@ impl Question for Word {
         let document = record(self).document(Document::new(Self::NAME), answer);
         let mut columns = vec!["stable", "lower", "upper"];
         columns.extend(self.lambda1.iter().flat_map(|_| ["h_lower", "h_upper"]));
-        let people = chosen(&rows, &columns);
+        let people = rows.only(&columns);
         document.rows(rows).for_people(people).summary(&answer.lines(self))
     }
 

@@ -184,12 +184,6 @@ fn enclosed((lo, hi): (f64, f64)) -> String {
     decimal::enclosure(lo, hi).to_string()
 }
 
-/// Some columns of a table, for people.
-pub(super) fn chosen(table: &Table, columns: &[&str]) -> Table {
-    let columns: Vec<String> = columns.iter().map(ToString::to_string).collect();
-    table.choose(&columns).expect("columns of the table")
-}
-
 /// A sum that should be 1: what it lacks, where that is little.
 fn beside_one(sum: &Radical) -> String {
     const LITTLE: f64 = 1e-5;

@@ -30,19 +30,15 @@ pub fn published(steps: usize, modes: [&str; 2], limit: impl Fn(&Caution) -> Cel
 
 /// A table for people: of its columns those that are to be shown, numbers rounded to five digits.
 pub fn for_people(full: &Table, shown: impl Fn(&str) -> bool) -> Table {
-    let kept = || full.columns().iter().map(|column| shown(&column.key));
-    let columns = full.columns().iter().zip(kept()).filter(|(_, kept)| *kept);
-    let columns = columns.map(|(column, _)| Column { enclosed: false, ..column.clone() }).collect();
-    let mut table = Table::new(full.name(), full.caption(), columns);
-    for row in full.rows() {
-        let cell = |(cell, kept): (&Cell, bool)| match *cell {
-            _ if !kept => None,
-            Cell::Float(x) => Some(Cell::Exact(nearest((x, x), 5))),
-            Cell::Enclosure { lo, hi } => Some(Cell::Exact(nearest((lo, hi), 5))),
-            _ => Some(cell.clone()),
-        };
-        table.push(row.iter().zip(kept()).filter_map(cell).collect());
-    }
+    let kept = full.keeping(|column| shown(&column.key));
+    let columns = kept.columns().iter().map(|column| Column { enclosed: false, ..column.clone() });
+    let mut table = Table::new(kept.name(), kept.caption(), columns.collect());
+    let five_digits = |cell: &Cell| match *cell {
+        Cell::Float(x) => Cell::Exact(nearest((x, x), 5)),
+        Cell::Enclosure { lo, hi } => Cell::Exact(nearest((lo, hi), 5)),
+        _ => cell.clone(),
+    };
+    kept.rows().iter().for_each(|row| table.push(row.iter().map(five_digits).collect()));
     table
 }
 

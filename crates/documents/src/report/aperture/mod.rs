@@ -6,7 +6,7 @@ use super::decimal::few;
 use super::document::Document;
 use super::record::Record;
 use super::shape::{FLAG, Keys, ROUNDED, Shape, TEXT};
-use super::table::{Cell, Column, Table};
+use super::table::{Cell, Column};
 pub use chart::figure;
 use molecules::aperture::{EARLY, Hottest, LATE, Measured, PHASES, Resonance, Step, rungs};
 use molecules::unit::decimal;
@@ -22,27 +22,12 @@ const DIGITS: u32 = 5;
 pub fn document(measured: &Measured) -> Document {
     let rows: Vec<Row> = measured.steps.iter().map(|step| (step, measured.is_enough(step))).collect();
     let table = record().table("steps", "How hot a bond may be at each step, as measured", &rows);
+    let has_band = measured.steps.iter().any(|step| step.band.is_some());
     head()
         .document(Document::new("aperture"), measured)
-        .for_people(shown(table.shortened(DIGITS), measured))
+        .for_people(table.shortened(DIGITS).keeping(|column| has_band || !column.key.starts_with("band")))
         .rows(table)
         .summary(&lines(measured))
-}
-
-/// The columns of a band where one was asked for.
-fn shown(table: Table, measured: &Measured) -> Table {
-    if measured.steps.iter().any(|step| step.band.is_some()) {
-        return table;
-    }
-    let kept: Vec<bool> = table.columns().iter().map(|column| !column.key.starts_with("band")).collect();
-    let columns = table.columns().iter().zip(&kept).filter(|(_, kept)| **kept);
-    let mut shown =
-        Table::new(table.name(), table.caption(), columns.map(|(column, _)| column.clone()).collect());
-    for row in table.rows() {
-        let cells = row.iter().zip(&kept).filter(|(_, kept)| **kept);
-        shown.push(cells.map(|(cell, _)| cell.clone()).collect());
-    }
-    shown
 }
 
 /// The keys of the document.

@@ -38,7 +38,7 @@ pub fn document(
     digits: Option<u32>,
     float: Option<Float>,
 ) -> Result<String> {
-    let table = &kept(table);
+    let table = &table.keeping(|column| !column.aside);
     let tries = digits.map_or(DIGITS.to_vec(), |digits| vec![digits]);
     let is_long = table.rows().len() > ROWS_OF_A_PAGE;
     let fitting = tries.iter().find_map(|&digits| Body::new(&table.shortened(digits)).placed(is_long, float));
@@ -100,12 +100,6 @@ fn long(body: &Body, size: &str, caption: &str) -> String {
          \\begin{{longtable}}{{{sides}}}\n  {caption} \\\\\n  \\toprule\n  {head}\n  \\midrule\n  \\endfirsthead\n  \\toprule\n  \
          {head}\n  \\midrule\n  \\endhead\n  \\bottomrule\n  \\endfoot\n{lines}\\end{{longtable}}\n\\afterrows\n\\endgroup\n"
     )
-}
-
-/// The table without the columns that paper does without.
-fn kept(table: &Table) -> Table {
-    let kept = table.columns().iter().filter(|column| !column.aside).map(|column| column.key.clone());
-    table.choose(&kept.collect::<Vec<_>>()).expect("its own keys")
 }
 
 /// Inputs as formulas, ending in `=` or `in`, before the value.

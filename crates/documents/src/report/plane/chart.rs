@@ -75,8 +75,8 @@ pub struct Chart {
     colouring: Colouring,
     growing: Raster<f64>,
     edges: Raster<Edge>,
-    /// The larger of R and 1/R.
-    biased: Raster<f64>,
+    /// The larger of R and 1/R, where the colours stand for it.
+    biased: Option<Raster<f64>>,
 }
 
 /// Families with a colour of their own; the others share the next, nearly a grey.
@@ -89,7 +89,8 @@ const WORST_BIAS: f64 = 10.0;
 
 impl Chart {
     pub fn new(grid: &Grid, colouring: Colouring) -> Self {
-        Chart { colouring, growing: Raster::new(grid), edges: Raster::new(grid), biased: Raster::new(grid) }
+        let biased = (colouring == Colouring::Bias).then(|| Raster::new(grid));
+        Chart { colouring, growing: Raster::new(grid), edges: Raster::new(grid), biased }
     }
 
     /// Puts a band in.
@@ -102,26 +103,8 @@ impl Chart {
                 Kind::Coexistence => self.edges.put(pair.i, pair.j, Edge::Coexistence),
             }
         }
-        if self.colouring == Colouring::Bias {
-            self.add_biases(grid, band);
-        }
-    }
-
-    /// R of the elliptic pairs; of the pairs in a cell the one that is most off is shown.
-    fn add_biases(&mut self, grid: &Grid, band: &Band) {
-        let biased = |n: usize| {
-            let (i, j) = band.multipliers(grid, n);
-            let clocks = grid.clocks(i, j).ok()?.map(Laurent::to_f64);
-            rounded_bias(&clocks).map(|bias| (i, j, bias.max(bias.recip())))
-        };
-        let is_elliptic = |n: &usize| band.decision(*n).verdict.kind() == Kind::Elliptic;
-        let column = |&column: &usize| -> Vec<_> {
-            let positions = column * band.rows..(column + 1) * band.rows;
-            positions.filter(is_elliptic).filter_map(biased).collect()
-        };
-        let columns: Vec<usize> = (0..band.columns).collect();
-        for (i, j, bias) in parallel::map(&columns, column).into_iter().flatten() {
-            self.biased.put(i, j, bias);
+        if let Some(raster) = &mut self.biased {
+            add_biases(raster, grid, band);
         }
     }
 
@@ -138,7 +121,9 @@ impl Chart {
             Colouring::Verdict => self.by_verdict(panel, steps),
             Colouring::Growth | Colouring::Tenfold => self.by_growth(panel, steps),
             Colouring::Family => self.by_family(panel, steps),
-            Colouring::Bias => self.by_bias(panel, steps),
+            Colouring::Bias => {
+                self.biased.iter().fold(panel, |panel, biased| self.by_bias(panel, biased, steps))
+            }
         };
         let (origin, pitch) = self.edges.geometry(steps);
         for (edge, shape, colour, name) in [
@@ -154,7 +139,7 @@ impl Chart {
                 panel = panel.with(Layer::dots(found, shape, EDGE, colour).labelled(name));
             }
         }
-        let has_bar = self.colouring.by_growth() || self.colouring == Colouring::Bias;
+        let has_bar = self.colouring.by_growth() || self.biased.is_some();
         let wide = if has_bar { 150.0 } else { 135.0 };
         Figure::new(wide, 135.0)
             .named(&format!("Stability map; {}", grid.fingerprint()))
@@ -162,32 +147,24 @@ impl Chart {
     }
 
     fn by_verdict(&self, panel: Panel, steps: [f64; 2]) -> Panel {
-        let mut cells = cells(&self.growing, steps, vec![HYPERBOLIC]);
+        panel.with(self.unstable(steps, HYPERBOLIC))
+    }
+
+    fn unstable(&self, steps: [f64; 2], colour: Colour) -> Layer {
+        let mut cells = cells(&self.growing, steps, vec![colour]);
         self.growing.filled().for_each(|(k, l, _)| cells.push(k, l, 0));
-        panel.with(Layer::cells(cells).labelled("exponential growth (hyperbolic)"))
+        Layer::cells(cells).labelled("exponential growth (hyperbolic)")
     }
 
     fn by_growth(&self, panel: Panel, steps: [f64; 2]) -> Panel {
         let bar = self.bar();
-        let mut cells = cells(&self.growing, steps, bar.steps(ColourBar::SHADES));
-        for (k, l, strength) in self.growing.filled() {
-            cells.push(k, l, bar.class(self.shown(strength), ColourBar::SHADES));
-        }
-        panel.with(Layer::cells(cells)).bar(bar)
+        panel.with(shaded(&self.growing, steps, &bar, |strength| self.shown(strength))).bar(bar)
     }
 
-    fn by_bias(&self, panel: Panel, steps: [f64; 2]) -> Panel {
+    fn by_bias(&self, panel: Panel, biased: &Raster<f64>, steps: [f64; 2]) -> Panel {
         let axis = Axis::log("*R* or 1/*R*, the larger one", 1.0, WORST_BIAS);
-        let biases = self.biased.filled().map(|(_, _, bias)| bias);
-        let bar = ColourBar::new(axis, Gradient::on_white()).over(biases);
-        let mut stable = cells(&self.biased, steps, bar.steps(ColourBar::SHADES));
-        for (k, l, bias) in self.biased.filled() {
-            stable.push(k, l, bar.class(bias, ColourBar::SHADES));
-        }
-        let mut unstable = cells(&self.growing, steps, vec![GREY]);
-        self.growing.filled().for_each(|(k, l, _)| unstable.push(k, l, 0));
-        let unstable = Layer::cells(unstable).labelled("exponential growth (hyperbolic)");
-        panel.with(Layer::cells(stable)).with(unstable).bar(bar)
+        let bar = ColourBar::new(axis, Gradient::on_white()).over(biased.filled().map(|(_, _, bias)| bias));
+        panel.with(shaded(biased, steps, &bar, |bias| bias)).with(self.unstable(steps, GREY)).bar(bar)
     }
 
     /// The quantity on the bar.
@@ -233,6 +210,33 @@ pub(super) fn family_name(rank: f64) -> String {
         return "not labelled".into();
     }
     format!("family *a* = {}", of_rank(rank)).replace('-', "−")
+}
+
+/// R of the elliptic pairs; of the pairs in a cell the one that is most off is shown.
+fn add_biases(raster: &mut Raster<f64>, grid: &Grid, band: &Band) {
+    let biased = |n: usize| {
+        let (i, j) = band.multipliers(grid, n);
+        let clocks = grid.clocks(i, j).ok()?.map(Laurent::to_f64);
+        rounded_bias(&clocks).map(|bias| (i, j, bias.max(bias.recip())))
+    };
+    let is_elliptic = |n: &usize| band.decision(*n).verdict.kind() == Kind::Elliptic;
+    let column = |&column: &usize| -> Vec<_> {
+        let positions = column * band.rows..(column + 1) * band.rows;
+        positions.filter(is_elliptic).filter_map(biased).collect()
+    };
+    let columns: Vec<usize> = (0..band.columns).collect();
+    for (i, j, bias) in parallel::map(&columns, column).into_iter().flatten() {
+        raster.put(i, j, bias);
+    }
+}
+
+/// Each cell in the shade of the value that the bar has for it.
+fn shaded(raster: &Raster<f64>, steps: [f64; 2], bar: &ColourBar, shown: impl Fn(f64) -> f64) -> Layer {
+    let mut cells = cells(raster, steps, bar.steps(ColourBar::SHADES));
+    for (k, l, value) in raster.filled() {
+        cells.push(k, l, bar.class(shown(value), ColourBar::SHADES));
+    }
+    Layer::cells(cells)
 }
 
 fn cells<T: Copy + PartialOrd>(raster: &Raster<T>, steps: [f64; 2], colours: Vec<Colour>) -> Cells {

@@ -1,9 +1,9 @@
 //! A family over its parameter: unstable steps as a map, and below it the efficiency, the error and the bias.
 
-use plot::palette::{HYPERBOLIC, INK, PARABOLIC};
+use plot::palette::{HYPERBOLIC, INK};
 use plot::{Axis, Figure, Foot, Layer, Panel, Place, Stroke};
 
-use super::super::chart::{ends, unstable};
+use super::super::chart::{ends, marked, stacked, unstable};
 use super::asked::Family;
 use super::member::Member;
 use super::search::Members;
@@ -53,23 +53,8 @@ pub(super) fn figure(family: &Family, members: &Members) -> Result<Figure> {
     if let Some(best) = &members.best {
         let place = to_f64(&best.member.values[at]);
         let name = format!("best {}: *{}* = {place:.7}", best.goal.name(), parameter.name);
-        let line = || {
-            Layer::lines(
-                vec![vec![[place, 0.0], [place, 1e3]]],
-                Stroke::DOTTED.in_colour(PARABOLIC).wide(1.2),
-            )
-        };
-        let marked = |(n, panel): (usize, Panel)| match n {
-            0 => panel.with(line().labelled(&name)).legend(Place::Above),
-            _ => panel.with(line()),
-        };
-        panels = panels.into_iter().enumerate().map(marked).collect();
+        panels = marked(panels, place, &name);
     }
-    let count = panels.len();
-    let named = |(n, panel): (usize, Panel)| {
-        if n + 1 == count { panel.over(x(&format!("*{}*", parameter.name))) } else { panel }
-    };
-    let sheet = Figure::new(130.0, 26.0 + 42.0 * count as f64).columns(1).named("A word over its parameter");
     let mut foot = Foot::default().words(&family.word);
     for fixed in family.parameter.0.iter().filter(|parameter| parameter.step.is_none()) {
         foot = foot.value(&format!("*{}*", fixed.name), &fixed.range.0);
@@ -77,7 +62,8 @@ pub(super) fn figure(family: &Family, members: &Members) -> Result<Figure> {
     for (name, value) in [("*Λ*_1", &family.lambda1), ("*Λ*_2", &family.lambda2)] {
         foot = value.iter().fold(foot, |foot, value| foot.value(name, value));
     }
-    Ok(panels.into_iter().enumerate().map(named).fold(sheet, Figure::with).footed(&foot))
+    let x = x(&format!("*{}*", parameter.name));
+    Ok(stacked(panels, &x, 26.0, "A word over its parameter").footed(&foot))
 }
 
 /// The unstable steps over the parameter; `None` where none are known.

@@ -2,7 +2,6 @@
 
 use super::super::linted::BITS;
 use super::super::orders::commutators;
-use super::super::shown::chosen;
 use super::asked::{Family, Goal};
 use super::member::Member;
 use super::search::{Best, Members};
@@ -122,7 +121,7 @@ pub(super) fn document(family: &Family, members: &Members) -> Document {
     let mut people = vec!["value"];
     people.extend((!names[1].is_empty()).then_some("second"));
     people.extend(["order", "nystrom_order", "error", "evaluations", "edge", "efficiency", "bias"]);
-    let people = chosen(&table, &people);
+    let people = table.only(&people);
     let document = best_record(places).document(Document::new(Family::NAME), &members.best);
     let document = match members.degree {
         Some(degree) => document.entry("degree", degree),
