@@ -19,7 +19,7 @@ pub struct Args {}
 /// The versions of the protocol whose tools are those of this file, the newest one last.
 const VERSIONS: [&str; 3] = ["2024-11-05", "2025-03-26", "2025-06-18"];
 
-const INSTRUCTIONS: &str = "Linear stability of multiple-time-step integrators, proven. Numbers are texts and exact: \"0.98\", \"1/3\", \"pi^2/25\". Begin with advise for a molecule, verdict for one pair of steps, word for an integrator.";
+const INSTRUCTIONS: &str = "Linear stability of multiple-time-step integrators. Each answer says what is proven, measured, published or unknown. Numbers are texts and exact: \"0.98\", \"1/3\", \"pi^2/25\". Begin with advise for a molecule, verdict for one pair of steps, word for an integrator.";
 
 /// A scene's products are files.
 const NO_TOOLS: [&str; 1] = ["run"];

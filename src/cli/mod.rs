@@ -99,7 +99,8 @@ enum Command {
     Run(run::Args),
     /// Checks a JSON document of kickdrift: every value computed again, and every claim by another route.
     Verify(verify::Args),
-    /// Answers assistants: the questions as tools of the Model Context Protocol, on standard input and output.
+    /// Answers assistants: the questions as tools of the Model Context Protocol, on standard input and
+    /// output.
     Mcp(mcp::Args),
     /// How to cite kickdrift and the paper that posed its question: BibTeX, or CITATION.cff.
     Cite(cite::Args),

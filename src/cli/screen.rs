@@ -1,7 +1,7 @@
 //! Text for a terminal: no line is wider than it, and the verdict has its colour.
 //!
-//! Lines are wrapped at words, under their own beginning; a table folds itself to [`width_of_output`]. Where standard
-//! output is a file or a pipe, text stays as it is.
+//! Lines are wrapped at words, under their own beginning; a table folds itself to [`width_of_output`]. Where
+//! standard output is a file or a pipe, text stays as it is.
 
 use std::io::IsTerminal;
 

@@ -34,7 +34,8 @@ pub struct Args {
     ///
     /// For each word [[word]], word = "K(1/2) D(1) K(1/2)", order = 2, symmetric = true, limit = 2.
     ///
-    /// Claims: order (on oscillators), general_order, nystrom_order, consistent, symmetric, limit (first unstable omega h).
+    /// Claims: order (on oscillators), general_order, nystrom_order, consistent, symmetric, limit (first
+    /// unstable omega h).
     ///
     /// A limit with decimals is held to half a unit of its last one, another limit exactly.
     ///

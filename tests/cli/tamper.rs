@@ -40,8 +40,8 @@ const LENNARD_JONES: &str = include_str!("../../data/scenes/lennard-jones.json")
 const ENGINE: &str = "integrator = md\ndt = 0.0005\nmts = yes\nmts-levels = 2\nmts-level2-forces = longrange-nonbonded\n\
                       mts-level2-factor = 8\nconstraints = none\n";
 
-/// The arrays of tiny.json on three clocks, where both rest on one; and as Jacobians, in steps whose ratio stays
-/// short when a digit is another one.
+/// The arrays of tiny.json on three clocks, where both rest on one; and as Jacobians, in steps whose ratio
+/// stays short when a digit is another one.
 const TINY_LEVELS: &str = r#"{"schema": "kickdrift/system/1", "title": "", "mass_weighted": true, "accuracy": 1e-5, "potentials": [
     {"name": "a", "step": "1/2000", "stiffness": {"npy": "tiny-fast.npy"}},
     {"name": "b", "step": "1/500", "scale": "1/3", "stiffness": {"npy": "tiny-slow.npy"}},

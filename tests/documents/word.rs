@@ -792,7 +792,8 @@ fn damped_springs_are_stable_up_to_the_published_steps() {
     }
 }
 
-/// Half of the friction explicit, half of it implicit: the trace is 1 + d times cos θ of Verlet, d the determinant.
+/// Half of the friction explicit, half of it implicit: the trace is 1 + d times cos θ of Verlet, d the
+/// determinant.
 #[test]
 fn brunger_brooks_and_karplus_are_stable_as_verlet_whatever_the_friction() {
     let text = method("bbk").unwrap().text;
@@ -836,7 +837,8 @@ fn a_focusing_and_a_defocusing_half_are_stable_up_to_the_cantilevers_number() {
     let one = Laurent::from_integer(1);
     for text in ["R1(1/2) R2(1/2)", "R2(1/4) R1(1/2) R2(1/4)", "R1(1/2) O(1/2) R2(1/2) F(1/2)"] {
         let own = word(text);
-        // At short steps both halves cancel, and the trace leaves 2 with h⁴ alone: nothing that balls separate.
+        // At short steps both halves cancel, and the trace leaves 2 with h⁴ alone: nothing that balls
+        // separate.
         let pieces = Enclosed::new(&own, &one, &-one.clone(), &Laurent::zero()).pieces(0.1, 8.0).unwrap();
         assert!(pieces[0].stable && !pieces[1].stable, "{text}: {pieces:?}");
         let (lo, hi) = pieces[0].upper;

@@ -258,8 +258,8 @@ fn advice_on_a_bond_of_a_known_shape_stays_where_it_is_cold_enough() {
         let found = advice(bond, false);
         let answer = &found.schemes[0];
         assert_eq!((answer.bound, answer.status), (Some(Bound::Aperture), Status::Safe), "{bond}");
-        // Bonds of 20 kT that were made so hot in a droplet are lost from 1.23 fs on (data/published/bonds.json);
-        // the narrow dips of k = 7 begin at 1.24 fs, of a Morse bond at 1.29 fs.
+        // Bonds of 20 kT that were made so hot in a droplet are lost from 1.23 fs on
+        // (data/published/bonds.json); the narrow dips of k = 7 begin at 1.24 fs, of a Morse bond at 1.29 fs.
         let safe = to_f64(answer.safe.as_ref().unwrap());
         assert!((1.2..1.3).contains(&safe), "{bond}: {safe}");
         // The step itself and every shorter one, which is what longer periods come to: E* is not below ln N.

@@ -53,8 +53,8 @@ named! {
     /// The growth that the steps add to that of the forces.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub enum Adds {
-        /// Growth is proven to be at most [`TIMES`] the growth without steps, so none where nothing grows without
-        /// steps; or it is tenfold after 1 µs at the earliest.
+        /// Growth is proven to be at most [`TIMES`] the growth without steps, so none where nothing grows
+        /// without steps; or it is tenfold after 1 µs at the earliest.
         Little = "little",
         /// It is proven to be more.
         Much = "much",

@@ -204,8 +204,8 @@ impl Levels<'_> {
         ManyClocks::new(&steps, &vec![Rational::zero(); steps.len()], heard.iter().map(strength).collect())
     }
 
-    /// The bias R of a mode that is stable: its potential energy where it is kicked, over the half kT that its
-    /// velocity has there. `None` where it is not stable, or the balls do not tell it.
+    /// The bias R of a mode that is stable: its potential energy where it is kicked, over the half kT that
+    /// its velocity has there. `None` where it is not stable, or the balls do not tell it.
     ///
     /// That of [`enclosed_bias_of`]; for velocity Verlet 1/(1 − h² Λ/4).
     ///

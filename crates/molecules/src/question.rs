@@ -210,8 +210,8 @@ impl Question {
         Question { harmonic, ..self }
     }
 
-    /// Measures up to which steps of their own the bonds of a known shape stay at a temperature in K, where so
-    /// many independent energies are seen.
+    /// Measures up to which steps of their own the bonds of a known shape stay at a temperature in K, where
+    /// so many independent energies are seen.
     ///
     /// # Errors
     /// Where somebody has stopped the work.

@@ -1,8 +1,8 @@
 //! The operators of a ring type, from five functions on references.
 
 /// Implements `+ - *` on values and references, `+= -= *=` and unary minus for a type that has
-/// `sum`, `difference`, `times` and `negated`, each taking references; and makes it a [`Ring`](crate::Ring) in
-/// which `$from` is the rational `$x`.
+/// `sum`, `difference`, `times` and `negated`, each taking references; and makes it a [`Ring`](crate::Ring)
+/// in which `$from` is the rational `$x`.
 macro_rules! ring_operators {
     ([$($generics:tt)*] $type:ty, |$x:ident| $from:expr) => {
         impl<$($generics)*> $crate::Ring for $type {

@@ -1,5 +1,5 @@
-//! Work spread over threads: the results and their order are those of one thread. And work that its caller may
-//! stop.
+//! Work spread over threads: the results and their order are those of one thread. And work that its caller
+//! may stop.
 
 use std::cell::RefCell;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};

@@ -1,9 +1,9 @@
 //! The bias of every normal mode of a stable period: by how much its potential energy is off.
 //!
-//! Where all clocks kick, Q = \[\[X, V\], \[W, Xᵀ\]\] with symmetric V and W. An x with X x = cos φ x and p = −W x/sin φ
-//! turn into each other: Q (x, 0) = (x cos φ, −p sin φ), Q (0, p) = (x sin φ, p cos φ). So each normal mode has an
-//! ellipse of its own, a (x, 0) + b (0, p) of any a and b with ⟨a²⟩ = ⟨b²⟩ and ⟨ab⟩ = 0. With K the sum of all
-//! stiffnesses,
+//! Where all clocks kick, Q = \[\[X, V\], \[W, Xᵀ\]\] with symmetric V and W. An x with X x = cos φ x and p =
+//! −W x/sin φ turn into each other: Q (x, 0) = (x cos φ, −p sin φ), Q (0, p) = (x sin φ, p cos φ). So each
+//! normal mode has an ellipse of its own, a (x, 0) + b (0, p) of any a and b with ⟨a²⟩ = ⟨b²⟩ and ⟨ab⟩ = 0.
+//! With K the sum of all stiffnesses,
 //!
 //! ```text
 //!     at the kicks:     R = xᵀ K x/(pᵀ M⁻¹ p)
@@ -416,8 +416,8 @@ mod tests {
 
     #[test]
     fn coupled_modes_have_the_bias_of_exact_fractions() {
-        // The multipliers of this one are roots of rational numbers, cos φ = 4/27 and −32/81: all that R is made
-        // of are fractions, by the full period in their arithmetic.
+        // The multipliers of this one are roots of rational numbers, cos φ = 4/27 and −32/81: all that R is
+        // made of are fractions, by the full period in their arithmetic.
         let unit = ratio(1, 1);
         let fast = symmetric(&[&[1, -2], &[-2, 28]], &unit);
         let slow = symmetric(&[&[3, 2], &[2, 4]], &unit);

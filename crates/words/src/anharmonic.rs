@@ -1,5 +1,5 @@
-//! A word on an oscillator that is not linear, letter by letter in fixed point: the order that its steps show,
-//! to hold [`Word::general_order`] against. Nothing is expanded.
+//! A word on an oscillator that is not linear, letter by letter in fixed point: the order that its steps
+//! show, to hold [`Word::general_order`] against. Nothing is expanded.
 //!
 //! H = T(v) + V1(x) + V2(x) with T = v²/2, or v²/2 + v³/3 where the kinetic energy may be any, −V1' = −x − x²
 //! and −V2' = −x³. The error of a step h and that of h/2 differ by 2^(p + 1).
@@ -38,8 +38,9 @@ fn times(a: &Fixed, b: &Fixed) -> Fixed {
 }
 
 /// The order that a word shows at the steps 2^-`step_log2` and half of it, to about the shorter one; rounded
-/// coefficients show theirs at long steps, and what they leave at short ones. `None` where a letter is no kick, no
-/// drift and no flow, where a force gradient meets a kinetic energy that is not quadratic, and where nothing is off.
+/// coefficients show theirs at long steps, and what they leave at short ones. `None` where a letter is no
+/// kick, no drift and no flow, where a force gradient meets a kinetic energy that is not quadratic, and where
+/// nothing is off.
 pub fn order_shown(word: &Word, quadratic: bool, step_log2: u32) -> Option<f64> {
     let start = [(3, 10), (2, 5)].map(|(n, d): (i64, i64)| fixed(&Rational::new(n.into(), d.into())));
     let error = |log2: u32| {

@@ -168,7 +168,7 @@ impl Reader<'_> {
                     return self.wrong(
                         at,
                         format!(
-                            "{name} is no number; there are decimals, sqrt(c) and c^(1/n), and names with values: parameter {name}=1/6..1/4:1/100"
+                            "{name} is no number: write a decimal, sqrt(c) or c^(1/n), or give {name} values by parameter, as {name}=1/6..1/4:1/100"
                         ),
                     );
                 }

@@ -1,8 +1,9 @@
 //! Words with exact flows, filters or friction, in balls.
 //!
-//! A step's matrix is divided by q e, q of midpoints and e of implicit friction; with T the matrix's trace and
-//! d/e the step's determinant, the powers are bounded if |T| < q (e + d) and d ≤ e, q and e being positive (Jury's
-//! conditions for two eigenvalues inside the unit circle; for d = e they are on it and differ), and unbounded if
+//! A step's matrix is divided by q e, q of midpoints and e of implicit friction; with T the matrix's trace
+//! and d/e the step's determinant, the powers are bounded if |T| < q (e + d) and d ≤ e, q and e being
+//! positive (Jury's conditions for two eigenvalues inside the unit circle; for d = e they are on it and
+//! differ), and unbounded if
 //! |T| > q (e + d) or d > e. Over an interval of steps q (e + d) ∓ T is enclosed by its value in the middle and the balls of its derivative over the whole, so that the width
 //! of cells falls with the distance from an edge, and not with its square where the trace only touches ±2.
 
@@ -100,8 +101,8 @@ impl Steps {
         [up.add(&down, BITS).scale2(-1), up.sub(&down, BITS).scale2(-1)]
     }
 
-    /// cosh x and sinh x / x, for x ≥ 0; about 0 by the bounds 1 ≤ sinh x / x ≤ cosh x, whose slope is at most
-    /// x/3 cosh x.
+    /// cosh x and sinh x / x, for x ≥ 0; about 0 by the bounds 1 ≤ sinh x / x ≤ cosh x, whose slope is at
+    /// most x/3 cosh x.
     fn repelled(&self, x: &Jet) -> [Jet; 2] {
         let ball = &x.value;
         let [cosh, sinh] = self.hyperbolic(ball);
@@ -246,8 +247,8 @@ impl<'a> Enclosed<'a> {
     }
 
     /// The answer at one step h > 0. `kind` is `edge` where balls of 128 bits cannot decide, `damped` where
-    /// friction draws all to 0, and `marginal` where an eigenvalue is on the unit circle and the other one inside.
-    /// Where every number is rational it is decided.
+    /// friction draws all to 0, and `marginal` where an eigenvalue is on the unit circle and the other one
+    /// inside. Where every number is rational it is decided.
     pub fn at(&self, h: &Laurent) -> Option<At> {
         let product = self.product(h.enclosure(BITS))?;
         let q = &product.denominator.value;

@@ -15,8 +15,8 @@ pub(super) struct Exact {
 }
 
 impl Exact {
-    /// The kind of verdict at a step h, by Jury's conditions; `None` where h² Λ or γ h is no rational number, and
-    /// at a pole. The word is algebraic and has no letters O.
+    /// The kind of verdict at a step h, by Jury's conditions; `None` where h² Λ or γ h is no rational number,
+    /// and at a pole. The word is algebraic and has no letters O.
     pub fn kind(&self, word: &Word, h: &Laurent) -> Option<&'static str> {
         let rational = |x: &Rational| Radical::from_rational(x);
         let square = Laurent::product(h, h);

@@ -22,7 +22,8 @@
 //! the letters has entries that are polynomials in s = h² Λ1 over this field, up to a common denominator that
 //! is positive, and everything here is decided exactly: order, edges of stability, verdicts. Doubles appear
 //! only as outward rounded enclosures. Exact flows and filters are no polynomials, and friction adds a
-//! rate; words that have them are proven stable or unstable in balls ([`Shape`], [`Enclosed`]), their order by power series.
+//! rate; words that have them are proven stable or unstable in balls ([`Shape`], [`Enclosed`]), their order
+//! by power series.
 //!
 //! ```
 //! use kickdrift_words::{Forces, Stability, Word};

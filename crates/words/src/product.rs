@@ -22,7 +22,8 @@ pub struct Forces<S> {
 }
 
 /// A product of letters in the coordinates (x, h v): the matrix divided by the denominator and by what
-/// implicit friction divides by, q and e. The matrix's determinant is q² e d, d the damping, so the step's is d/e.
+/// implicit friction divides by, q and e. The matrix's determinant is q² e d, d the damping, so the step's is
+/// d/e.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Product<S> {
     pub matrix: Matrix2<S>,

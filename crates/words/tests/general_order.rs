@@ -20,8 +20,8 @@ fn terms(order: &kickdrift_words::FormalOrder) -> Vec<String> {
     order.error.iter().map(|term| format!("{} {}", text(&term.coefficient), term.commutator)).collect()
 }
 
-/// Steps of 2^-5: errors of rounded coefficients, 1e-16 h³, are far below those of order 8, and those of order 6
-/// whose constant is 1e-6.
+/// Steps of 2^-5: errors of rounded coefficients, 1e-16 h³, are far below those of order 8, and those of
+/// order 6 whose constant is 1e-6.
 const STEP_LOG2: u32 = 5;
 
 /// That the error halves as the order says; the next term changes it by about a step's length, 3 %.

@@ -37,7 +37,8 @@ fn neighbouring_doubles_and_hairs_about_an_edge_are_never_wrong() {
     assert!(record.by_tier[1] > record.cases / 20 && record.by_tier[0] < record.cases, "{record}");
 }
 
-// Ledger: verdict; 10_000_000 random and 1_000_000 adversarial pairs, seed SEED; exact signs of the half period
+// Ledger: verdict; 10_000_000 random and 1_000_000 adversarial pairs, seed SEED; exact signs of the half
+// period
 #[test]
 #[ignore = "minutes"]
 fn ten_million_random_and_a_million_adversarial_cases() {

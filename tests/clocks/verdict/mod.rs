@@ -39,7 +39,8 @@ fn hair() -> Rational {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(1000))]
 
-    // Ledger: verdict; 1000 random pairs, new in each run, by every tier; the exact product over the full period
+    // Ledger: verdict; 1000 random pairs, new in each run, by every tier; the exact product over the full
+    // period
     #[test]
     fn all_tiers_agree_with_the_full_product(clocks in pair()) {
         let trace = full_period(&clocks).trace();

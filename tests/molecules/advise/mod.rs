@@ -98,8 +98,8 @@ fn no_other_ratio_helps_where_all_between_two_ends_are_unstable() {
     }
 }
 
-/// R = 1/(1 − (π h/T)²) of one clock. With a slow force beside it the mean squares of the period's own ellipse,
-/// over an orbit of it, say the same.
+/// R = 1/(1 − (π h/T)²) of one clock. With a slow force beside it the mean squares of the period's own
+/// ellipse, over an orbit of it, say the same.
 #[test]
 fn a_stable_step_has_the_potential_energy_of_its_ellipse() {
     let advice = ask(&["10fs"], &["1/2", "1", "2", "3", "3.2"]);

@@ -1,4 +1,5 @@
-//! Pairs in lanes: what the kernel of [`super::kernel`] reads and changes, where it begins and what it ends at.
+//! Pairs in lanes: what the kernel of [`super::kernel`] reads and changes, where it begins and what it ends
+//! at.
 
 use super::certificate::Hardest;
 use super::floquet::Pair;

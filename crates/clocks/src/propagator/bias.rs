@@ -1,8 +1,8 @@
 //! The bias of a stable pair: by how much its potential energy is off at the temperature of its velocities.
 //!
-//! An elliptic period is a rotation in its own ellipse. With Σ = diag(β, 1/β) its covariance where both clocks
-//! kick, β² = −BD/(AC) (theorem `palindrome` in proofs/ gives Q's entries 2BD and 2AC). The exact motion has
-//! (Λ1 + Λ2) β² = 1. What a thermostat makes of it depends on where it sets the velocities:
+//! An elliptic period is a rotation in its own ellipse. With Σ = diag(β, 1/β) its covariance where both
+//! clocks kick, β² = −BD/(AC) (theorem `palindrome` in proofs/ gives Q's entries 2BD and 2AC). The exact
+//! motion has (Λ1 + Λ2) β² = 1. What a thermostat makes of it depends on where it sets the velocities:
 //!
 //! ```text
 //!     at the kicks (constant energy, OBABO):          R = (Λ1 + Λ2) β²
@@ -10,8 +10,8 @@
 //! ```
 //!
 //! ⟨Σ11⟩ is the mean, by time, of Σ11 in the middles of all drifts: a weak friction there draws the action
-//! J, Σ being J of unit determinant, to kT ⟨Σ11⟩, for noise of variance w in the velocity adds w Σ11/2 to it. One clock
-//! alone has R = 1/(1 − h² Λ/4) at the kicks and 1 in the drifts.
+//! J, Σ being J of unit determinant, to kT ⟨Σ11⟩, for noise of variance w in the velocity adds w Σ11/2 to it.
+//! One clock alone has R = 1/(1 − h² Λ/4) at the kicks and 1 in the drifts.
 
 use num_traits::Zero;
 
@@ -35,7 +35,8 @@ pub const MAX_BIAS_KICKS: u64 = 1000;
 /// Bits of the result that must be certain.
 const ACCURACY_BITS: i64 = 56;
 
-/// The half period, with Σ duration · x² over the middles of its drifts for the even and for the odd solution.
+/// The half period, with Σ duration · x² over the middles of its drifts for the even and for the odd
+/// solution.
 struct Spread<S> {
     product: Product<S>,
     squares: [S; 2],
@@ -223,8 +224,8 @@ mod tests {
         }
     }
 
-    /// The stationary covariance of a period with a weak friction in the middle of each drift: the fixed point
-    /// of v → (1 − g t) v and noise 2 g t.
+    /// The stationary covariance of a period with a weak friction in the middle of each drift: the fixed
+    /// point of v → (1 − g t) v and noise 2 g t.
     fn stationary(clocks: &TwoClocks<Rational>, friction: f64) -> f64 {
         struct Moments {
             xx: f64,

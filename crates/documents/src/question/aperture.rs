@@ -84,8 +84,8 @@ question! {
         /// The bond, as OH:K=553kcal/mol/A^2,15.999,1.008; in place of K=X also k=X, morse:D=X,a=Y, or
         /// poly:k2=X,k3=Y,k4=Z
         ///
-        /// K of E = K x^2, k of E = k x^2/2, D and a of E = D (1 - exp(-a x))^2, k2, k3 and k4 of E = k2 x^2 +
-        /// k3 x^3 + k4 x^4.
+        /// K of E = K x^2, k of E = k x^2/2, D and a of E = D (1 - exp(-a x))^2, k2, k3 and k4 of E = k2
+        /// x^2 + k3 x^3 + k4 x^4.
         ///
         /// Masses in amu.
         #[arg(long, value_name = "NAME:SHAPE,M1,M2", allow_hyphen_values = true, value_parser = flag::<Bond>)]
@@ -105,17 +105,19 @@ question! {
         /// Another integrator than velocity Verlet: one of the catalogue, which word --list shows.
         #[arg(long, value_name = "NAME", conflicts_with_all = ["word", "substeps"])]
         method: Option<String>,
-        /// Another integrator, as a word of kicks K, K1 (the bond), K2 (the slow force), drifts D, and O where
-        /// a thermostat acts.
+        /// Another integrator, as a word of kicks K, K1 (the bond), K2 (the slow force), drifts D, and O
+        /// where a thermostat acts.
         #[arg(long, value_name = "WORD", conflicts_with = "substeps", value_parser = flag::<Word>)]
         word: Option<Word>,
         /// r-RESPA: so many inner steps of the bond in each step of the slow force.
         #[arg(long, value_name = "N", requires = "slow", value_parser = flag::<u64>)]
         substeps: Option<u64>,
-        /// A slow harmonic force about the bond's rest: the period that it would give the bond alone, as 40fs.
+        /// A slow harmonic force about the bond's rest: the period that it would give the bond alone, as
+        /// 40fs.
         #[arg(long, value_name = "TIME", value_parser = flag::<Time>)]
         slow: Option<Time>,
-        /// Also the least E* of bonds whose periods are longer by up to this, as 5%: of steps h/(1 + band) to h.
+        /// Also the least E* of bonds whose periods are longer by up to this, as 5%: of steps h/(1 + band) to
+        /// h.
         #[arg(long, value_name = "PART")]
         band: Option<String>,
         /// The bonds of the system that is meant.

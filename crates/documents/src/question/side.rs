@@ -46,8 +46,8 @@ question! {
         /// The stiffness of the slow force, that of the fast one if not given; with h2.
         #[arg(skip)]
         lambda2: Option<Laurent>,
-        /// With --methods: equal cost. A word of n evaluations, gradients, solves and flows takes n times each
-        /// step; best first.
+        /// With --methods: equal cost. A word of n evaluations, gradients, solves and flows takes n times
+        /// each step; best first.
         #[arg(long, requires = "methods")]
         by_cost: bool,
         /// In place of Λ2/Λ1: the closed range of h2.

@@ -175,7 +175,8 @@ impl Decided {
         (wanted || trace.to_string().len() <= SHORT_TEXT).then_some(trace)
     }
 
-    /// The bias of an elliptic pair with a period of at most [`MAX_BIAS_KICKS`](clocks::propagator::MAX_BIAS_KICKS).
+    /// The bias of an elliptic pair with a period of at most
+    /// [`MAX_BIAS_KICKS`](clocks::propagator::MAX_BIAS_KICKS).
     pub fn bias(oscillator: &Oscillator, decision: Decision) -> Option<Bias<Ball>> {
         let is_elliptic = decision.verdict.kind() == Kind::Elliptic;
         oscillator.clocks().ok().filter(|_| is_elliptic).and_then(|clocks| enclosed_bias(&clocks))

@@ -183,7 +183,8 @@ impl Document {
         self.summary(lines)
     }
 
-    /// The answer in a few lines: the text form shows them alone, and the rest where it is [`detailed`](Self::detailed).
+    /// The answer in a few lines: the text form shows them alone, and the rest where it is
+    /// [`detailed`](Self::detailed).
     #[must_use]
     pub fn answer(self, lines: Vec<String>) -> Self {
         Document { answer: Some(lines), ..self }

@@ -21,8 +21,8 @@ pub fn quoted(word: &str) -> String {
     }
 }
 
-/// The whole table as lines of text, the caption first. Where it is wider than `most` characters, headings and
-/// words fold, and the last columns are left out and named.
+/// The whole table as lines of text, the caption first. Where it is wider than `most` characters, headings
+/// and words fold, and the last columns are left out and named.
 ///
 /// Enclosures show the digits that are certain, see [`decimal::enclosure`]. Widths count characters, so
 /// columns line up for everything but double-width scripts.

@@ -1,8 +1,8 @@
 //! A document held, value by value, against the same document computed again from its input.
 //!
 //! One input gives one document, digit by digit, so whatever was changed afterwards differs. Values that the
-//! input does not determine are [`Excluded`], and only those: what a check names as not rechecked follows from
-//! this comparison.
+//! input does not determine are [`Excluded`], and only those: what a check names as not rechecked follows
+//! from this comparison.
 
 use serde_json::{Map, Value};
 

@@ -199,6 +199,6 @@ fn above(energy: f64) -> [f64; 5] {
     [0.0, 0.25, 0.5, 0.75, 1.0].map(|part| energy + part * room(energy))
 }
 
-/// The step that loses a bond lies within this factor of the one that does not: half a thousandth of the period,
-/// halved six times.
+/// The step that loses a bond lies within this factor of the one that does not: half a thousandth of the
+/// period, halved six times.
 const BESIDE: f64 = 1.0001;

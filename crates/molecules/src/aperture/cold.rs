@@ -46,8 +46,8 @@ pub struct Edge {
     pub aperture: f64,
 }
 
-/// How far the bound stays below the first step at which a bond is too hot. Where a dip begins E* is ragged: of
-/// steps that differ by a millionth of the period some lose a bond, and some do not.
+/// How far the bound stays below the first step at which a bond is too hot. Where a dip begins E* is ragged:
+/// of steps that differ by a millionth of the period some lose a bond, and some do not.
 const RAGGED: f64 = 1.0 / 200.0;
 
 impl Edge {

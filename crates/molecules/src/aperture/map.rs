@@ -104,7 +104,8 @@ impl Map {
         h * (squares[0] + squares[1]).sqrt()
     }
 
-    /// The share of a full turn that a step makes, up to one half; `None` where the step is linearly unstable.
+    /// The share of a full turn that a step makes, up to one half; `None` where the step is linearly
+    /// unstable.
     pub fn turn(&self, h: f64, squares: [f64; 2]) -> Option<f64> {
         const BITS: u32 = 96;
         let cosine = number::rational::from_f64_exact(self.half_trace(h, squares))?;

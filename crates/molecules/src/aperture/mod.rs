@@ -5,9 +5,9 @@
 //! it, as in the resonances of accelerators. The **aperture** E*(h) is the least energy, in kT, at which some
 //! phase of a start leaves.
 //!
-//! * A start of energy E: x = √(2 E/k) cos f, v = √(2 E/μ) sin f, f = 2 π (j + ½)/48, k the curvature at rest.
-//!   Where a thermostat acts within the word (a letter O), velocities are those that the method has with these
-//!   lengths: middle schemes have thermal lengths, and slower velocities at their kicks.
+//! * A start of energy E: x = √(2 E/k) cos f, v = √(2 E/μ) sin f, f = 2 π (j + ½)/48, k the curvature at
+//!   rest. Where a thermostat acts within the word (a letter O), velocities are those that the method has
+//!   with these lengths: middle schemes have thermal lengths, and slower velocities at their kicks.
 //! * E rises by 1/16 kT up to 1 kT, then by 1/4 kT up to 40 kT ([`rungs`]).
 //! * A bond is lost where |x| > 1 nm at a kick of its first 20,000 steps.
 //!

@@ -15,8 +15,8 @@
 //! affect the steps are skipped; the reading lists those that were used, and remarks what bears on the answer
 //! and was not read. A text is rewritten in place: only the numbers that change are touched, and written as
 //! decimals, rounded down. A number that the engine wants to be a multiple of the changed one becomes a
-//! multiple, and is written out where its default is not a multiple: at a factor of 6, GROMACS's energies of every 100
-//! steps are of every 102.
+//! multiple, and is written out where its default is not a multiple: at a factor of 6, GROMACS's energies of
+//! every 100 steps are of every 102.
 //!
 //! ```
 //! use kickdrift_molecules::engine::{Engine, read};

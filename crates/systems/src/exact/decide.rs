@@ -188,8 +188,9 @@ fn judge(blocks: &IntegerBlocks) -> ExactVerdict {
     ExactVerdict { kind, roots }
 }
 
-/// That [`judged_blocks`] and the half period itself are within the limits, for n degrees of freedom and kicks
-/// whose entries have so many bits: numbers gain those of a kick's with each, and products of n of them.
+/// That [`judged_blocks`] and the half period itself are within the limits, for n degrees of freedom and
+/// kicks whose entries have so many bits: numbers gain those of a kick's with each, and products of n of
+/// them.
 ///
 /// # Errors
 /// A budget error.

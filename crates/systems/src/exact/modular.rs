@@ -19,8 +19,8 @@ pub fn times(field: &PrimeField, a: &DMatrix<u64>, b: &DMatrix<u64>) -> DMatrix<
     })
 }
 
-/// Gauss's elimination in the first columns: the columns of the pivots, and their product with the sign of the
-/// exchanges. Pivots are 1 then, with zeros below them; above them, too, where it is `whole` (Jordan).
+/// Gauss's elimination in the first columns: the columns of the pivots, and their product with the sign of
+/// the exchanges. Pivots are 1 then, with zeros below them; above them, too, where it is `whole` (Jordan).
 fn eliminate(field: &PrimeField, m: &mut DMatrix<u64>, columns: usize, whole: bool) -> (Vec<usize>, u64) {
     let (mut pivots, mut product) = (Vec::new(), field.of(1));
     for column in 0..columns {

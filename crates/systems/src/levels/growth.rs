@@ -55,8 +55,8 @@ impl Kernel {
     }
 }
 
-/// Growth over the outer step, all steps in their ratios: max ln |λ| per unit time, rounded, and whether a step
-/// is proven stable.
+/// Growth over the outer step, all steps in their ratios: max ln |λ| per unit time, rounded, and whether a
+/// step is proven stable.
 pub(super) struct Sampled<'a> {
     pub rate: &'a dyn Fn(f64) -> Result<f64>,
     pub is_stable: &'a dyn Fn(f64) -> bool,

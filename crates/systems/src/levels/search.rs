@@ -50,8 +50,8 @@ pub(super) fn largest_below(most: f64, width: f64, holds: impl Fn(f64) -> bool) 
     0.0
 }
 
-/// Two steps below `hi`, one half the other unless that is `hi`: what holds at every step up to some one holds
-/// at the first and not at the second one. `None` where it holds at none down to 2⁻⁴⁰ `hi`.
+/// Two steps below `hi`, one half the other unless that is `hi`: what holds at every step up to some one
+/// holds at the first and not at the second one. `None` where it holds at none down to 2⁻⁴⁰ `hi`.
 pub(super) fn bracket_below(hi: f64, holds: impl Fn(f64) -> bool) -> Option<(f64, f64)> {
     let lo = (1..=40).map(|k| hi * 0.5f64.powi(k)).find(|&step| holds(step))?;
     Some((lo, hi.min(2.0 * lo)))
@@ -94,9 +94,9 @@ pub struct Decided {
 /// Levels at fixed ratios of their steps, over the outer step: what is proven and found at one, and the
 /// searches that are made of it.
 pub trait Search {
-    /// Two outer steps, 1e-8 apart, relative: every step in (0, lo] is proven stable, hi is not proven to be in
-    /// the first region. `None` where the sum of all stiffnesses is not proven definite, so that the region
-    /// does not begin at 0, and where its end is beyond what is known of it.
+    /// Two outer steps, 1e-8 apart, relative: every step in (0, lo] is proven stable, hi is not proven to be
+    /// in the first region. `None` where the sum of all stiffnesses is not proven definite, so that the
+    /// region does not begin at 0, and where its end is beyond what is known of it.
     fn region_end(&self) -> Option<(f64, f64)>;
 
     /// Whether an outer step is proven stable.
@@ -171,8 +171,8 @@ pub trait Search {
         Sampled { rate: &rate, is_stable: &is_stable }.growing(from, width)
     }
 
-    /// Where the spectral radius of a period with friction γ per unit time lies, v → exp(−γ t) v in the middle
-    /// of every drift; `None`: doubles cannot decide.
+    /// Where the spectral radius of a period with friction γ per unit time lies, v → exp(−γ t) v in the
+    /// middle of every drift; `None`: doubles cannot decide.
     fn damping(&self, step: f64, friction: f64) -> Option<Damping> {
         let (q, error) = self.damped_period(step, friction)?;
         damping(&q, error, Radius::of(&q, error))

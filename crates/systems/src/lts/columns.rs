@@ -1,4 +1,5 @@
-//! The effective stiffness in sparse doubles: every C_j by columns, and how far it is from the one that is meant.
+//! The effective stiffness in sparse doubles: every C_j by columns, and how far it is from the one that is
+//! meant.
 
 use super::scheme::Level;
 use crate::levels::sparse::{Pattern, Triplets};

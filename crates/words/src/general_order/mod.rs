@@ -1,10 +1,10 @@
 //! The order of a word on all problems, exactly.
 //!
-//! A drift is exp(c A), a kick exp(c B), A = v ∂x and B = f(x) ∂v being derivations along the motion, in the order
-//! of time. A kick by c F + d F² is exp(c B − (d/2) \[B, \[A, B\]\]). So a word is a series in monomials of A and B,
-//! and has order N on all problems iff its series is that of exp(A + B) up to degree N. Where the kinetic energy
-//! is quadratic and the forces are those of a potential, \[B, \[B, \[B, A\]\]\] = 0: the Nyström order, which may be
-//! higher. Two forces are B1 and B2 with B1 B2 = B2 B1.
+//! A drift is exp(c A), a kick exp(c B), A = v ∂x and B = f(x) ∂v being derivations along the motion, in the
+//! order of time. A kick by c F + d F² is exp(c B − (d/2) \[B, \[A, B\]\]). So a word is a series in
+//! monomials of A and B, and has order N on all problems iff its series is that of exp(A + B) up to degree N.
+//! Where the kinetic energy is quadratic and the forces are those of a potential, \[B, \[B, \[B, A\]\]\] = 0:
+//! the Nyström order, which may be higher. Two forces are B1 and B2 with B1 B2 = B2 B1.
 //!
 //! A word is exp(F) exp(A + B), and F a sum of commutators: those of the least degree are the leading error.
 

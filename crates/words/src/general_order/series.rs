@@ -128,8 +128,8 @@ impl Scalar for Radical {
     }
 }
 
-/// A series up to some degree: at a monomial of n generators n! times its coefficient, so that exponentials of
-/// whole multiples of generators, and their products, have whole numbers.
+/// A series up to some degree: at a monomial of n generators n! times its coefficient, so that exponentials
+/// of whole multiples of generators, and their products, have whole numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Series<T>(BTreeMap<Monomial, T>);
 
@@ -251,10 +251,10 @@ impl<T: Scalar> Series<T> {
         self.plain_product(other, all).sum(&other.plain_product(self, all), &-T::one())
     }
 
-    /// The same in the algebra where `[Bi, [Bj, [Bk, A]]] = 0`: kicks by a potential, the kinetic energy being
-    /// quadratic. Three kicks before a drift are rewritten as
-    /// `b A = Σ over proper parts of (−1)^(2 − |part|) part A rest`, b = Bi Bj Bk; what is left has at most two
-    /// kicks before each drift, and these monomials are independent.
+    /// The same in the algebra where `[Bi, [Bj, [Bk, A]]] = 0`: kicks by a potential, the kinetic energy
+    /// being quadratic. Three kicks before a drift are rewritten as `b A = Σ over proper parts of (−1)^(2
+    /// − |part|) part A rest`, b = Bi Bj Bk; what is left has at most two kicks before each drift, and these
+    /// monomials are independent.
     pub(super) fn of_a_potential(&self) -> Series<T> {
         let (mut reduced, mut rest) = (Series::zero(), self.clone());
         while let Some((monomial, value)) = rest.0.pop_first() {

@@ -4,7 +4,8 @@ use super::words::{cap, named, nearest};
 use molecules::unit::TimeUnit;
 use molecules::{Advice, Bound, Caps, Scheme};
 
-/// Lines of reasons that stand in the answer too: to be written, to beware of in an engine and elsewhere, assumed, not known.
+/// Lines of reasons that stand in the answer too: to be written, to beware of in an engine and elsewhere,
+/// assumed, not known.
 const FIRST: [&str; 9] =
     ["write", "note", "warning", "assumed", "forces", "fast", "beads", "bias", "unknown"];
 

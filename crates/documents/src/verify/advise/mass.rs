@@ -120,8 +120,8 @@ impl Mass {
         Ok((a.add(&d, BITS), period))
     }
 
-    /// R = (Λ1 + Λ2 + ...) Q12²/(1 − (Tr Q/2)²): what the invariant ellipse of Q says in the middle of a kick;
-    /// half a kick leaves Q12 and Tr Q as they are.
+    /// R = (Λ1 + Λ2 + ...) Q12²/(1 − (Tr Q/2)²): what the invariant ellipse of Q says in the middle of a
+    /// kick; half a kick leaves Q12 and Tr Q as they are.
     pub fn bias(&self) -> Checked<Option<Ball>> {
         let ([[a, _], [b, d]], _) = self.full_period(&Ball::zero())?;
         let sum = self.stiffness.iter().fold(Ball::zero(), |sum, stiffness| sum.add(stiffness, BITS));

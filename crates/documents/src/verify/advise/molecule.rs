@@ -33,7 +33,8 @@ fn route<'a>(scene: &'a SystemScene, band: f64, limits: &'a Limits) -> Result<Bo
     })
 }
 
-/// Steps of this part of a band's edge are short: the scheme is unstable there only where the stiffnesses are.
+/// Steps of this part of a band's edge are short: the scheme is unstable there only where the stiffnesses
+/// are.
 const SHORT: f64 = 1.0 / 1024.0;
 
 /// Levels of any number as a rational system of the doubles given: half periods kick by kick, each at one
@@ -104,7 +105,8 @@ impl Route for Many<'_> {
                     (&finding.scheme, edge * (1.0 - ROOM), &scales),
                     "a corner of the band",
                 );
-                // The band is of stiffnesses whose sum is definite: of others not even short steps are stable.
+                // The band is of stiffnesses whose sum is definite: of others not even short steps are
+                // stable.
                 let short = SHORT * edge / to_f64(finding.scheme.outer());
                 if corner.is_err() && self.at(&finding.scheme, short, &scales)? != Holds::Unstable {
                     return corner;

@@ -13,7 +13,8 @@ pub fn last(ratio: Ratio, rho: &Rational) -> u64 {
     if *rho == Rational::default() { ratio.p() } else { ratio.kicks() - 1 }
 }
 
-/// The labels asked for are there, in order: as many edges as an entry has zeros, so each enclosure holds one.
+/// The labels asked for are there, in order: as many edges as an entry has zeros, so each enclosure holds
+/// one.
 pub fn complete(question: &Question, tongues: &[Tongue], rho: &Rational, limits: &Limits) -> Checked {
     let list = question.ratios()?.list();
     let mut rows = tongues.iter().zip(1..);

@@ -161,7 +161,8 @@ impl Parts {
         reached
     }
 
-    /// The nodes of a part along its longest way; those that no path reaches from the first one are start_vector.
+    /// The nodes of a part along its longest way; those that no path reaches from the first one are
+    /// start_vector.
     fn sorted(&mut self, indexes: &[usize]) -> Vec<usize> {
         // An end, the end farthest from it, and that from which this one is farthest.
         let mut end = indexes[0];

@@ -159,8 +159,8 @@ question! {
     /// A word whose coefficients are expressions of parameters: order, error, stable steps and cost at each
     /// value; the best value.
     args struct Family {
-        /// The integrator: kicks K, K1, K2, drifts D, midpoints C, exact flows R, friction O, F, I, n*(...), as
-        /// "K(1/2) D(1) K(1/2)".
+        /// The integrator: kicks K, K1, K2, drifts D, midpoints C, exact flows R, friction O, F, I, n*(...),
+        /// as "K(1/2) D(1) K(1/2)".
         #[arg(value_name = "WORD", required = false)]
         word: String,
         /// A row for each value of a name in the word, as b=0.15..0.25:1/100 in K(b)D(1/2)K(1-2*b)D(1/2)K(b).
