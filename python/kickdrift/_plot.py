@@ -181,7 +181,7 @@ def _image(
     return canvas.imshow(values.T, origin="lower", extent=extent, aspect="auto", interpolation="nearest", **how)
 
 
-_PUBLISHED, _NOT, _PROVEN = "the same, beyond what is published", "not to be recommended", "unstable, proven"
+_PUBLISHED, _NOT, _PROVEN = "proven stable, beyond the published limit", "not to be recommended", "unstable, proven"
 
 
 def _bars(canvas: Axes, place: int, parts: Sequence[tuple[float, float, str]]) -> None:
@@ -197,7 +197,7 @@ def _bars(canvas: Axes, place: int, parts: Sequence[tuple[float, float, str]]) -
 def advice(document: Mapping[str, Any], ax: Axes | None) -> Axes:
     """Bars over the outer step of the first scheme.
 
-    Proven for the band, the same beyond what is published, not advised, unstable.
+    Proven for the band, proven beyond the published limit, not advised, unstable.
     """
     canvas = axes(ax)
     schemes = document["schemes"]

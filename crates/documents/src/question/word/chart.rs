@@ -256,7 +256,7 @@ fn plane(question: &Word, linted: &Linted, range: [f64; 2]) -> Result<Panel> {
             let line = vec![[range[0], ratio], [range[1], ratio]];
             panel.with(
                 Layer::lines(vec![line], Stroke::LINE.in_colour(family(1)))
-                    .labelled("as in the panels below"),
+                    .labelled("ratio of the panels below"),
             )
         }
         None => panel,

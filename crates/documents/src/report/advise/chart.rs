@@ -288,7 +288,7 @@ impl<'a> Names<'a> {
     fn of_schemes(near: &'a str) -> Names<'a> {
         Names {
             safe: "proven stable, all periods in the band",
-            caution: "the same, beyond what is published",
+            caution: "proven stable, beyond the published limit",
             sampled: "growing at every step sampled",
             near,
         }
