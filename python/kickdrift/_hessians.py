@@ -33,7 +33,7 @@ def journal_of(force: Force) -> Journal | None:
     return journal
 
 
-def at(force: Force, positions: Doubles) -> Doubles:
+def force_at(force: Force, positions: Doubles) -> Doubles:
     """The force at these positions, kept beside its differences: an engine's threads may add up in another order."""
     journal = journal_of(force)
     return force(positions) if journal is None else journal.kept(partial(force, positions), "force", positions)
@@ -76,7 +76,7 @@ def hessian(
     matrix, correction, asymmetry = differences(force, positions, masses, difference, columns, progress, symmetric)
     if rounding:
         # Noise is as large in the symmetric part, but for chance; on the diagonal it is unseen: a force's own rounding.
-        pull = float(np.abs(at(force, positions)).max())
+        pull = float(np.abs(force_at(force, positions)).max())
         asymmetry = _CHANCE * asymmetry + 2 * rounding * pull / (difference * float(masses.min()))
     return matrix, correction + asymmetry
 

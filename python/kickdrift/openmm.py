@@ -23,7 +23,7 @@ from kickdrift._advice import Advice
 from kickdrift._cost import LARGEST, LONGEST, SOUGHT, Work, seconds_of
 from kickdrift._errors import KickdriftError
 from kickdrift._held import Held
-from kickdrift._hessians import at, hessian, seen, usable
+from kickdrift._hessians import force_at, hessian, seen, usable
 from kickdrift._levels import Atoms, Band, Bands, groups_of
 from kickdrift._minimum import free
 from kickdrift._monodromy import FOLLOWED, Followed, Monodromy, unbalanced
@@ -385,7 +385,7 @@ def _measured(
     for step, groups in levels_of(clocks).items():
         force = engine.force(mask_of(groups))
         full, error = hessian(force, where, engine.masses, difference, chosen, progress, rounding=engine.rounding)
-        matrix, pull = full, at(force, where)
+        matrix, pull = full, force_at(force, where)
         if constraints:
             matrix = matrix + Held(engine.masses, constraints).curvature(pull, where, chosen)
         matrix = frame.T @ matrix @ frame
