@@ -202,6 +202,11 @@ impl<S: Ring> LongClocks<S> {
         self.ratio.numer().bits().min(self.ratio.denom().bits())
     }
 
+    /// log₂ of the ratio of the steps, in either direction, within 1.
+    pub(crate) fn log2_ratio(&self) -> u64 {
+        self.ratio.numer().bits().abs_diff(self.ratio.denom().bits())
+    }
+
     /// As [`TwoClocks::swapped`].
     #[must_use]
     pub fn swapped(&self) -> Self {

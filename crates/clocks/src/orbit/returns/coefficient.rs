@@ -1,6 +1,6 @@
 //! The numbers that coefficients are made of: doubles, two doubles, long numbers.
 
-use super::enclosure::{Close, Enclosure, Wide, quotient};
+use super::enclosure::quotient;
 
 pub use super::enclosure::exact;
 use super::lanes::{Lanes, Twofolds};
@@ -11,8 +11,6 @@ use number::{Ball, Rational, Twofold, U};
 /// A floating number. Every operation returns its exact result but for [`UNIT`](Coefficient::UNIT): a product
 /// within UNIT |a b|, a sum within UNIT (|a| + |b|), as long as nothing is smaller than 2^-900.
 pub trait Coefficient: Copy {
-    /// The type that encloses the constants of a pair.
-    type Enclosure: Enclosure;
     /// The next shorter numbers; of the shortest themselves.
     type Lower: Coefficient;
     type Lanes: Lanes<Self>;
@@ -53,10 +51,8 @@ pub trait Coefficient: Copy {
     fn ball(&self) -> Ball;
     /// Within two units of those numbers, relatively.
     fn to<P: Coefficient>(&self) -> P;
-    /// A number this near to the enclosed one, at most.
-    fn near_enclosure(enclosure: &Self::Enclosure) -> (Self, f64);
-    /// All numbers within `error` of it.
-    fn enclosed(&self, error: f64, bits: u32) -> Self::Enclosure;
+    /// A number near two doubles' sum, and how far from it at most.
+    fn near_twofold(x: Twofold) -> (Self, f64);
 
     /// n/d within 3 UNIT relatively.
     fn quotient(n: i128, d: u128) -> Self {
@@ -93,7 +89,6 @@ impl<T: Coefficient> Lanes<T> for [T; 4] {
 }
 
 impl Coefficient for f64 {
-    type Enclosure = Close;
     type Lower = f64;
     type Lanes = [f64; 4];
     const UNIT: f64 = U;
@@ -152,12 +147,8 @@ impl Coefficient for f64 {
         P::of(*self)
     }
 
-    fn near_enclosure(enclosure: &Close) -> (Self, f64) {
-        enclosure.double()
-    }
-
-    fn enclosed(&self, error: f64, _: u32) -> Close {
-        Close::new(Twofold { hi: *self, lo: 0.0 }, error)
+    fn near_twofold(x: Twofold) -> (Self, f64) {
+        (x.hi, x.lo.abs())
     }
 
     fn quotient(n: i128, d: u128) -> Self {
@@ -170,7 +161,6 @@ impl Coefficient for f64 {
 }
 
 impl Coefficient for Twofold {
-    type Enclosure = Wide;
     type Lower = f64;
     type Lanes = Twofolds;
     const UNIT: f64 = 1.0 / (1u128 << 101) as f64;
@@ -231,17 +221,12 @@ impl Coefficient for Twofold {
         P::of(self.hi).plus(&P::of(self.lo))
     }
 
-    fn near_enclosure(enclosure: &Wide) -> (Self, f64) {
-        near_ball(&enclosure.ball())
-    }
-
-    fn enclosed(&self, error: f64, bits: u32) -> Wide {
-        within(&self.ball(), error, bits)
+    fn near_twofold(x: Twofold) -> (Self, f64) {
+        (x, 0.0)
     }
 }
 
 impl Coefficient for Long {
-    type Enclosure = Wide;
     type Lower = Twofold;
     type Lanes = [Self; 4];
     const UNIT: f64 = f64::from_bits((1023 + 2 - long::LENGTH as u64) << 52);
@@ -294,12 +279,8 @@ impl Coefficient for Long {
         self.doubles().fold(P::zero(), |sum, half| sum.plus(&P::of(half)))
     }
 
-    fn near_enclosure(enclosure: &Wide) -> (Self, f64) {
-        near_ball(&enclosure.ball())
-    }
-
-    fn enclosed(&self, error: f64, bits: u32) -> Wide {
-        within(&self.ball(), error, bits)
+    fn near_twofold(x: Twofold) -> (Self, f64) {
+        near_ball(&Coefficient::ball(&x))
     }
 }
 
@@ -308,10 +289,6 @@ pub fn near_ball<T: Coefficient>(ball: &Ball) -> (T, f64) {
     let near = T::of_ball(ball);
     let (lo, hi) = ball.sub(&near.ball(), T::BITS).to_f64_enclosure();
     (near, lo.abs().max(hi.abs()))
-}
-
-fn within(middle: &Ball, error: f64, bits: u32) -> Wide {
-    Wide::new(middle.add(&Ball::about_zero(error), bits), bits)
 }
 
 #[cfg(test)]

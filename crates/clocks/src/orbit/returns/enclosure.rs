@@ -1,9 +1,10 @@
-//! The numbers that a pair's constants are made of: balls, and for doubles two doubles with a radius, a
-//! hundred times as fast.
+//! The numbers that a pair's constants are made of: balls, and two doubles with a radius, a hundred times as
+//! fast, where their digits suffice.
 
 use num_bigint::BigUint;
 use num_traits::Float;
 
+use super::coefficient::{Coefficient, near_ball};
 use number::{Ball, Rational, Real, Sign, Twofold};
 
 /// A real number, enclosed. Numbers of one pair have the same bits.
@@ -25,6 +26,10 @@ pub trait Enclosure: Clone {
     /// About log₂ |x|, however far from doubles.
     fn log2(&self) -> i32;
     fn ball(&self) -> Ball;
+    /// A number near it, and how far from what is enclosed at most.
+    fn near<T: Coefficient>(&self) -> (T, f64);
+    /// All numbers within `error` of one that is no longer than two doubles, or than a ball where it is one.
+    fn within<T: Coefficient>(middle: &T, error: f64, bits: u32) -> Self;
 
     fn minus(&self, other: &Self) -> Self {
         self.plus(&other.negative())
@@ -114,6 +119,14 @@ impl Enclosure for Wide {
 
     fn ball(&self) -> Ball {
         self.ball.clone()
+    }
+
+    fn near<T: Coefficient>(&self) -> (T, f64) {
+        near_ball(&self.ball)
+    }
+
+    fn within<T: Coefficient>(middle: &T, error: f64, bits: u32) -> Self {
+        Wide::new(middle.ball().add(&Ball::about_zero(error), bits), bits)
     }
 }
 
@@ -219,6 +232,15 @@ impl Enclosure for Close {
     fn ball(&self) -> Ball {
         let Twofold { hi, lo } = self.middle;
         exact(hi).add(&exact(lo), 2200).add(&Ball::about_zero(self.radius), 192)
+    }
+
+    fn near<T: Coefficient>(&self) -> (T, f64) {
+        let (near, lost) = T::near_twofold(self.middle);
+        (near, (lost + self.radius) * UP)
+    }
+
+    fn within<T: Coefficient>(middle: &T, error: f64, _: u32) -> Self {
+        Close::new(middle.to(), error)
     }
 }
 

@@ -1,6 +1,7 @@
 //! The constants of a pair, the two branches made of them, and what lies between their product and T/2.
 
 use std::f64::consts::{PI, TAU};
+use std::marker::PhantomData;
 
 use num_bigint::BigUint;
 use num_integer::Integer;
@@ -53,16 +54,17 @@ impl Beat {
     }
 }
 
-/// The constants of a pair.
-pub struct Frame<T: Coefficient> {
+/// The constants of a pair, enclosed by E; functions made of them have the numbers T.
+pub struct Frame<T, E> {
     beat: Beat,
-    s: T::Enclosure,
-    k: T::Enclosure,
+    s: E,
+    k: E,
     /// The unit of the velocity: σ, and beyond the base's own limit √|σ²|, or 1 beside it.
-    unit: T::Enclosure,
+    unit: E,
     /// `None` where nobody asks for turns.
     turning: Option<Turning>,
     bits: u32,
+    numbers: PhantomData<T>,
 }
 
 /// How a step of the base turns directions.
@@ -99,7 +101,7 @@ struct Rotation<E> {
     turn: Option<Turn>,
 }
 
-impl<T: Coefficient> Frame<T> {
+impl<T: Coefficient, E: Enclosure> Frame<T, E> {
     /// `None` where these numbers cannot decide on which side of its own limit the base is. Turns are
     /// followed where they are `wanted`.
     pub fn new<S: Real>(clocks: &LongClocks<S>, wanted: bool) -> Option<Self> {
@@ -107,7 +109,7 @@ impl<T: Coefficient> Frame<T> {
         // Each squaring doubles the radius, and adds four of them: it loses a bit and a half.
         let lost = beat.whole.bits() as u32;
         let bits = T::BITS + 34 + 2 * lost;
-        let [s, k] = [T::Enclosure::of(clocks.fast(), bits)?, T::Enclosure::of(clocks.slow(), bits)?];
+        let [s, k] = [E::of(clocks.fast(), bits)?, E::of(clocks.slow(), bits)?];
         let square = s.minus(&s.times(&s).scale2(-2));
         let elliptic = square.sign()? == Sign::Positive;
         let unit = if elliptic {
@@ -115,7 +117,7 @@ impl<T: Coefficient> Frame<T> {
         } else if square.ends().1.abs() > LEAST_UNIT {
             square.negative().root()?
         } else {
-            T::Enclosure::quotient(1, 1, bits)
+            E::quotient(1, 1, bits)
         };
         let turning = if !wanted {
             None
@@ -131,41 +133,41 @@ impl<T: Coefficient> Frame<T> {
         } else {
             Some(if s.ends().0 > 2.0 { Turning::Half } else { Turning::Not })
         };
-        Some(Frame { beat, s, k, unit, turning, bits })
+        Some(Frame { beat, s, k, unit, turning, bits, numbers: PhantomData })
     }
 
-    fn quotient(&self, n: i128, d: u128) -> T::Enclosure {
-        T::Enclosure::quotient(n, d, self.bits)
+    fn quotient(&self, n: i128, d: u128) -> E {
+        E::quotient(n, d, self.bits)
     }
 
-    fn one(&self) -> T::Enclosure {
+    fn one(&self) -> E {
         self.quotient(1, 1)
     }
 
-    fn zero(&self) -> T::Enclosure {
+    fn zero(&self) -> E {
         self.quotient(0, 1)
     }
 
-    fn identity(&self) -> Matrix<T::Enclosure> {
+    fn identity(&self) -> Matrix<E> {
         [self.one(), self.zero(), self.zero(), self.one()]
     }
 
     /// One step of the base from the middle of a kick to that of the next, [[c, κ], [−σ²/κ, c]], c = 1 − s/2.
-    fn step(&self) -> Option<Matrix<T::Enclosure>> {
+    fn step(&self) -> Option<Matrix<E>> {
         let cosine = self.one().minus(&self.s.scale2(-1));
         let square = self.s.minus(&self.s.times(&self.s).scale2(-2));
         Some([cosine.clone(), self.unit.clone(), square.over(&self.unit)?.negative(), cosine])
     }
 
     /// n steps of the base.
-    fn rotation(&self, n: &BigUint) -> Option<Rotation<T::Enclosure>> {
+    fn rotation(&self, n: &BigUint) -> Option<Rotation<E>> {
         let (matrix, exponent) = power(&self.step()?, &self.identity(), n);
         let turn = self.towards(&matrix[0], &matrix[2]).and_then(|angle| self.turned(n, angle));
         Some(Rotation { matrix, exponent, turn })
     }
 
     /// The direction of (x, y); `None` where nobody asks for turns.
-    fn towards(&self, x: &T::Enclosure, y: &T::Enclosure) -> Option<f64> {
+    fn towards(&self, x: &E, y: &E) -> Option<f64> {
         self.turning.as_ref()?;
         let [(a, b), (c, d)] = [x.ends(), y.ends()];
         direction([0.5 * (a + b), 0.5 * (c + d)], (b - a) + (d - c))
@@ -200,15 +202,15 @@ impl<T: Coefficient> Frame<T> {
     }
 
     /// The terms of N(m + w t), K = 1 + k N.
-    fn nilpotent(&self, m: &T::Enclosure, w: &T::Enclosure) -> [Matrix<T::Enclosure>; 3] {
+    fn nilpotent(&self, m: &E, w: &E) -> [Matrix<E>; 3] {
         let half = self.s.scale2(-1).negative();
         let quarter = self.s.times(&self.s).scale2(-2);
-        let over = |x: &T::Enclosure| x.over(&self.unit).expect("a positive unit").negative();
+        let over = |x: &E| x.over(&self.unit).expect("a positive unit").negative();
         // Polynomials in x, from the constant term on.
         let u_x = [self.zero(), self.one(), half];
         let square = [self.zero(), self.zero(), self.unit.clone()];
         let slope = [over(&self.one()), over(&self.s.negative()), over(&quarter)];
-        let at = |[c, b, a]: [T::Enclosure; 3]| {
+        let at = |[c, b, a]: [E; 3]| {
             let a_m = a.times(m);
             let value = a_m.plus(&b).times(m).plus(&c);
             let first = a_m.scale2(1).plus(&b).times(w);
@@ -219,11 +221,7 @@ impl<T: Coefficient> Frame<T> {
     }
 
     /// 1 + `by` N, N constant or a function.
-    fn shear<const N: usize>(
-        &self,
-        nilpotent: &[Matrix<T::Enclosure>; N],
-        by: &T::Enclosure,
-    ) -> [Matrix<T::Enclosure>; N] {
+    fn shear<const N: usize>(&self, nilpotent: &[Matrix<E>; N], by: &E) -> [Matrix<E>; N] {
         let mut terms = nilpotent.each_ref().map(|term| term.each_ref().map(|x| x.times(by)));
         for diagonal in [0, 3] {
             terms[0][diagonal] = terms[0][diagonal].plus(&self.one());
@@ -232,7 +230,7 @@ impl<T: Coefficient> Frame<T> {
     }
 
     /// K(x) after a power of the base's step, x from middle − half to middle + half, both in units of 1/2q.
-    fn branch(&self, middle: u128, half: u128, steps: &Rotation<T::Enclosure>) -> Map<T> {
+    fn branch(&self, middle: u128, half: u128, steps: &Rotation<E>) -> Map<T> {
         let unit = |n: u128| self.quotient(n as i128, self.beat.q).scale2(-1);
         let terms = self.shear(&self.nilpotent(&unit(middle), &unit(half)), &self.k);
         let (terms, exponent) = balanced(terms.map(|term| product(&term, &steps.matrix)));
@@ -265,8 +263,8 @@ impl<T: Coefficient> Frame<T> {
         let signs = PartialSigns { a: certain(&a), b: certain(&b), c: certain(&c), d: certain(&d) };
         let exponent = exponent_of_balls(exponent);
         let ends = exponent.map(|exponent| {
-            let end = |x: &T::Enclosure, v: &T::Enclosure, signs, nodes| {
-                let of = |x: &T::Enclosure| x.ball().scale2(exponent);
+            let end = |x: &E, v: &E, signs, nodes| {
+                let of = |x: &E| x.ball().scale2(exponent);
                 End { signs, x: of(x), v: of(v), nodes }
             };
             let odd_nodes = nodes.zip(signs.b).and_then(|(nodes, b)| odd_nodes(nodes, b));
@@ -278,7 +276,7 @@ impl<T: Coefficient> Frame<T> {
         Some(Found { signs, ends })
     }
 
-    fn half<P: Coefficient>(&self) -> Option<Half<T::Enclosure>> {
+    fn half<P: Coefficient>(&self) -> Option<Half<E>> {
         let mut journey = self.kicked::<P>(self.beat.q / 2)?;
         self.close(&mut journey)?;
         let (exponent, turn) = (journey.exponent, journey.turn);
@@ -288,7 +286,7 @@ impl<T: Coefficient> Frame<T> {
     }
 
     /// From t = 0 through the first n kicks of the other clock, the last one whole.
-    fn kicked<P: Coefficient>(&self, n: u128) -> Option<Journey<'_, T>> {
+    fn kicked<P: Coefficient>(&self, n: u128) -> Option<Journey<'_, T, E>> {
         let mut middle = Map::<P>::identity();
         if n > 0 {
             let [left, right] = self.branches()?;
@@ -303,12 +301,12 @@ impl<T: Coefficient> Frame<T> {
             product: [one.clone(), zero, start, one],
             exponent: middle.exponent,
         };
-        journey.go(&middle.enclosures::<T>(self.bits), |turn, angle| turn.then(middle.turn?, angle));
+        journey.go(&middle.enclosures(self.bits), |turn, angle| turn.then(middle.turn?, angle));
         Some(journey)
     }
 
     /// The rest from the last kick of the other clock up to T/2, or half a kick less.
-    fn close(&self, journey: &mut Journey<T>) -> Option<()> {
+    fn close(&self, journey: &mut Journey<T, E>) -> Option<()> {
         let Beat { whole, rest, q } = &self.beat;
         let p = self.beat.p();
         if q % 2 == 0 {
@@ -331,14 +329,14 @@ impl<T: Coefficient> Frame<T> {
     }
 
     /// Half of the other clock's last kick, half way between two of the base's, taken back.
-    fn take_back_half(&self, journey: &mut Journey<T>) {
+    fn take_back_half(&self, journey: &mut Journey<T, E>) {
         let [undo, ..] = self.nilpotent(&self.one().scale2(-1), &self.zero());
         let [undo] = self.shear(&[undo], &self.k.scale2(-1).negative());
         journey.go(&undo, |turn, angle| Some(turn.sheared(!self.is_clockwise(), angle)));
     }
 
     /// From the middle of a kick of the base through its second half and half a drift.
-    fn drift_half(&self, journey: &mut Journey<T>) -> Option<()> {
+    fn drift_half(&self, journey: &mut Journey<T, E>) -> Option<()> {
         let (zero, one, drift) = (self.zero(), self.one(), self.unit.scale2(-1));
         let is_attracting = self.s.sign() != Some(Sign::Negative);
         let kick = self.s.over(&self.unit)?.scale2(-1).negative();
@@ -351,22 +349,22 @@ impl<T: Coefficient> Frame<T> {
 }
 
 /// A product that grows, with its lift.
-struct Journey<'a, T: Coefficient> {
-    frame: &'a Frame<T>,
-    product: Matrix<T::Enclosure>,
+struct Journey<'a, T, E> {
+    frame: &'a Frame<T, E>,
+    product: Matrix<E>,
     exponent: i128,
     turn: Option<Turn>,
 }
 
-impl<T: Coefficient> Journey<'_, T> {
-    fn go(&mut self, step: &Matrix<T::Enclosure>, turned: impl Fn(Turn, f64) -> Option<Turn>) {
+impl<T: Coefficient, E: Enclosure> Journey<'_, T, E> {
+    fn go(&mut self, step: &Matrix<E>, turned: impl Fn(Turn, f64) -> Option<Turn>) {
         self.product = product(step, &self.product);
         let angle = self.frame.towards(&self.product[0], &self.product[2]);
         self.turn = self.turn.zip(angle).and_then(|(turn, angle)| turned(turn, angle));
     }
 
     /// In the base's step as the unit of time.
-    fn entries(self) -> Option<Matrix<T::Enclosure>> {
+    fn entries(self) -> Option<Matrix<E>> {
         let [a, b, c, d] = self.product;
         Some([a, b.over(&self.frame.unit)?, c.times(&self.frame.unit), d])
     }

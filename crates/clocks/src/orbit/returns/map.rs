@@ -22,6 +22,7 @@
 //! roundings, and [`FLOOR`] what is lost where numbers underflow.
 
 use super::coefficient::{Coefficient, near_ball};
+use super::enclosure::Enclosure;
 use super::lanes::Lanes;
 use super::turn::{Turn, angle, direction, principal};
 use number::Ball;
@@ -143,8 +144,8 @@ pub fn image<T: Coefficient>(m: &Entries<T>) -> [f64; 2] {
 
 impl<T: Coefficient> Map<T> {
     /// From enclosures.
-    pub fn new(terms: &[Entries<T::Enclosure>], turn: Option<Turn>) -> Self {
-        Map { turn, ..Map::enclosing(terms, T::near_enclosure) }
+    pub fn new<E: Enclosure>(terms: &[Entries<E>], turn: Option<Turn>) -> Self {
+        Map { turn, ..Map::enclosing(terms, E::near) }
     }
 
     /// From balls, without a turn.
@@ -379,9 +380,9 @@ impl<T: Coefficient> Map<T> {
         }
     }
 
-    /// The entries at t = 0 without the power of two, in numbers that hold them exactly.
-    pub fn enclosures<P: Coefficient>(&self, bits: u32) -> Entries<P::Enclosure> {
-        self.terms[0].each_ref().map(|x| x.to::<P>().enclosed(self.error, bits))
+    /// The entries at t = 0 without the power of two.
+    pub fn enclosures<E: Enclosure>(&self, bits: u32) -> Entries<E> {
+        self.terms[0].each_ref().map(|x| E::within(x, self.error, bits))
     }
 }
 

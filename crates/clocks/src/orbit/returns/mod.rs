@@ -35,6 +35,7 @@ pub use map::{FLOOR, UP, norm};
 use super::ends::Ends;
 use crate::propagator::{LongClocks, PartialSigns};
 use coefficient::{Coefficient, Long};
+use enclosure::{Close, Enclosure, Wide};
 use frame::{Found, Frame};
 use number::rational::to_f64;
 use number::{Ball, Ratio, Rational, Real, Twofold};
@@ -54,6 +55,10 @@ const LONG_FOR_BITS: u64 = 1 << 9;
 pub fn is_worth(ratio: Ratio, bits: u32) -> bool {
     ratio.p().min(ratio.q()) >= if bits > 53 { LONG_FOR_BITS } else { LONG }
 }
+
+/// A step of the base to so high a power, 2^8, costs its constants in two doubles 12 bits: they know a step of a period
+/// of 2^70 kicks well enough after it.
+const ALIKE: u64 = 8;
 
 /// The results that a run is asked for.
 #[derive(Clone, Copy, PartialEq)]
@@ -97,16 +102,24 @@ fn better<S: Real>(clocks: &LongClocks<S>, bits: u32, wanted: Wanted) -> Option<
 /// A run with the fast or the slow clock as the base. The number of kicks of the rarer clock decides which
 /// numbers know its first levels well enough (`euclid::suffices`).
 fn over<S: Real>(clocks: &LongClocks<S>, fast: bool, bits: u32, wanted: Wanted) -> Option<Found> {
-    match (bits, clocks.shorter_bits()) {
-        (0..=53, 0..=38) => over_in::<S, f64>(clocks, fast, bits, wanted),
-        (0..=53, 39..=86) | (54..=106, 0..=62) => over_in::<S, Twofold>(clocks, fast, bits, wanted),
-        (0..=256, _) => over_in::<S, Long>(clocks, fast, bits, wanted),
-        _ => None,
-    }
+    let over = match (bits, clocks.shorter_bits()) {
+        (0..=53, 0..=38) => over_in::<S, f64, Close>,
+        (0..=53, 39..=70) if clocks.log2_ratio() <= ALIKE => over_in::<S, Twofold, Close>,
+        (0..=53, 39..=86) | (54..=106, 0..=62) => over_in::<S, Twofold, Wide>,
+        (0..=256, _) => over_in::<S, Long, Wide>,
+        _ => return None,
+    };
+    over(clocks, fast, bits, wanted)
 }
 
-fn over_in<S: Real, T: Walk>(clocks: &LongClocks<S>, fast: bool, bits: u32, wanted: Wanted) -> Option<Found> {
-    let found = |clocks: &LongClocks<S>| T::walked(&Frame::new(clocks, wanted == Wanted::Nodes)?, bits);
+fn over_in<S: Real, T: Walk, E: Enclosure>(
+    clocks: &LongClocks<S>,
+    fast: bool,
+    bits: u32,
+    wanted: Wanted,
+) -> Option<Found> {
+    let found =
+        |clocks: &LongClocks<S>| T::walked(&Frame::<T, E>::new(clocks, wanted == Wanted::Nodes)?, bits);
     if fast {
         return found(clocks);
     }
@@ -119,23 +132,23 @@ fn over_in<S: Real, T: Walk>(clocks: &LongClocks<S>, fast: bool, bits: u32, want
 /// No type of strengths enters: the walk, most of this room's code, is compiled here and not once more by
 /// every crate that asks.
 trait Walk: Coefficient {
-    fn walked(frame: &Frame<Self>, bits: u32) -> Option<Found>;
+    fn walked<E: Enclosure>(frame: &Frame<Self, E>, bits: u32) -> Option<Found>;
 }
 
 impl Walk for f64 {
-    fn walked(frame: &Frame<Self>, _: u32) -> Option<Found> {
+    fn walked<E: Enclosure>(frame: &Frame<Self, E>, _: u32) -> Option<Found> {
         frame.found::<f64>()
     }
 }
 
 impl Walk for Twofold {
-    fn walked(frame: &Frame<Self>, bits: u32) -> Option<Found> {
+    fn walked<E: Enclosure>(frame: &Frame<Self, E>, bits: u32) -> Option<Found> {
         if bits <= 53 { frame.found::<f64>() } else { frame.found::<Twofold>() }
     }
 }
 
 impl Walk for Long {
-    fn walked(frame: &Frame<Self>, bits: u32) -> Option<Found> {
+    fn walked<E: Enclosure>(frame: &Frame<Self, E>, bits: u32) -> Option<Found> {
         match bits {
             0..=53 => frame.found::<f64>(),
             54..=106 => frame.found::<Twofold>(),

@@ -17,7 +17,7 @@
 
 use super::super::branch::Branch;
 use super::super::coefficient::Coefficient;
-use super::super::map::{Entries, Map};
+use super::super::map::{Entries, MOST, Map};
 use super::super::series::Series;
 use super::super::turn::Turn;
 use num_traits::ToPrimitive;
@@ -404,6 +404,7 @@ fn summed<T: Coefficient>(
     let bits = T::BITS + 64;
     let tau = Ball::from_rational(&Rational::new(stride.into(), length.into()), bits).scale2(1);
     let terms = logarithms.iter().map(|x| x.0.len()).max().unwrap_or(1);
+    debug_assert!(terms <= MOST);
     let mut powers = vec![Ball::one()];
     for i in 0..terms {
         powers.push(powers[i].mul(&tau, bits));
@@ -412,11 +413,11 @@ fn summed<T: Coefficient>(
         let mut sum = vec![Ball::zero(); terms + 1];
         for m in (0..terms).rev() {
             let mut rest = series.re(m).ball();
-            let mut binomial = Ball::from_integer(&(m as u64 + 1).into());
+            // j over m: below 2^MOST.
+            let mut binomial = m as u128 + 1;
             for j in m + 2..=terms {
-                binomial = binomial.mul(&Ball::from_integer(&(j as u64).into()), bits);
-                binomial = binomial.div(&Ball::from_integer(&((j - m) as u64).into()), bits)?;
-                let lost = binomial.mul(&powers[j - m], bits).mul(&sum[j], bits);
+                binomial = binomial * j as u128 / (j - m) as u128;
+                let lost = powers[j - m].mul(&sum[j], bits).mul(&Ball::from_integer(&binomial.into()), bits);
                 rest = rest.sub(&lost, bits);
             }
             let divisor = tau.mul(&Ball::from_integer(&(m as u64 + 1).into()), bits);
