@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from kickdrift import _native
 from kickdrift._document import Document, Frozen
-from kickdrift._errors import KickdriftError, required
+from kickdrift._errors import BudgetError, KickdriftError, required
 from kickdrift._native import Number
 from kickdrift._numbers import Exact, flag, frozen, placed
 from kickdrift._plot import COLOURS
@@ -361,7 +361,8 @@ def verdicts(
     lambda1, lambda2, h1, h2 : Exact, or arrays or nested lists of such
         As for :func:`decide`; arrays broadcast as NumPy's do. Each value is read once, however often it is broadcast.
         Floats mean what they print, alone or in arrays of any precision; :func:`exact` gives the doubles themselves.
-        Their periods have any number of kicks, 10^30 and more.
+        Their periods have any number of kicks, 10^30 and more, and a verdict on a pair of such floats takes a hundred
+        times as long as one on short numbers: ``np.round(h1, 6)``, or :func:`simplest` of each, where that is meant.
     budget : int, optional
         The most kicks that one pair may compose; 10^8 unless given.
     threads : int, optional
@@ -399,6 +400,8 @@ def verdicts(
     positions = [_positions(array, shape) for array in arrays]
     try:
         code, tier = _native.verdicts(values, positions, budget, threads, shown(progress, "pairs"))
+    except BudgetError as error:
+        raise _of_pair(error, shape) from None
     except KickdriftError as error:
         raise _placed(error, dict(zip(fields, arrays, strict=True))) from None
     return Verdicts(frozen(code.reshape(shape)), frozen(tier.reshape(shape)))
@@ -411,6 +414,16 @@ def _placed(error: KickdriftError, arrays: Mapping[str, npt.NDArray[Any]]) -> Ki
         return error
     where = np.unravel_index(int(place), arrays[name].shape)
     return KickdriftError(placed(name, (int(n) for n in where)), error.value, error.remedy)
+
+
+def _of_pair(error: BudgetError, shape: tuple[int, ...]) -> BudgetError:
+    """An error about the n-th pair, ``pair 5: …``, as one about its place in the broadcast shape, ``pair [1, 2]: …``."""
+    name, colon, work = error.field.partition(": ")
+    number = name.removeprefix("pair ")
+    if not (colon and name.startswith("pair ") and number.isdigit()):
+        return error
+    where = ", ".join(str(n) for n in np.unravel_index(int(number), shape))
+    return BudgetError(f"pair [{where}]: {work}", error.needed, error.remedy)
 
 
 def _array(field: str, value: Any) -> npt.NDArray[Any]:

@@ -185,6 +185,12 @@ def test_a_period_beyond_every_machine_is_decided_alone_as_among_others() -> Non
         kd.decide(lambda1="pi^2", lambda2="pi^2/25", h1=longest.h1, h2=longest.h2, exact=True)
 
 
+def test_a_pair_of_doubles_that_nothing_decides_is_named_by_its_place() -> None:
+    strong = kd.exact(np.array([[0.5, 0.25], [2.5456041358732118, 0.125]]))
+    with pytest.raises(kd.BudgetError, match=r"^pair \[1, 0\]: 256 bits do not decide the verdict.*: move a step"):
+        kd.verdicts(lambda1=10, lambda2=1, h1=strong, h2=kd.exact(1.8315760255619316))
+
+
 def test_the_verdict_of_doubles_has_its_growth_and_label() -> None:
     # 3 - 2.8e-16.
     stable = kd.decide(lambda1="pi^2", lambda2="pi^2/25", h1=kd.exact(0.1), h2=kd.exact(0.3))

@@ -481,6 +481,12 @@ fn pairs_made_of_few_quantities_are_decided_as_each_alone() {
     let uneven = [first(&one), first(&one), first(&one), first(&one)];
     assert!(Pairs::new(uneven.clone(), [vec![0], vec![0], vec![0], vec![]]).is_err());
     assert_eq!(Pairs::new(uneven, [vec![0], vec![1], vec![0], vec![0]]).unwrap_err().field(), "lambda2");
+    // The doubles 2.5 and 2.54: both clocks beyond their own limits, for a period of 2^52 kicks and more.
+    let steps = [[0.5, 0.25], [2.5456041358732118, 1.8315760255619316]];
+    let steps = steps.map(|pair| pair.map(|h| Laurent::try_from(h).unwrap()));
+    let [fast, slow] = ["10", "1"].map(|text| parse("quantity", text).unwrap());
+    let strong = Pairs::of_steps(fast, slow, steps).unwrap().verdicts(&Resources::default()).unwrap_err();
+    assert!(strong.field().starts_with("pair 1: 256 bits do not decide the verdict"), "{strong}");
     let none = Pairs::of_steps(one.clone(), one.clone(), []).unwrap();
     assert_eq!(none.verdicts(&Resources::default()).unwrap(), []);
 }

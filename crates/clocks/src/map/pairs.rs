@@ -9,7 +9,7 @@ use super::work::LANES;
 use crate::orbit::strengths::Strengths;
 use crate::propagator::Oscillator;
 use crate::verdict::{Decision, Limits, decide_steps};
-use number::error::{Error, Result};
+use number::error::{Error, Kind, Result};
 use number::vector::each;
 use number::vector::instructions::{Instructions, Task};
 use number::{ExactSign, Laurent, Rational, Real, Sign, Twofold};
@@ -122,9 +122,15 @@ impl Pairs {
         }
     }
 
-    /// The verdict on the n-th pair by the ladder.
+    /// The verdict on the n-th pair by the ladder; an error says which pair it is about.
     pub(super) fn decide(&self, n: usize, limits: &Limits) -> Result<Decision> {
-        decide_steps(&self.oscillator(n)?, limits)
+        decide_steps(&self.oscillator(n)?, limits).map_err(|error| match error.kind() {
+            Kind::Budget if self.count() > 1 => {
+                let work = format!("pair {n}: {}", error.field());
+                error.at(work)
+            }
+            _ => error,
+        })
     }
 }
 

@@ -67,6 +67,10 @@ fn by_tiers<S: Decidable>(
         if let Some((verdict, bits)) = by_returns(clocks, least..=256, runs)? {
             return Ok((verdict, if bits == 53 { Tier::Filter } else { Tier::Refine }));
         }
+        // No tier follows the kicks of such a period.
+        if Schedule::two_clocks(clocks.ratio()).is_err() {
+            return Err(undecided(&(BigInt::from(clocks.p()) + clocks.q())));
+        }
     }
     for tier in Tier::ALL.into_iter().filter(|&tier| tier >= first) {
         let verdict = match tier {
@@ -135,11 +139,16 @@ pub fn decide_long<S: Decidable>(clocks: &LongClocks<S>) -> Result<Decision> {
         }
     }
     go_on()?;
+    Err(undecided(&kicks))
+}
+
+/// Where return maps decide nothing, of a period that is too long for kicks.
+fn undecided(kicks: &BigInt) -> Error {
     let work = format!(
         "256 bits do not decide the verdict, and the period has {} kicks: the pair is on an edge of a tongue or next to one, or its kicks are very strong",
-        short(&kicks)
+        short(kicks)
     );
-    Err(Error::too_much(work, "move a step by a hair, or choose steps with a simpler ratio"))
+    Error::too_much(work, "move a step by a hair, or choose steps with a simpler ratio")
 }
 
 /// A whole number, or its power of two.
