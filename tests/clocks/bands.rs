@@ -1,5 +1,7 @@
 //! Sectors in which every ratio is proven unstable, held against the ladder.
 
+use std::sync::OnceLock;
+
 use kickdrift::band::{Bands, Sector, Window};
 use kickdrift::number::parse::parse;
 use kickdrift::number::{Laurent, Rational, rational};
@@ -16,6 +18,12 @@ fn figure1() -> Window {
 
 fn search(window: &Window, tries: u64) -> Bands {
     window.search(tries, None, &|_| ()).unwrap()
+}
+
+/// Those of figure 1 after 40,000 trials: seconds, once for all tests.
+fn of_figure1() -> (Window, &'static Bands) {
+    static BANDS: OnceLock<Bands> = OnceLock::new();
+    (figure1(), BANDS.get_or_init(|| search(&figure1(), 40_000)))
 }
 
 /// Verdict and label.
@@ -74,10 +82,9 @@ fn all_pairs_are_unstable(window: &Window, bands: &Bands, pairs: usize) {
 
 #[test]
 fn every_pair_in_a_sector_is_unstable() {
-    let window = figure1();
-    let bands = search(&window, 40_000);
+    let (window, bands) = of_figure1();
     assert!(bands.share().0 > 0.06, "{:?}", bands.share());
-    all_pairs_are_unstable(&window, &bands, 2500);
+    all_pairs_are_unstable(&window, bands, 2500);
 }
 
 #[test]
@@ -112,11 +119,10 @@ fn windows_of_any_size_and_unit() {
     }
 }
 
-// Ledger: bands; all pairs of a grid, sectors of 60_000 trials; the verdict on each pair
+// Ledger: bands; all pairs of a grid, sectors of 40_000 trials; the verdict on each pair
 #[test]
 fn no_stable_pair_lies_in_a_sector() {
-    let window = figure1();
-    let bands = search(&window, 60_000);
+    let (window, bands) = of_figure1();
     // All pairs of a coarse grid: h1 = 2 i/(97 pi), h2/h1 = j/23.
     let mut stable = 0;
     for j in (1..400).step_by(7) {
@@ -146,21 +152,20 @@ fn more_trials_add_to_the_area() {
     let window = figure1();
     let mut before = search(&window, 0);
     assert!(before.certified.is_empty() && before.share() == (0.0, 0.0));
-    for tries in [1000, 10_000, 30_000, 60_000] {
+    for tries in [1000, 3000, 10_000, 20_000] {
         let bands = search(&window, tries);
         assert!(bands.tried <= tries && bands.share().0 >= before.share().1);
         before = bands;
     }
     // A goal ends the search as soon as it is reached.
     let goal = rational::ratio(1, 100);
-    let bands = window.search(60_000, Some(&goal), &|_| ()).unwrap();
+    let bands = window.search(20_000, Some(&goal), &|_| ()).unwrap();
     assert!(bands.share().0 >= 0.01 && bands.tried < before.tried);
 }
 
 #[test]
 fn sectors_are_proven_lie_in_the_window_and_do_not_overlap() {
-    let window = figure1();
-    let bands = search(&window, 40_000);
+    let (window, bands) = of_figure1();
     let (mut proven, mut area) = (0, 0.0);
     for sector in &bands.certified {
         for ratio in ends(sector) {
