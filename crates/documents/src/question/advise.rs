@@ -8,6 +8,7 @@ use super::field::flag;
 use crate::input::{SystemFile, of_archive};
 use crate::report::advise as report;
 use crate::report::document::Document;
+use crate::report::shape::{Keys, Schema};
 use molecules::engine::{self, Reading};
 use molecules::unit::{self, Dimension, TimeUnit, decimal};
 use molecules::{self, Constraints, Mode, Scheme};
@@ -104,6 +105,16 @@ impl Question for Advise {
     const USAGE: Option<&'static str> =
         Some("(FILE | --period <NAME=T>... | --bond <NAME:K=..>... | --engine <FILE>) [--steps <A,B>]...");
     type Answer = Answer;
+
+    /// On periods, on the Hessians of a system, or on its forces that are no gradient.
+    fn schemas() -> Vec<(&'static str, Schema, Keys)> {
+        let periods = Advised::keys().without(&["file", "system"]).requiring(&["modes", "schemes"]);
+        let system = Advised::keys()
+            .without(&["modes", "constrained", "all_modes", "plain_time"])
+            .requiring(&["schemes", "file", "system"]);
+        let input = |name| if name == "advise" { periods.clone() } else { system.clone() };
+        report::schemas().map(|(name, schema)| (name, schema, input(name))).to_vec()
+    }
 
     fn answer(&self, work: &Work) -> Result<Answer> {
         let mut reading = self.reading()?;

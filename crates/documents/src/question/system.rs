@@ -8,7 +8,7 @@ use super::field::{Field, flag, notation};
 use crate::format::Format;
 use crate::input::{Arrays, Axis, NEAREST, Scan, Span, SystemFile, SystemScene};
 use crate::report::document::Document;
-use crate::report::shape::Shape;
+use crate::report::shape::{Keys, Schema, Shape};
 use crate::report::system::{self as report, Beside, Biases, SystemMap};
 use clocks::verdict::Kind as Stability;
 use number::Rational;
@@ -75,8 +75,8 @@ question! {
 
 notation! {
     Method: |_, text: &str| text.parse(), ToString::to_string;
-    Axis: |_, text: &str| text.parse(), ToString::to_string;
-    Span: |_, text: &str| text.parse(), ToString::to_string;
+    Axis: |_, text: &str| text.parse(), ToString::to_string, Shape::Plain(r#"{"type": "string", "pattern": "=.*\\.\\..*:"}"#);
+    Span: |_, text: &str| text.parse(), ToString::to_string, Shape::Plain(r#"{"type": "string", "pattern": "^.+=.*\\.\\."}"#);
 }
 
 /// A file: what is in it, or its text.
@@ -247,6 +247,24 @@ impl Question for System {
     const EXAMPLES: &'static [&'static str] =
         &["system data/scenes/three-clocks.json", "system data/scenes/bar-resonant.json --output modes.pdf"];
     type Answer = Answer;
+
+    /// A map, intervals, or a verdict: each leaves out what the others are asked by.
+    fn schemas() -> Vec<(&'static str, Schema, Keys)> {
+        let keys = <System as super::Fields>::keys;
+        let verdict = keys().without(&["scan_x", "scan_y", "intervals"]).requiring(&["title"]);
+        let map =
+            keys().without(&["friction", "intervals", "nearest", "width"]).requiring(&["title", "scan_x"]);
+        let intervals = keys().without(&["exact", "friction", "scan_x", "scan_y", "nearest"]).requiring(&[
+            "title",
+            "intervals",
+            "width",
+        ]);
+        vec![
+            ("system-verdict", report::schema(), verdict),
+            ("system-map", SystemMap::schema(), map),
+            ("system-intervals", report::intervals_schema(), intervals),
+        ]
+    }
 
     fn answer(&self, work: &Work) -> Result<Answer> {
         self.check()?;

@@ -14,6 +14,8 @@ pub enum Shape {
     Named(&'static str, &'static str),
     /// One of these texts.
     OneOf(&'static [&'static str]),
+    /// One of these texts, where they are no constant.
+    Words(fn() -> Vec<&'static str>),
     /// Of one of these shapes.
     Any(&'static [Shape]),
     /// Of this shape, or null.
@@ -133,6 +135,18 @@ pub const WIDE_ENCLOSURE: Shape = Shape::Named(
 );
 /// Two doubles not below 0 about the value.
 pub const ENCLOSURE_FROM_0: Shape = enclosure!("enclosure_from_0", r#""minimum": 0"#);
+/// The same, or null.
+pub const ENCLOSED_OR_NULL: Shape = Shape::OrNull(&WIDE_ENCLOSURE);
+/// A double near a number above 0.
+pub const ABOVE_0: Shape = Shape::With(&ROUNDED, r#"{"exclusiveMinimum": 0}"#);
+/// A double near the value, or null.
+pub const ROUNDED_OR_NULL: Shape = Shape::OrNull(&ROUNDED);
+/// True, false, or null.
+pub const FLAG_OR_NULL: Shape = Shape::OrNull(&FLAG);
+/// Rounded doubles.
+pub const ALL_ROUNDED: Shape = Shape::List(&ROUNDED);
+/// Sentences.
+pub const TEXTS: Shape = Shape::List(&TEXT);
 /// Decimal digits of a number that is not below 0.
 pub const DECIMAL: Shape =
     Shape::Named("decimal", r#"{"type": "string", "pattern": "^[0-9]+([.][0-9]+)?(e-?[0-9]+)?$"}"#);
@@ -144,6 +158,12 @@ pub const POSITIVE_ENCLOSURE: Shape = enclosure!("positive_enclosure", r#""exclu
 /// The kind of a verdict.
 pub const KIND: Shape =
     Shape::Named("kind", r#"{"enum": ["elliptic", "hyperbolic", "parabolic", "coexistence"]}"#);
+
+/// The same, or that none is decided.
+pub const KIND_IF_DECIDED: Shape = Shape::Named(
+    "kind_if_decided",
+    r#"{"enum": ["elliptic", "hyperbolic", "parabolic", "coexistence", "not decided"]}"#,
+);
 
 /// One key of an object.
 #[derive(Clone, Debug)]
@@ -231,6 +251,20 @@ impl Keys {
         self
     }
 
+    /// Those of other names.
+    #[must_use]
+    pub fn without(mut self, names: &[&str]) -> Keys {
+        self.keys.retain(|key| !names.contains(&key.path.as_ref()));
+        self
+    }
+
+    /// Says that every object has these.
+    #[must_use]
+    pub fn requiring(mut self, names: &[&str]) -> Keys {
+        self.optional.retain(|path| !names.contains(&path.as_str()));
+        self
+    }
+
     /// The schema of the object; `defs` takes the schemas that have names.
     fn schema(&self, defs: &mut Map<String, Value>) -> Map<String, Value> {
         self.group("", json!({"type": "object"}), defs)
@@ -312,6 +346,7 @@ impl Shape {
                 json!({"$ref": format!("#/$defs/{name}")})
             }
             Shape::OneOf(words) => json!({"enum": words}),
+            Shape::Words(words) => json!({"enum": words()}),
             Shape::Any(shapes) => {
                 let shapes: Vec<Value> = shapes.iter().map(|shape| shape.schema(defs)).collect();
                 json!({"anyOf": shapes})

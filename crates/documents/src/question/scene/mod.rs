@@ -6,7 +6,7 @@ pub use products::{Made, Products};
 
 use std::path::Path;
 
-use serde_json::{Map as Input, Value, json};
+use serde_json::{Map as Input, Value};
 
 use super::asking::{Fields, question};
 use super::curves::Curves;
@@ -15,10 +15,12 @@ use super::map::Map;
 use super::ratios::{MOST_SUM, Ratios};
 use super::survey::{Survey, THINNEST};
 use super::tongues::{Colour, Tongues};
-use super::want::Want;
+use super::want::{Product, Want};
 use crate::input::json;
 use crate::input::kind::of_another_kind;
 use crate::report::document::Document;
+use crate::report::record::Record;
+use crate::report::shape::{Shape, TEXT};
 use clocks::resonance::Families;
 use clocks::tongue::Stiffness;
 use number::error::{Error, Result};
@@ -141,10 +143,8 @@ impl Scene {
 
     /// The document on the files of its products in a folder.
     pub fn written(&self, folder: &Path) -> Document {
-        let file = |want: &Want| self.file(folder, want);
-        let product = |want: &Want| json!({"product": want.product.name(), "file": file(want)});
-        let products: Vec<Value> = self.want.iter().map(product).collect();
-        Document::new("run").inputs(self.input()).entry("products", products)
+        let products = self.want.iter().map(|want| (want.product, self.file(folder, want))).collect();
+        record().document(Document::new("run").inputs(self.input()), &products)
     }
 
     fn file(&self, folder: &Path, want: &Want) -> String {
@@ -218,6 +218,25 @@ impl Scene {
     fn stiffness(&self) -> Result<Stiffness> {
         Stiffness::new(self.rho.clone(), self.lambda1.clone(), self.lambda2.clone())
     }
+}
+
+/// A product, and the path of its file.
+type Written = (Product, String);
+
+/// The record of a run.
+fn record() -> Record<'static, Vec<Written>> {
+    const WRITTEN: Shape = Shape::List(&Shape::Object(|| written().keys()));
+    Record::new()
+        .value("products", |all: &Vec<Written>| written().all(all).into())
+        .says(WRITTEN, "The files written, in the order of the scene.")
+}
+
+fn written() -> Record<'static, Written> {
+    Record::new()
+        .json("product", |(product, _): &Written| product.name().into())
+        .says(Shape::OneOf(Product::NAMES), "")
+        .json("file", |(_, file)| file.as_str().into())
+        .says(TEXT, "The path, relative to where the program ran unless it was asked otherwise.")
 }
 
 fn given((field, value): (&str, &Option<Laurent>)) -> Result<Laurent> {
