@@ -75,6 +75,15 @@ impl Want {
         Ok(Want { product, format })
     }
 
+    /// All that can be wanted, as it may be written.
+    pub(super) fn texts() -> Vec<String> {
+        let ends = || {
+            [String::new()].into_iter().chain(Format::MAP.map(|format| format!(".{}", format.extension())))
+        };
+        let texts = Product::NAMES.iter().flat_map(|name| ends().map(move |end| format!("{name}{end}")));
+        texts.filter(|text| Want::new(text).is_ok()).collect()
+    }
+
     /// The name of the product's file.
     pub fn file_name(&self) -> String {
         format!("{}.{}", self.product.name(), self.format.extension())

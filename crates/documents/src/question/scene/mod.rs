@@ -20,7 +20,7 @@ use crate::input::json;
 use crate::input::kind::of_another_kind;
 use crate::report::document::Document;
 use crate::report::record::Record;
-use crate::report::shape::{Shape, TEXT};
+use crate::report::shape::{GROUP, QUANTITY, Schema, Shape, TEXT};
 use clocks::resonance::Families;
 use clocks::tongue::Stiffness;
 use number::error::{Error, Result};
@@ -45,9 +45,9 @@ question! {
     struct Scene {
         /// Shown on figures and summaries.
         title: String = "",
-        /// The stiffness of the fast force, 1/time².
+        /// The stiffness of the fast force, positive, in 1/time².
         lambda1: Option<Laurent>,
-        /// The stiffness of the slow force.
+        /// The stiffness of the slow force, in 1/time²; may be negative.
         lambda2: Option<Laurent>,
         /// The spacing of h1.
         step1: Option<Laurent>,
@@ -63,23 +63,24 @@ question! {
         b: Option<(i64, i64)>,
         /// Points a curve.
         samples: Option<usize>,
-        /// How near q h2 must be to a multiple of T½ to count as resonant, in units of T½.
+        /// How near q h2 must be to a multiple of T½ to count as resonant, in units of T½; 1/20 unless given.
         tolerance: Option<Rational>,
         /// h2/h1 = p/q.
         ratio: Option<Ratio>,
-        /// The bound on p and q of an exhaustive check of the Proposition.
+        /// The bound on p and q of an exhaustive check of the Proposition; 60 unless given.
         max: Option<u64>,
-        /// All coprime p + q up to this number.
+        /// All coprime p + q up to this number, for tongues, closings, survey and atlas; without it they are about
+        /// the ratio.
         max_sum: Option<u64>,
-        /// λ2/λ1, in place of λ2.
+        /// λ2/λ1, in place of λ2, for tongues, survey and atlas.
         rho: Option<Rational>,
         /// The closed range of h1 that tongues and the atlas show.
         window_h1: Option<StepRange>,
         /// The closed range of h2 that they show.
         window_h2: Option<StepRange>,
-        /// The quantity shown by the colours of the atlas.
+        /// The quantity shown by the colours of the atlas; family unless given.
         colour: Option<Colour>,
-        /// The closed range of ρ in which closings are searched.
+        /// The closed range of ρ in which closings are searched; 1/10000..100 unless given.
         rho_range: Option<(Rational, Rational)>,
         /// The products wanted, in the order of the file.
         want: Vec<Want>,
@@ -139,6 +140,25 @@ impl Scene {
         }
         scene.check()?;
         Ok(scene)
+    }
+
+    /// The schema of its files, by their name: the fields in their groups, as a person may write them.
+    pub fn file_schema() -> (&'static str, Value) {
+        let required = ["want", "grid.h1", "grid.h2", "window.h1", "window.h2"];
+        let keys = Scene::keys()
+            .without(&["want"])
+            .key("want", Shape::List(&Shape::Words(Want::texts)), "The products to compute, NAME or NAME.FORMAT; nothing else is computed.")
+            .key("grid", GROUP, "All pairs of positive multiples of the spacings in closed ranges of h1 and h2.")
+            .key("grid.step", QUANTITY, "The spacing of both steps.")
+            .key("families", GROUP, "The curves 1/T_half = a/h1 + b/h2 to draw; a from 0 to 3 and b from -12 to 12 unless given, of 400 points.")
+            .key("window", GROUP, "The steps that tongues and the atlas show.")
+            .written(place, &required);
+        let rules = r#"{"allOf": [{"properties": {"grid": {
+            "anyOf": [{"required": ["step"]}, {"required": ["step1", "step2"]}]
+        }}}]}"#;
+        let about = "The input of `kickdrift run`. Every quantity is exact, a JSON number or a string: sums, products, quotients and integer powers of decimals, fractions and pi.";
+        let schema = Schema::new("A scene: what to compute, and which products to write", keys);
+        ("scene", schema.about(about).rules(rules).file("scene"))
     }
 
     /// The document on the files of its products in a folder.

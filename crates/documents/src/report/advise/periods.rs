@@ -21,7 +21,7 @@ use number::{Rational, outward};
 use systems::friction::Masked;
 
 /// Where a mode comes from.
-pub const ORIGIN: Shape = Shape::Words(|| Origin::all().map(Origin::name).collect());
+pub const ORIGIN: Shape = Shape::Words(|| Origin::all().map(|origin| origin.name().into()).collect());
 
 /// The document `kickdrift/advise/1`: JSON and CSV have all columns of the rows, people those that fit paper.
 pub(super) fn document(advice: &Advice, reading: Option<&Reading>) -> Document {

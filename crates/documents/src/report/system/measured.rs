@@ -23,7 +23,7 @@ pub(super) fn record() -> Record<'static, Measured> {
         .value("rigid_motions", |measured| measured.removed.as_ref().map(|r| motions().entries(r)).into())
         .says(MOTIONS, "Projected out of every potential, and what of the norms they held.")
         .optional("method", |measured| has_other_method(measured).then(|| measured.method.into()))
-        .says(Shape::Words(|| Method::all().skip(1).map(Method::name).collect()), "The integrator, where it is another than kicks and drifts: the fast force is taken in one go over the outer step.")
+        .says(Shape::Words(|| Method::all().skip(1).map(|method| method.name().into()).collect()), "The integrator, where it is another than kicks and drifts: the fast force is taken in one go over the outer step.")
 }
 
 /// The record of what was projected out.
