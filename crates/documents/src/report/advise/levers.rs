@@ -9,7 +9,7 @@ use crate::report::record::Record;
 use crate::report::shape::{ENCLOSED_OR_NULL, EXACT, FLAG, RATIONAL_OR_NULL, ROUNDED_OR_NULL, Shape, TEXT};
 use crate::report::table::{Cell, Column, Table};
 use molecules::unit::{TimeUnit, decimal};
-use molecules::{Bound, Engine, Lever, Levers, Way};
+use molecules::{Bound, Keyword, Lever, Levers, Way};
 use number::Rational;
 use number::rational::to_f64;
 
@@ -24,7 +24,7 @@ fn method(way: Way) -> &'static str {
     }
 }
 
-fn joined(engines: &[Engine], each: impl Fn(&Engine) -> String) -> Cell {
+fn joined(engines: &[Keyword], each: impl Fn(&Keyword) -> String) -> Cell {
     let all: Vec<String> = engines.iter().map(each).collect();
     if all.is_empty() { Cell::Missing } else { Cell::Text(all.join("; ")) }
 }
@@ -81,11 +81,11 @@ fn record(unit: TimeUnit) -> Record<'static, Lever> {
         .field(Column::new("gain"), move |lever| rounded(lever.gain.clone()))
         .says(ROUNDED_OR_NULL, "The step over the longest one of kicks and drifts as they are today, as given or at another ratio; the nearest double.")
         .field(column("engines", "who has it").left(), |lever| {
-            joined(lever.way.engines(), |engine| format!("{} {}", engine.name, engine.keyword))
+            joined(lever.way.engines(), |known| format!("{} {}", known.engine, known.keyword))
         })
         .says(Shape::OrNull(&TEXT), "Engines that are known to have it, with their keywords.")
         .field(Column::new("sources").left(), |lever| {
-            joined(lever.way.engines(), |engine| engine.source.into())
+            joined(lever.way.engines(), |known| known.source.into())
         })
         .says(Shape::OrNull(&TEXT), "Where that is written, in the same order.")
 }
@@ -225,7 +225,7 @@ pub(super) fn lines(levers: &Levers, unit: TimeUnit) -> Vec<String> {
                 .way
                 .engines()
                 .iter()
-                .map(|engine| format!("{} {}", engine.name, engine.keyword))
+                .map(|known| format!("{} {}", known.engine, known.keyword))
                 .collect();
             let name = if lever.way == Way::Respa { "as given, other ratios" } else { &lever.name };
             lines.push(format!("             {name}: {}", all.join("; ")));
