@@ -6,7 +6,7 @@ use super::args::{Columns, Common};
 use super::paper::Paper;
 use documents::format::Format;
 use documents::input::{Arrays, Axis, SystemFile};
-use documents::question::{Found, Question, System, Work, flag};
+use documents::question::{Question, System, SystemFound, Work, flag};
 use documents::report::system::Colouring;
 use number::error::{Error, Result};
 use number::file;
@@ -72,14 +72,14 @@ impl Args {
             }
             None => {
                 let format = match &answer.found {
-                    Found::Map(_) => common.format_of_table(&Format::DOCUMENT)?,
+                    SystemFound::Map(_) => common.format_of_table(&Format::DOCUMENT)?,
                     _ => Format::Text,
                 };
                 common.write(&self.columns.of(asked.document(&answer))?, format)?;
             }
         }
         match &answer.found {
-            Found::Verdict(verdict) if self.exit_code => self.code(verdict.analysis.holds()),
+            SystemFound::Verdict(verdict) if self.exit_code => self.code(verdict.analysis.holds()),
             _ => Ok(0),
         }
     }

@@ -3,12 +3,9 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use serde_json::{Value, json};
-
 use super::args::Common;
 use super::progress::{announce, progress};
 use documents::format::Format;
-use documents::report::document::Document;
 use documents::verify::{CheckedDocument, Failure, Options, Outcome};
 use number::error::{Error, Kind, Result};
 use number::file;
@@ -53,7 +50,7 @@ impl Args {
         if let Some(first) = outcome.failures.first() {
             return Err(failed(first, &outcome, name, &file.to_string()));
         }
-        common.write(&document(&outcome, &file.to_string(), name), Format::Text)
+        common.write(&outcome.document(&file.to_string(), name), Format::Text)
     }
 
     /// A file that is not beside the document may be elsewhere.
@@ -90,26 +87,4 @@ fn failed(first: &Failure, outcome: &Outcome, name: &str, file: &str) -> Error {
     let field = if is_row { format!("row {} of {name}", first.row) } else { "document".into() };
     let place = if first.place.is_empty() { name } else { &first.place };
     Error::input(&field, place, format!("{} ({more})", first.why))
-}
-
-/// The document `kickdrift/verify/1`: all rows hold.
-fn document(outcome: &Outcome, file: &str, name: &str) -> Document {
-    let Outcome { rows, route, sample, not_rechecked, .. } = outcome;
-    let mut lines = vec![
-        format!("{rows} of {rows} rows hold"),
-        format!("  document     {name}, every value computed again from its input"),
-        format!("  other route  {route}"),
-    ];
-    lines.extend(sample.map(|(drawn, of)| format!("  sample       {drawn} of {of}")));
-    lines.extend(not_rechecked.iter().map(|field| format!("  not rechecked: {field}")));
-    Document::new("verify")
-        .input("file", file)
-        .entry("document", format!("kickdrift/{name}/1"))
-        .entry("rows", *rows)
-        .entry("holding", *rows)
-        .entry("route", *route)
-        .entry("sample", sample.map_or(Value::Null, |(drawn, count)| json!({"drawn": drawn, "of": count})))
-        .entry("not_rechecked", not_rechecked.clone())
-        .entry("failures", Vec::<Value>::new())
-        .summary_alone(&lines)
 }

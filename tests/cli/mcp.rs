@@ -53,6 +53,10 @@ fn an_assistant_begins_lists_the_tools_and_asks() {
     let advise = tools.iter().find(|tool| tool["name"] == "advise").unwrap();
     assert_eq!(advise["inputSchema"]["properties"]["band"]["default"], "5%");
     assert_eq!(advise["inputSchema"]["required"], json!([]));
+    // As the call below gives them: a text alone is refused.
+    for list in ["period", "bond", "on", "steps", "engine"] {
+        assert_eq!(advise["inputSchema"]["properties"][list]["type"], "array", "{list}");
+    }
     assert_eq!(all[2]["result"]["structuredContent"]["stable"], false);
     let told = all[3]["result"]["content"][0]["text"].as_str().unwrap();
     assert!(told.contains("advice: outer step 3 fs"), "{told}");

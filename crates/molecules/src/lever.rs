@@ -86,23 +86,23 @@ pub enum Way {
     Friction,
 }
 
-/// A kind of lever, how it is asked for, and where that is written.
+/// An engine's keyword for a kind of lever, and where that is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Engine {
-    pub name: &'static str,
+pub struct Keyword {
+    pub engine: &'static str,
     pub keyword: &'static str,
     pub source: &'static str,
 }
 
 macro_rules! engines {
     ($($name:literal $keyword:literal $source:literal;)*) => {
-        &[$(Engine { name: $name, keyword: $keyword, source: $source }),*]
+        &[$(Keyword { engine: $name, keyword: $keyword, source: $source }),*]
     };
 }
 
 impl Way {
     /// The engines of which it is known.
-    pub fn engines(self) -> &'static [Engine] {
+    pub fn engines(self) -> &'static [Keyword] {
         match self {
             Way::Respa => engines! {
                 "OpenMM" "MTSIntegrator" "wrappers/python/openmm/mtsintegrator.py";

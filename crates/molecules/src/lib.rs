@@ -82,7 +82,7 @@ pub use direct::{Adds, Direct, DirectFinding, DirectFindings, Rung, TIMES};
 pub use finding::{Finding, Findings, Group, MostBiased};
 pub use interval::{Unstable, Worst};
 pub use levels::{Found, Levels, Scheme};
-pub use lever::{Engine, Lever, Way};
+pub use lever::{Keyword, Lever, Way};
 pub use levers::{Levers, RATIOS, SOLVED, heavy};
 pub use mode::{Bond, Mode, Origin};
 pub use molecule::{MOST_PRODUCTS, Molecule};

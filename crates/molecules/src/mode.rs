@@ -37,6 +37,12 @@ pub enum Origin {
 }
 
 impl Origin {
+    /// Every one.
+    pub fn all() -> impl Iterator<Item = Origin> {
+        let plain = [Origin::Period, Origin::Wavenumber, Origin::Half, Origin::Whole, Origin::Shape];
+        plain.into_iter().chain(Typical::all().map(Origin::Typical))
+    }
+
     /// In words, in documents.
     pub fn name(self) -> &'static str {
         match self {

@@ -18,6 +18,9 @@ macro_rules! named {
             /// All of them, in their order.
             pub const ALL: [$Name; [$($name),*].len()] = [$($Name::$Variant),*];
 
+            /// Their names, in the same order.
+            pub const NAMES: &'static [&'static str] = &[$($name),*];
+
             /// The name in documents.
             pub const fn name(self) -> &'static str {
                 match self {

@@ -2,24 +2,54 @@
 
 use num_traits::{Signed, ToPrimitive};
 
+use super::vector::FloatRing;
 use super::{Ball, Rational, float, rational};
-
-/// The rounded sum and what rounding took from it, exactly (Knuth).
-#[inline(always)]
-fn two_sum(a: f64, b: f64) -> (f64, f64) {
-    let s = a + b;
-    let t = s - a;
-    (s, (a - (s - t)) + (b - t))
-}
 
 /// Farther from 1 no number is taken from a ball.
 const LARGEST: f64 = 1e30;
 
-/// hi + lo, |lo| ≤ ulp(hi)/2.
+/// hi + lo, |lo| ≤ ulp(hi)/2; of a vector in each lane.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Twofold {
-    pub hi: f64,
-    pub lo: f64,
+pub struct Twofold<V = f64> {
+    pub hi: V,
+    pub lo: V,
+}
+
+impl<V: FloatRing> Twofold<V> {
+    /// hi + lo, |lo| ≤ |hi| (Dekker).
+    #[inline(always)]
+    fn joined(hi: V, lo: V) -> Self {
+        let sum = hi.add(lo);
+        Twofold { hi: sum, lo: lo.sub(sum.sub(hi)) }
+    }
+
+    /// a + b to within 2^-104 (|a| + |b|).
+    #[inline(always)]
+    pub fn plus(self, other: Self) -> Self {
+        let (hi, lo) = self.hi.two_sum(other.hi);
+        Twofold::joined(hi, lo.add(self.lo.add(other.lo)))
+    }
+
+    /// a − b, likewise.
+    #[inline(always)]
+    pub fn minus(self, other: Self) -> Self {
+        let (hi, lo) = self.hi.two_sub(other.hi);
+        Twofold::joined(hi, lo.add(self.lo.sub(other.lo)))
+    }
+
+    /// a b to within 2^-101 relative.
+    #[inline(always)]
+    pub fn times(self, other: Self) -> Self {
+        let (hi, lost) = self.hi.two_product(other.hi);
+        Twofold::joined(hi, lost.add(self.hi.mul_add(other.lo, self.lo.mul(other.hi))))
+    }
+
+    /// a b to within 2^-103 relative; exact where b is a power of two.
+    #[inline(always)]
+    pub fn scaled(self, b: V) -> Self {
+        let (hi, lost) = self.hi.two_product(b);
+        Twofold::joined(hi, self.lo.mul_add(b, lost))
+    }
 }
 
 impl Twofold {
@@ -31,7 +61,7 @@ impl Twofold {
     /// a + b, exactly.
     #[inline(always)]
     pub fn sum(a: f64, b: f64) -> Twofold {
-        let (hi, lo) = two_sum(a, b);
+        let (hi, lo) = a.two_sum(b);
         Twofold { hi, lo }
     }
 
@@ -41,23 +71,10 @@ impl Twofold {
         Twofold { hi: 0.5 * self.hi, lo: 0.5 * self.lo }
     }
 
-    /// a + b to within 2^-104 (|a| + |b|).
-    #[inline(always)]
-    pub fn plus(self, other: Twofold) -> Twofold {
-        let (hi, lo) = two_sum(self.hi, other.hi);
-        Twofold::joined(hi, lo + (self.lo + other.lo))
-    }
-
     /// a + b for a small b, to within 2^-104 (|a.lo| + |b|).
     #[inline(always)]
     pub fn and(self, small: f64) -> Twofold {
         Twofold::joined(self.hi, self.lo + small)
-    }
-
-    /// a − b, likewise.
-    #[inline(always)]
-    pub fn minus(self, other: Twofold) -> Twofold {
-        self.plus(other.negative())
     }
 
     /// a + b to within 2^-104 of itself, whatever cancels (Joldes, Muller, Popescu 2017, theorem 3.1: 3 u² +
@@ -73,21 +90,6 @@ impl Twofold {
     #[inline(always)]
     pub fn accurate_difference(self, other: Twofold) -> Twofold {
         self.accurate_sum(other.negative())
-    }
-
-    /// a b to within 2^-101 relative.
-    #[inline(always)]
-    pub fn times(self, other: Twofold) -> Twofold {
-        let hi = self.hi * other.hi;
-        let lost = self.hi.mul_add(other.hi, -hi);
-        Twofold::joined(hi, lost + self.hi.mul_add(other.lo, self.lo * other.hi))
-    }
-
-    /// a b to within 2^-103 relative; exact where b is a power of two.
-    #[inline(always)]
-    pub fn scaled(self, b: f64) -> Twofold {
-        let hi = self.hi * b;
-        Twofold::joined(hi, self.lo.mul_add(b, self.hi.mul_add(b, -hi)))
     }
 
     /// a/b to within 2^-103 relative.
@@ -124,13 +126,6 @@ impl Twofold {
     #[inline(always)]
     pub fn magnitude(self) -> Twofold {
         if self.hi < 0.0 { self.negative() } else { self }
-    }
-
-    /// hi + lo, |lo| ≤ |hi| (Dekker).
-    #[inline(always)]
-    fn joined(hi: f64, lo: f64) -> Twofold {
-        let sum = hi + lo;
-        Twofold { hi: sum, lo: lo - (sum - hi) }
     }
 
     /// a/b to within 2^-104 relative, for whole numbers that doubles hold.

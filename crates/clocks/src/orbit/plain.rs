@@ -61,7 +61,7 @@ trait Number: Copy {
     /// u: strengths and drifts are within 2u, a shear rounds as the head of this file says.
     const ROUNDING: f64;
     /// The relative error of the nearest double.
-    const NEAR: f64;
+    const NEAREST_ERROR: f64;
     const ZERO: Self;
     const ONE: Self;
     /// A strength; `None` where it has too few bits or is no comfortable double.
@@ -77,7 +77,7 @@ trait Number: Copy {
 
 impl Number for f64 {
     const ROUNDING: f64 = U;
-    const NEAR: f64 = 0.0;
+    const NEAREST_ERROR: f64 = 0.0;
     const ZERO: f64 = 0.0;
     const ONE: f64 = 1.0;
 
@@ -109,7 +109,7 @@ impl Number for f64 {
 impl Number for Twofold {
     /// A product is within 2^-101, a sum within 2^-104 (|x| + |a y|), a strength within 2^-100.
     const ROUNDING: f64 = 1.0 / (1u128 << 98) as f64;
-    const NEAR: f64 = U;
+    const NEAREST_ERROR: f64 = U;
     const ZERO: Twofold = Twofold { hi: 0.0, lo: 0.0 };
     const ONE: Twofold = Twofold { hi: 1.0, lo: 0.0 };
 
@@ -244,7 +244,9 @@ impl<N: Number> Orbit<N> {
         let (angle, across) = (steps.local * self.worst, steps.local * self.squares);
         let stretch = steps.bound.length_uncertainty(steps.shears, angle);
         let held = angle <= steps.tau && self.square.is_finite();
-        held.then(|| End::new([self.x.near(), self.y.near()], N::NEAR, self.exponent, across, stretch))
+        held.then(|| {
+            End::new([self.x.near(), self.y.near()], N::NEAREST_ERROR, self.exponent, across, stretch)
+        })
     }
 }
 

@@ -8,6 +8,7 @@ use super::field::flag;
 use crate::input::{SystemFile, of_archive};
 use crate::report::advise as report;
 use crate::report::document::Document;
+use crate::report::shape::{Keys, Schema};
 use molecules::engine::{self, Reading};
 use molecules::unit::{self, Dimension, TimeUnit, decimal};
 use molecules::{self, Constraints, Mode, Scheme};
@@ -82,7 +83,7 @@ question! {
 }
 
 /// The advice, and how the question was read.
-pub struct Answer {
+pub struct AdviceRead {
     pub asked: Advised,
     pub safe: Safe,
     /// The engine's texts, read.
@@ -103,9 +104,19 @@ impl Question for Advise {
     ];
     const USAGE: Option<&'static str> =
         Some("(FILE | --period <NAME=T>... | --bond <NAME:K=..>... | --engine <FILE>) [--steps <A,B>]...");
-    type Answer = Answer;
+    type Answer = AdviceRead;
 
-    fn answer(&self, work: &Work) -> Result<Answer> {
+    /// On periods, on the Hessians of a system, or on its forces that are no gradient.
+    fn schemas() -> Vec<(&'static str, Schema, Keys)> {
+        let periods = Advised::keys().without(&["file", "system"]).requiring(&["modes", "schemes"]);
+        let system = Advised::keys()
+            .without(&["modes", "constrained", "all_modes", "plain_time"])
+            .requiring(&["schemes", "file", "system"]);
+        let input = |name| if name == "advise" { periods.clone() } else { system.clone() };
+        report::schemas().map(|(name, schema)| (name, schema, input(name))).to_vec()
+    }
+
+    fn answer(&self, work: &Work) -> Result<AdviceRead> {
         let mut reading = self.reading()?;
         let archive = self.file.as_ref().filter(|file| self.system.is_none() && file.ends_with(".npz"));
         let system = match archive {
@@ -133,19 +144,19 @@ impl Question for Advise {
         if let Some(mass) = self.hmr.as_ref().filter(|_| system.is_some()) {
             notes.push(format!("hydrogens of {mass}, their nearest heavy atoms lighter"));
         }
-        Ok(Answer { asked, safe, reading, notes })
+        Ok(AdviceRead { asked, safe, reading, notes })
     }
 
-    fn show(&self, Answer { safe, reading, notes, .. }: &Answer) -> Document {
+    fn show(&self, AdviceRead { safe, reading, notes, .. }: &AdviceRead) -> Document {
         report::document(safe.view(), reading.as_ref(), notes)
     }
 
     /// Echoes what was read of the words.
-    fn document(&self, answer: &Answer) -> Document {
+    fn document(&self, answer: &AdviceRead) -> Document {
         self.show(answer).inputs(answer.asked.placed(&answer.safe).input())
     }
 
-    fn figure(&self, answer: &Answer, _: &Work) -> Result<Option<Figure>> {
+    fn figure(&self, answer: &AdviceRead, _: &Work) -> Result<Option<Figure>> {
         let none = || {
             let remedy = "there is one step alone, and no multiple of another to draw: `kickdrift system FILE --scan outer=LO..HI:BY` draws the growth";
             Error::input("output", "a figure", remedy)
@@ -156,7 +167,7 @@ impl Question for Advise {
 
 impl Advise {
     /// The levers as a picture; `None` where there are none.
-    pub fn levers_figure(&self, answer: &Answer) -> Option<Figure> {
+    pub fn levers_figure(&self, answer: &AdviceRead) -> Option<Figure> {
         let levers = answer.safe.levers().filter(|lever| !lever.rows.is_empty())?;
         Some(report::levers_figure(levers, "What would let the outer step grow", answer.asked.unit()))
     }

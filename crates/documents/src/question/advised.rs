@@ -2,18 +2,21 @@
 //! steps, beads.
 
 use num_traits::Zero;
-use serde_json::{Map, Value, json};
+use serde_json::{Map, Value};
 
 use super::asking::{Fields, Question, Work, question};
 use super::field::{Field, notation, read};
 use crate::input::{SystemFile, SystemScene};
 use crate::report::advise as report;
 use crate::report::document::Document;
+use crate::report::record::Record;
+use crate::report::shape::{EXACT, POSITIVE, RATIONAL, Shape, TEXT};
+use crate::report::table::Cell;
 use molecules::aperture::energies_seen;
 use molecules::unit::{TimeUnit, decimal};
 use molecules::{
     Adds, Advice, Beads, Bond, DirectFindings, Findings, Levers, MOST_PRODUCTS, Mode, Molecule, Origin,
-    SOLVED, Scheme, Status, Typical, Way, aperture,
+    SOLVED, Scheme, Status, Way, aperture,
 };
 use number::error::{Error, Result};
 use number::parse::parse_rational;
@@ -24,19 +27,19 @@ question! {
     /// The input in exact numbers: modes on their clocks or a system, and schemes of steps; lengths of time
     /// in fs.
     struct Advised {
-        /// How far every period may be off, relatively.
+        /// The part of itself by which every period may be off.
         band: Rational,
         /// The modes that vibrate.
         modes: Option<Vec<Mode>>,
-        /// The steps, from the innermost to the outermost one.
+        /// The steps in fs, from the innermost to the outermost one.
         schemes: Vec<Scheme>,
-        /// The length of the run.
+        /// The length of the run, in fs.
         length: Option<Rational>,
-        /// The temperature at which bonds of a known shape must stay, in K.
+        /// The temperature at which bonds of a known shape must stay, in K; 298 unless given.
         temperature: Option<Rational>,
-        /// The bonds of a known shape in the system.
+        /// The bonds of a known shape in the system; 10000 unless given.
         bonds: Option<u64>,
-        /// The friction of the thermostat, 1/fs.
+        /// The friction of the thermostat per fs: v times exp(-friction t) in the middle of every drift.
         friction: Option<Rational>,
         /// Modes that are held, on no clock.
         constrained: Option<Vec<Mode>>,
@@ -48,11 +51,11 @@ question! {
         no_levers: bool,
         /// Whether the periods are the shortest of all motions on their clocks.
         all_modes: bool,
-        /// Whether the bonds are harmonic.
+        /// Whether the bonds are harmonic: nothing published bounds a clock's own step.
         harmonic: bool,
-        /// Ring polymers in place of atoms.
+        /// Ring polymers in place of atoms: how many beads, and their temperature, as 32 at 300 K.
         beads: Option<Beads>,
-        /// Whether all times are plain numbers, and not in fs.
+        /// Whether all times are plain numbers: read fs as the unit of time, and rates per ps as per that unit.
         plain_time: bool,
     }
 }
@@ -251,11 +254,17 @@ impl Advised {
 
 /// One of several that make a field.
 trait Item: Sized {
+    /// What documents hold of it.
+    const SHAPE: Shape;
+
     fn of(name: &str, value: &Value) -> Result<Self>;
     fn shown(&self) -> Value;
 }
 
 impl<T: Item> Field for Vec<T> {
+    const SHAPE: Shape = Shape::List(&T::SHAPE);
+    const IS_REQUIRED: bool = false;
+
     fn of(given: Option<&Value>, name: &str) -> Option<Result<Self>> {
         let one = |(k, value): (usize, &Value)| T::of(&format!("{name}[{k}]"), value);
         Some(match given {
@@ -271,6 +280,8 @@ impl<T: Item> Field for Vec<T> {
 }
 
 impl Item for String {
+    const SHAPE: Shape = TEXT;
+
     fn of(name: &str, value: &Value) -> Result<Self> {
         let text = value.as_str().map(Into::into);
         text.ok_or_else(|| Error::input(name, value, "write a text"))
@@ -282,6 +293,8 @@ impl Item for String {
 }
 
 impl Item for Scheme {
+    const SHAPE: Shape = Shape::List(&RATIONAL);
+
     fn of(name: &str, value: &Value) -> Result<Self> {
         let steps = Vec::<String>::of(Some(value), name).transpose()?.unwrap_or_default();
         Scheme::new(steps.iter().map(|step| parse_rational(name, step)).collect::<Result<_>>()?)
@@ -313,14 +326,43 @@ fn beads(field: &str, text: &str) -> Result<Beads> {
 }
 
 fn origin(field: &str, text: &str) -> Result<Origin> {
-    let plain = [Origin::Period, Origin::Wavenumber, Origin::Half, Origin::Whole, Origin::Shape];
-    let all: Vec<Origin> = plain.into_iter().chain(Typical::all().map(Origin::Typical)).collect();
-    let names = all.iter().map(|origin| origin.name()).collect::<Vec<_>>().join(", ");
-    let found = all.into_iter().find(|origin| origin.name() == text);
-    found.ok_or_else(|| Error::input(field, text, format!("is none of {names}")))
+    let names = || Origin::all().map(Origin::name).collect::<Vec<_>>().join(", ");
+    let found = Origin::all().find(|origin| origin.name() == text);
+    found.ok_or_else(|| Error::input(field, text, format!("is none of {}", names())))
+}
+
+/// The record of a mode.
+fn mode_record() -> Record<'static, Mode> {
+    Record::new()
+        .json("name", |mode: &Mode| mode.name.as_str().into())
+        .says(TEXT, "")
+        .json("from", |mode| mode.origin.name().into())
+        .says(report::ORIGIN, "")
+        .json("clock", |mode| mode.clock.map(|k| k + 1).into())
+        .says(Shape::OrNull(&POSITIVE), "1 is the fastest; null of what constraints hold.")
+        .json("stiffness", |mode| Cell::exact(&mode.stiffness))
+        .says(EXACT, "k/m in 1/fs^2.")
+        .optional("bond", |mode| Some(bond_record().entries(mode.bond.as_ref()?)))
+        .says(Shape::Object(|| bond_record().keys()), "Its masses in amu as given, the hydrogens on its heavy atom, and the mass that hydrogens take in place of their own.")
+        .optional("shape", |mode| Some(mode.shape.as_ref()?.to_string().into()))
+        .says(TEXT, "The bond with its potential, as aperture reads it, where that is not harmonic.")
+}
+
+fn bond_record() -> Record<'static, Bond> {
+    const MASSES: Shape = Shape::With(&Shape::List(&RATIONAL), r#"{"minItems": 2, "maxItems": 2}"#);
+    const HYDROGENS: Shape = Shape::With(&POSITIVE, r#"{"maximum": 4}"#);
+    Record::new()
+        .value("masses", |bond: &Bond| bond.masses.each_ref().map(ToString::to_string).to_vec().into())
+        .says(MASSES, "")
+        .json("hydrogens", |bond| u64::from(bond.hydrogens).into())
+        .says(HYDROGENS, "")
+        .optional("heavy", |bond| Some(bond.heavy.as_ref()?.to_string().into()))
+        .says(RATIONAL, "")
 }
 
 impl Item for Mode {
+    const SHAPE: Shape = Shape::Object(|| mode_record().keys());
+
     fn of(name: &str, value: &Value) -> Result<Self> {
         let given = value.as_object().ok_or_else(|| Error::input(name, value, "write an object"))?;
         let at = |error: Error| {
@@ -331,17 +373,7 @@ impl Item for Mode {
     }
 
     fn shown(&self) -> Value {
-        let mut shown = json!({"name": self.name, "from": self.origin.name(), "clock": self.clock.map(|k| k + 1), "stiffness": self.stiffness.to_string()});
-        if let Some(bond) = &self.bond {
-            shown["bond"] = json!({"masses": bond.masses.each_ref().map(ToString::to_string), "hydrogens": bond.hydrogens});
-            if let Some(heavy) = &bond.heavy {
-                shown["bond"]["heavy"] = heavy.to_string().into();
-            }
-        }
-        if let Some(shape) = &self.shape {
-            shown["shape"] = shape.to_string().into();
-        }
-        shown
+        mode_record().entries(self)
     }
 }
 

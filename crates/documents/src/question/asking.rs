@@ -146,9 +146,14 @@ pub trait Question: Fields {
     /// A question out of range, one that costs more than `work` allows, and whatever the library refuses.
     fn answer(&self, work: &Work) -> Result<Self::Answer>;
 
-    /// What its documents are, for their schema; `None` where that is kept by hand.
+    /// What its documents are, for their schema; `None` where they are of several kinds.
     fn schema() -> Option<Schema> {
         None
+    }
+
+    /// The kinds of its documents: NAME, what they are, and the keys of their `input`.
+    fn schemas() -> Vec<(&'static str, Schema, Keys)> {
+        Self::schema().map(|schema| (Self::NAME, schema, Self::keys())).into_iter().collect()
     }
 
     /// The answer in a document that lacks its `input`.

@@ -62,9 +62,9 @@ pub use proposition::Proposition;
 pub use ratios::{MOST_SUM, Ratios};
 pub use scene::{FAMILIES, LONGEST_SCENE, Made, Products, Scene};
 pub use side::{CompareMethods, Side};
-pub use simulate::{Answer as Simulated, Displacement, Simulate};
+pub use simulate::{Displacement, Simulate, Simulated};
 pub use survey::{Survey, THINNEST};
-pub use system::{Answer as SystemAnswer, Found, System, Verdict as SystemVerdict};
+pub use system::{System, SystemAnswer, SystemFound, SystemVerdict};
 pub use tongues::{Colour, Columns, Form, FoundTongues, Tongues};
 pub use verdict::{Decided, Verdict};
 pub use want::{Product, Want};
@@ -103,7 +103,10 @@ pub fn draw(name: &str, input: &Input<String, Value>, work: &Work) -> Result<Opt
 
 /// The schemas of the documents that say what they hold, by their names.
 pub fn schemas() -> Vec<(&'static str, Value)> {
-    ALL.iter().filter_map(|known| Some((known.name, (known.schema)()?))).collect()
+    ALL.iter()
+        .flat_map(|known| (known.schemas)())
+        .map(|(name, schema, input)| (name, schema.value(name, &input)))
+        .collect()
 }
 
 /// The questions by their names, each with the schema of its fields as a person may type them.
@@ -142,7 +145,7 @@ struct Named {
     name: &'static str,
     ask: fn(&Input<String, Value>, &Work) -> Result<Document>,
     draw: fn(&Input<String, Value>, &Work) -> Result<Option<plot::Figure>>,
-    schema: fn() -> Option<Value>,
+    schemas: fn() -> Vec<(&'static str, Schema, Keys)>,
     fields: fn() -> Value,
 }
 
@@ -155,7 +158,7 @@ impl Named {
                 let question = Q::read(input)?;
                 question.figure(&question.answer(work)?, work)
             },
-            schema: || Some(Q::schema()?.value(Q::NAME, &Q::keys())),
+            schemas: Q::schemas,
             fields: fields_of::<Q>,
         }
     }

@@ -96,7 +96,7 @@ const MOST_PERIODS: u32 = 1_000_000;
 const DEVIATION: f64 = 1e-6;
 
 /// A run and the system that was run.
-pub struct Answer {
+pub struct Simulated {
     pub scene: SystemScene,
     pub run: Run,
 }
@@ -105,7 +105,7 @@ impl Question for Simulate {
     const NAME: &'static str = "simulate";
     const EXAMPLES: &'static [&'static str] =
         &["simulate data/scenes/fpu.json --periods 30 --figure run.pdf"];
-    type Answer = Answer;
+    type Answer = Simulated;
 
     fn schema() -> Option<Schema> {
         // Documents have the title of the system.
@@ -113,23 +113,23 @@ impl Question for Simulate {
         Some(Schema::new("A run of Algorithm 1", report::keys()).rules(rules))
     }
 
-    fn answer(&self, work: &Work) -> Result<Answer> {
+    fn answer(&self, work: &Work) -> Result<Simulated> {
         let scene = work.read(&self.system)?;
         let run = self.run(&scene, &work.products())?;
-        Ok(Answer { scene, run })
+        Ok(Simulated { scene, run })
     }
 
-    fn show(&self, answer: &Answer) -> Document {
+    fn show(&self, answer: &Simulated) -> Document {
         report::document(&answer.run)
     }
 
     /// With the system's own title.
-    fn document(&self, answer: &Answer) -> Document {
+    fn document(&self, answer: &Simulated) -> Document {
         let title = Some(answer.scene.title().into());
         self.show(answer).inputs(super::Fields::input(&Simulate { title, ..self.clone() }))
     }
 
-    fn figure(&self, Answer { scene, run }: &Answer, _: &Work) -> Result<Option<Figure>> {
+    fn figure(&self, Simulated { scene, run }: &Simulated, _: &Work) -> Result<Option<Figure>> {
         let foot = Foot::default().words(scene.title()).value("periods", self.periods);
         let foot = foot.value("displaced by", &self.displace.text).words(self.form.name());
         let figure = report::figure(run, scene.title()).footed(&foot);

@@ -8,7 +8,7 @@ use super::field::{Field, flag, notation};
 use crate::format::Format;
 use crate::input::{Arrays, Axis, NEAREST, Scan, Span, SystemFile, SystemScene};
 use crate::report::document::Document;
-use crate::report::shape::Shape;
+use crate::report::shape::{Keys, Schema, Shape};
 use crate::report::system::{self as report, Beside, Biases, SystemMap};
 use clocks::verdict::Kind as Stability;
 use number::Rational;
@@ -75,8 +75,8 @@ question! {
 
 notation! {
     Method: |_, text: &str| text.parse(), ToString::to_string;
-    Axis: |_, text: &str| text.parse(), ToString::to_string;
-    Span: |_, text: &str| text.parse(), ToString::to_string;
+    Axis: |_, text: &str| text.parse(), ToString::to_string, Shape::Plain(r#"{"type": "string", "pattern": "=.*\\.\\..*:"}"#);
+    Span: |_, text: &str| text.parse(), ToString::to_string, Shape::Plain(r#"{"type": "string", "pattern": "^.+=.*\\.\\."}"#);
 }
 
 /// A file: what is in it, or its text.
@@ -98,14 +98,14 @@ impl Field for SystemFile {
 }
 
 /// The result that was asked for.
-pub enum Found {
-    Verdict(Box<Verdict>),
+pub enum SystemFound {
+    Verdict(Box<SystemVerdict>),
     Map(SystemMap),
     Intervals(Intervals),
 }
 
 /// A verdict, and what stands beside it.
-pub struct Verdict {
+pub struct SystemVerdict {
     pub analysis: Analysis,
     friction: Option<Friction>,
     orbit: Option<OwnOrbit>,
@@ -118,9 +118,9 @@ pub struct Verdict {
 }
 
 /// The answer about a system.
-pub struct Answer {
+pub struct SystemAnswer {
     pub scene: SystemScene,
-    pub found: Found,
+    pub found: SystemFound,
 }
 
 impl Work<'_> {
@@ -163,7 +163,7 @@ impl System {
         self.scan_x.as_ref().map(of).transpose()
     }
 
-    fn verdict(&self, scene: &SystemScene, work: &Work) -> Result<Verdict> {
+    fn verdict(&self, scene: &SystemScene, work: &Work) -> Result<SystemVerdict> {
         let (model, limits) = (scene.model(), work.products());
         let what = format!("a verdict on {} degrees of freedom", model.size());
         work.announce(&what, seconds(model.cost() as f64));
@@ -187,7 +187,7 @@ impl System {
             _ => None,
         };
         let (friction, local) = (scene.friction(&limits)?, model.local_steps_summary());
-        Ok(Verdict { analysis, friction, orbit, is_orbit_missing, nearest, no_gradient, bias, local })
+        Ok(SystemVerdict { analysis, friction, orbit, is_orbit_missing, nearest, no_gradient, bias, local })
     }
 
     fn intervals(span: &Span, width: f64, scene: &SystemScene, work: &Work) -> Result<Intervals> {
@@ -246,63 +246,68 @@ impl Question for System {
     const NAME: &'static str = "system";
     const EXAMPLES: &'static [&'static str] =
         &["system data/scenes/three-clocks.json", "system data/scenes/bar-resonant.json --output modes.pdf"];
-    type Answer = Answer;
+    type Answer = SystemAnswer;
 
-    fn answer(&self, work: &Work) -> Result<Answer> {
+    /// A map, intervals, or a verdict: each leaves out what the others are asked by.
+    fn schemas() -> Vec<(&'static str, Schema, Keys)> {
+        let keys = <System as super::Fields>::keys;
+        let verdict = keys().without(&["scan_x", "scan_y", "intervals"]).requiring(&["title"]);
+        let map =
+            keys().without(&["friction", "intervals", "nearest", "width"]).requiring(&["title", "scan_x"]);
+        let intervals = keys().without(&["exact", "friction", "scan_x", "scan_y", "nearest"]).requiring(&[
+            "title",
+            "intervals",
+            "width",
+        ]);
+        vec![
+            ("system-verdict", report::schema(), verdict),
+            ("system-map", SystemMap::schema(), map),
+            ("system-intervals", report::intervals_schema(), intervals),
+        ]
+    }
+
+    fn answer(&self, work: &Work) -> Result<SystemAnswer> {
         self.check()?;
         let scene = self.scene(work)?;
         let found = match (self.scan(&scene)?, &self.intervals, self.width()) {
-            (Some(axes), ..) => Found::Map(self.map(&scene, &axes, work)?),
-            (_, Some(span), Some(width)) => Found::Intervals(System::intervals(span, width, &scene, work)?),
-            _ => Found::Verdict(Box::new(self.verdict(&scene, work)?)),
+            (Some(axes), ..) => SystemFound::Map(self.map(&scene, &axes, work)?),
+            (_, Some(span), Some(width)) => {
+                SystemFound::Intervals(System::intervals(span, width, &scene, work)?)
+            }
+            _ => SystemFound::Verdict(Box::new(self.verdict(&scene, work)?)),
         };
-        Ok(Answer { scene, found })
+        Ok(SystemAnswer { scene, found })
     }
 
-    fn show(&self, Answer { scene, found }: &Answer) -> Document {
+    fn show(&self, SystemAnswer { scene, found }: &SystemAnswer) -> Document {
         match found {
-            Found::Map(map) => map.document(),
-            Found::Intervals(intervals) => report::intervals(intervals),
-            Found::Verdict(verdict) => {
-                let Verdict {
-                    analysis,
-                    friction,
-                    orbit,
-                    is_orbit_missing,
-                    nearest,
-                    no_gradient,
-                    bias,
-                    local,
-                } = verdict.as_ref();
-                let local = local.as_ref();
-                let (friction, orbit, nearest) = (friction.as_ref(), orbit.as_ref(), nearest.as_ref());
-                let (unit, labels, is_orbit_missing) = (scene.time_unit(), scene.labels(), *is_orbit_missing);
-                let remark = scene.model().remark();
-                let (no_gradient, bias) = (no_gradient.as_ref(), bias.as_ref());
-                let beside = Beside {
-                    unit,
-                    friction,
-                    orbit,
-                    is_orbit_missing,
-                    labels,
-                    nearest,
-                    local,
-                    remark,
-                    bias,
-                    no_gradient,
-                };
-                report::document(analysis, &beside)
-            }
+            SystemFound::Map(map) => map.document(),
+            SystemFound::Intervals(intervals) => report::intervals(intervals),
+            SystemFound::Verdict(verdict) => report::document(
+                &verdict.analysis,
+                &Beside {
+                    unit: scene.time_unit(),
+                    friction: verdict.friction.as_ref(),
+                    orbit: verdict.orbit.as_ref(),
+                    is_orbit_missing: verdict.is_orbit_missing,
+                    labels: scene.labels(),
+                    nearest: verdict.nearest.as_ref(),
+                    local: verdict.local.as_ref(),
+                    remark: scene.model().remark(),
+                    bias: verdict.bias.as_ref(),
+                    no_gradient: verdict.no_gradient.as_ref(),
+                },
+            ),
         }
     }
 
     /// With the system's own title, and the width that was taken.
-    fn document(&self, answer: &Answer) -> Document {
+    fn document(&self, answer: &SystemAnswer) -> Document {
         let (title, width) = (Some(answer.scene.title().into()), self.width());
         self.show(answer).inputs(super::Fields::input(&System { title, width, ..self.clone() }))
     }
 
-    fn figure(&self, answer: &Answer, work: &Work) -> Result<Option<Figure>> {
+    fn figure(&self, answer: &SystemAnswer, work: &Work) -> Result<Option<Figure>> {
         self.drawn(answer, report::Colouring::default(), work).map(Some)
     }
 }
@@ -312,8 +317,8 @@ impl System {
     ///
     /// # Errors
     /// Where the file places no points, where nothing grows, of maps and intervals.
-    pub fn in_space(&self, answer: &Answer, format: Format) -> Result<String> {
-        let Found::Verdict(verdict) = &answer.found else {
+    pub fn in_space(&self, answer: &SystemAnswer, format: Format) -> Result<String> {
+        let SystemFound::Verdict(verdict) = &answer.found else {
             return Err(Error::input(
                 "output",
                 format.name(),
@@ -334,24 +339,24 @@ impl System {
     ///
     /// # Errors
     /// As [`SystemScene::growth_rates`].
-    pub fn drawn(&self, answer: &Answer, colouring: report::Colouring, work: &Work) -> Result<Figure> {
+    pub fn drawn(&self, answer: &SystemAnswer, colouring: report::Colouring, work: &Work) -> Result<Figure> {
         let (scene, title) = (&answer.scene, answer.scene.title());
         let varied = [self.scan_x.as_ref(), self.scan_y.as_ref()].into_iter().flatten();
         let varied = varied.fold(Foot::default(), |foot, axis| foot.words(&axis.to_string()));
         let (figure, varied) = match (&answer.found, &self.intervals) {
-            (Found::Map(map), _) => {
+            (SystemFound::Map(map), _) => {
                 let numbers: Vec<_> = map.names.iter().map(|path| scene.number(path)).collect();
                 (map.figure(colouring, title, &numbers), varied)
             }
-            (Found::Intervals(intervals), Some(span)) => {
+            (SystemFound::Intervals(intervals), Some(span)) => {
                 let steps = report::sampled(&intervals.stretches);
                 let rates = scene.growth_rates(span, &steps, &work.products())?;
                 let figure =
                     report::intervals_figure(intervals, &rates, title, &scene.number(&intervals.number));
                 (figure, varied.words(&span.to_string()))
             }
-            (Found::Verdict(verdict), _) => (report::figure(&verdict.analysis, title), varied),
-            (Found::Intervals(_), None) => unreachable!("intervals need a number"),
+            (SystemFound::Verdict(verdict), _) => (report::figure(&verdict.analysis, title), varied),
+            (SystemFound::Intervals(_), None) => unreachable!("intervals need a number"),
         };
         let foot = Foot::default().words(title).part(varied.to_string());
         Ok(figure.in_units_of(scene.time_unit().unwrap_or("time")).footed(&foot))

@@ -217,19 +217,13 @@ fn record() -> Record<'static, Decided> {
         .field(Column::math("trace", "\\operatorname{Tr} Q").enclosure(), |decided| {
             decided.growth.trace.to_f64_enclosure().into()
         })
-        .says(
-            WIDE_ENCLOSURE,
-            "Tr Q: an enclosure, and the exact value where it is rational and short, or was asked for.",
-        )
+        .says(WIDE_ENCLOSURE, "Tr Q: an enclosure, and the exact value where it is rational and short, or was asked for.")
         .optional("trace.exact", |decided| Some(decided.exact_trace.as_ref()?.to_string().into()))
         .says(EXACT, "Tr Q, exactly.")
         .field(Column::new("growth_rate").titled("growth rate", "$\\ln\\mu/T$").enclosure(), |decided| {
             decided.growth_rate().into()
         })
-        .says(
-            WIDE_ENCLOSURE,
-            "ln(mu)/T per unit time, mu the larger multiplier of Q: an enclosure; 0 where nothing grows exponentially.",
-        )
+        .says(WIDE_ENCLOSURE, "ln(mu)/T per unit time, mu the larger multiplier of Q: an enclosure; 0 where nothing grows exponentially.")
         .at("resonance.m", Column::math("m", "m"), |decided| decided.resonance().map(|(m, ..)| m).into())
         .says(COUNT, "The tongue's label: half turns of the growing solution a period.")
         .at("resonance.a", Column::math("a", "a"), |decided| decided.resonance().map(|(_, a, _)| a).into())
@@ -237,15 +231,9 @@ fn record() -> Record<'static, Decided> {
         .at("resonance.b", Column::math("b", "b"), |decided| decided.resonance().map(|(.., b)| b).into())
         .says(INTEGER, "b of the dominant family.")
         .json("bias.at_kicks", |decided| bias_cell(decided, |bias| &bias.at_kicks))
-        .says(
-            ENCLOSURE,
-            "(lambda1 + lambda2) <x^2>/kT where both clocks kick, velocities thermal at the kicks (constant energy, OBABO).",
-        )
+        .says(ENCLOSURE, "(lambda1 + lambda2) <x^2>/kT where both clocks kick, velocities thermal at the kicks (constant energy, OBABO).")
         .json("bias.in_drifts", |decided| bias_cell(decided, |bias| &bias.in_drifts))
-        .says(
-            ENCLOSURE,
-            "The same with a weak thermostat in the middle of every drift (BAOAB, LangevinMiddle).",
-        )
+        .says(ENCLOSURE, "The same with a weak thermostat in the middle of every drift (BAOAB, LangevinMiddle).")
         .field(Column::new("decided_by").in_words("decided by").left().aside(), |decided| {
             decided.decision.decided_by.name().into()
         })

@@ -5,33 +5,36 @@ use serde_json::Value;
 use super::field::Field;
 use crate::format::Format;
 use number::error::{Error, Result};
+use number::named;
 
-/// A product of a scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-#[non_exhaustive]
-pub enum Product {
-    /// The verdicts of the grid.
-    Map,
-    /// The (a, b) curves over the grid's window.
-    Curves,
-    /// Trace against tan criterion and resonance over the grid.
-    Compare,
-    /// The Proposition, exhaustively.
-    Proposition,
-    /// The half period as polynomials.
-    Polynomial,
-    /// Unstable pairs and curves side by side.
-    Figure,
-    /// Unstable pairs under the curves.
-    Overlay,
-    /// The tongues of the ratio, or of all ratios.
-    Tongues,
-    /// Where tongues close.
-    Closings,
-    /// All tongues of all ratios, counted and compared.
-    Survey,
-    /// All tongues of all ratios in the plane.
-    Atlas,
+named! {
+    /// A product of a scene.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+    #[non_exhaustive]
+    pub enum Product {
+        /// The verdicts of the grid.
+        Map = "map",
+        /// The (a, b) curves over the grid's window.
+        Curves = "curves",
+        /// Trace against tan criterion and resonance over the grid.
+        Compare = "compare",
+        /// The Proposition, exhaustively.
+        Proposition = "proposition",
+        /// The half period as polynomials.
+        Polynomial = "polynomial",
+        /// Unstable pairs and curves side by side.
+        Figure = "figure",
+        /// Unstable pairs under the curves.
+        Overlay = "overlay",
+        /// The tongues of the ratio, or of all ratios.
+        Tongues = "tongues",
+        /// Where tongues close.
+        Closings = "closings",
+        /// All tongues of all ratios, counted and compared.
+        Survey = "survey",
+        /// All tongues of all ratios in the plane.
+        Atlas = "atlas",
+    }
 }
 
 /// One product in one format: one file.
@@ -41,20 +44,6 @@ pub struct Want {
     pub format: Format,
 }
 
-const PRODUCTS: [(&str, Product); 11] = [
-    ("map", Product::Map),
-    ("curves", Product::Curves),
-    ("compare", Product::Compare),
-    ("proposition", Product::Proposition),
-    ("polynomial", Product::Polynomial),
-    ("figure", Product::Figure),
-    ("overlay", Product::Overlay),
-    ("tongues", Product::Tongues),
-    ("closings", Product::Closings),
-    ("survey", Product::Survey),
-    ("atlas", Product::Atlas),
-];
-
 impl Want {
     /// Reads `NAME` or `NAME.FORMAT`. Without a format: JSON for tables, SVG for figures.
     ///
@@ -62,8 +51,8 @@ impl Want {
     /// An unknown product or format, or a format that the product does not have.
     fn new(text: &str) -> Result<Want> {
         let (name, format) = text.split_once('.').map_or((text, None), |(name, format)| (name, Some(format)));
-        let product =
-            find(&PRODUCTS, name).ok_or_else(|| unknown(text, "the products are", &names(&PRODUCTS)))?;
+        let product = Product::ALL.into_iter().find(|product| product.name() == name);
+        let product = product.ok_or_else(|| unknown(text, "the products are", &Product::NAMES.join(", ")))?;
         let default = if product.is_figure() { Format::Svg } else { Format::Json };
         let format = match format {
             Some(format) => {
@@ -86,6 +75,15 @@ impl Want {
         Ok(Want { product, format })
     }
 
+    /// All that can be wanted, as it may be written.
+    pub(super) fn texts() -> Vec<String> {
+        let ends = || {
+            [String::new()].into_iter().chain(Format::MAP.map(|format| format!(".{}", format.extension())))
+        };
+        let texts = Product::NAMES.iter().flat_map(|name| ends().map(move |end| format!("{name}{end}")));
+        texts.filter(|text| Want::new(text).is_ok()).collect()
+    }
+
     /// The name of the product's file.
     pub fn file_name(&self) -> String {
         format!("{}.{}", self.product.name(), self.format.extension())
@@ -93,11 +91,6 @@ impl Want {
 }
 
 impl Product {
-    /// The name in `want`.
-    pub fn name(self) -> &'static str {
-        PRODUCTS.iter().find(|(_, product)| *product == self).expect("every product has a name").0
-    }
-
     /// Whether it is drawn.
     pub fn is_figure(self) -> bool {
         matches!(self, Product::Figure | Product::Overlay | Product::Atlas)
@@ -121,14 +114,6 @@ impl Field for Vec<Want> {
     }
 }
 
-fn find<T: Copy>(table: &[(&str, T)], name: &str) -> Option<T> {
-    table.iter().find(|(known, _)| *known == name).map(|(_, value)| *value)
-}
-
-fn names<T>(table: &[(&str, T)]) -> String {
-    table.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ")
-}
-
 fn unknown(text: &str, what: &str, known: &str) -> Error {
     Error::input("want", text, format!("unknown; {what} {known}"))
 }
@@ -139,8 +124,8 @@ mod tests {
 
     #[test]
     fn every_product_has_a_file_and_a_default_format() {
-        for (name, product) in PRODUCTS {
-            let want = Want::new(name).unwrap();
+        for product in Product::ALL {
+            let want = Want::new(product.name()).unwrap();
             assert_eq!(want.product, product);
             assert_eq!(Want::new(&want.file_name()).unwrap(), want);
         }

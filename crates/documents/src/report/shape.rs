@@ -14,6 +14,8 @@ pub enum Shape {
     Named(&'static str, &'static str),
     /// One of these texts.
     OneOf(&'static [&'static str]),
+    /// One of these texts, where they are no constant.
+    Words(fn() -> Vec<String>),
     /// Of one of these shapes.
     Any(&'static [Shape]),
     /// Of this shape, or null.
@@ -106,6 +108,22 @@ pub const INTEGERS: Shape = Shape::Named(
     "integers",
     r#"{"type": "string", "pattern": "^-?[0-9]+[.][.]-?[0-9]+$", "description": "A closed range of integers."}"#,
 );
+/// An exact number as a person may write it.
+pub const QUANTITY: Shape = Shape::Named(
+    "quantity",
+    r#"{
+        "type": ["string", "number"],
+        "minLength": 1,
+        "maxLength": 20000,
+        "description": "An exact number, as \"3/10\", \"pi^2/25\" or 0.3, which is 3/10: a JSON number is read from its text, no double between."
+    }"#,
+);
+const COUNT_WRITTEN: Shape =
+    Shape::Named("count", r#"{"type": ["integer", "string"], "minimum": 0, "pattern": "^[0-9]+$"}"#);
+const RANGE_WRITTEN: Shape = Shape::Named(
+    "range",
+    r#"{"type": "string", "pattern": "^.+[.][.].+$", "description": "A closed range LO..HI of exact numbers."}"#,
+);
 /// A double near the value.
 pub const ROUNDED: Shape =
     Shape::Named("rounded", r#"{"type": "number", "description": "A rounded double."}"#);
@@ -133,6 +151,18 @@ pub const WIDE_ENCLOSURE: Shape = Shape::Named(
 );
 /// Two doubles not below 0 about the value.
 pub const ENCLOSURE_FROM_0: Shape = enclosure!("enclosure_from_0", r#""minimum": 0"#);
+/// The same, or null.
+pub const ENCLOSED_OR_NULL: Shape = Shape::OrNull(&WIDE_ENCLOSURE);
+/// A double near a number above 0.
+pub const ABOVE_0: Shape = Shape::With(&ROUNDED, r#"{"exclusiveMinimum": 0}"#);
+/// A double near the value, or null.
+pub const ROUNDED_OR_NULL: Shape = Shape::OrNull(&ROUNDED);
+/// True, false, or null.
+pub const FLAG_OR_NULL: Shape = Shape::OrNull(&FLAG);
+/// Rounded doubles.
+pub const ALL_ROUNDED: Shape = Shape::List(&ROUNDED);
+/// Sentences.
+pub const TEXTS: Shape = Shape::List(&TEXT);
 /// Decimal digits of a number that is not below 0.
 pub const DECIMAL: Shape =
     Shape::Named("decimal", r#"{"type": "string", "pattern": "^[0-9]+([.][0-9]+)?(e-?[0-9]+)?$"}"#);
@@ -144,6 +174,12 @@ pub const POSITIVE_ENCLOSURE: Shape = enclosure!("positive_enclosure", r#""exclu
 /// The kind of a verdict.
 pub const KIND: Shape =
     Shape::Named("kind", r#"{"enum": ["elliptic", "hyperbolic", "parabolic", "coexistence"]}"#);
+
+/// The same, or that none is decided.
+pub const KIND_IF_DECIDED: Shape = Shape::Named(
+    "kind_if_decided",
+    r#"{"enum": ["elliptic", "hyperbolic", "parabolic", "coexistence", "not decided"]}"#,
+);
 
 /// One key of an object.
 #[derive(Clone, Debug)]
@@ -231,6 +267,39 @@ impl Keys {
         self
     }
 
+    /// Those of other names.
+    #[must_use]
+    pub fn without(mut self, names: &[&str]) -> Keys {
+        self.keys.retain(|key| !names.contains(&key.path.as_ref()));
+        self
+    }
+
+    /// Says that every object has these.
+    #[must_use]
+    pub fn requiring(mut self, names: &[&str]) -> Keys {
+        self.optional.retain(|path| !names.contains(&path.as_str()));
+        self
+    }
+
+    /// The same as a person may write them in a file, each at its place there, and required only as `names` say.
+    #[must_use]
+    pub fn written(mut self, place: impl Fn(&str) -> Option<&'static str>, names: &[&str]) -> Keys {
+        for key in &mut self.keys {
+            key.path = place(&key.path).map_or_else(|| key.path.clone(), Cow::from);
+            key.shape = match key.shape {
+                Shape::Named("exact" | "rational" | "ratio", _) => QUANTITY,
+                Shape::Named("whole", _) => COUNT_WRITTEN,
+                Shape::Named("range" | "rational_range" | "integers", _) => RANGE_WRITTEN,
+                other => other,
+            };
+        }
+        let all = self.keys.iter().flat_map(|key| {
+            key.path.split_once('.').map(|(group, _)| group).into_iter().chain([key.path.as_ref()])
+        });
+        self.optional = all.filter(|path| !names.contains(path)).map(String::from).collect();
+        self
+    }
+
     /// The schema of the object; `defs` takes the schemas that have names.
     fn schema(&self, defs: &mut Map<String, Value>) -> Map<String, Value> {
         self.group("", json!({"type": "object"}), defs)
@@ -312,6 +381,7 @@ impl Shape {
                 json!({"$ref": format!("#/$defs/{name}")})
             }
             Shape::OneOf(words) => json!({"enum": words}),
+            Shape::Words(words) => json!({"enum": words()}),
             Shape::Any(shapes) => {
                 let shapes: Vec<Value> = shapes.iter().map(|shape| shape.schema(defs)).collect();
                 json!({"anyOf": shapes})
@@ -365,7 +435,6 @@ impl Schema {
     /// The schema of `kickdrift/NAME/1` as JSON, whose `input` has these keys.
     pub fn value(&self, name: &'static str, input: &Keys) -> Value {
         let mut defs = Map::new();
-        let id = format!("kickdrift/{name}/1");
         let head = json!({
             "type": "object",
             "description": "The version that wrote the document, and the command that makes it.",
@@ -376,12 +445,23 @@ impl Schema {
                 "command": {"const": super::document::command(name)},
             },
         });
+        let input = input.schema(&mut defs);
+        let head = [("kickdrift", head), ("input", input.into())];
+        self.with_head(name, head.into_iter().map(|(key, value)| (key.into(), value)).collect(), defs)
+    }
+
+    /// The schema of a file that a person writes, `kickdrift/NAME/1`.
+    pub fn file(&self, name: &'static str) -> Value {
+        self.with_head(name, Map::new(), Map::new())
+    }
+
+    fn with_head(&self, name: &str, head: Map<String, Value>, mut defs: Map<String, Value>) -> Value {
+        let id = format!("kickdrift/{name}/1");
         let mut properties = Map::new();
         properties.insert("schema".into(), json!({"const": id}));
-        properties.insert("kickdrift".into(), head);
-        properties.insert("input".into(), input.schema(&mut defs).into());
-        let own =
-            json!({"type": "object", "required": ["schema", "kickdrift", "input"], "properties": properties});
+        properties.extend(head);
+        let required: Vec<&String> = properties.keys().collect();
+        let own = json!({"type": "object", "required": required, "properties": properties});
         let mut schema = Map::new();
         schema.insert("$schema".into(), "https://json-schema.org/draft/2020-12/schema".into());
         schema.insert("$id".into(), id.into());

@@ -62,6 +62,12 @@ impl From<u64> for Cell {
     }
 }
 
+impl From<usize> for Cell {
+    fn from(value: usize) -> Self {
+        Cell::from(value as u64)
+    }
+}
+
 impl From<f64> for Cell {
     fn from(value: f64) -> Self {
         Cell::Float(value)

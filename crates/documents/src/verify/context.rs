@@ -20,6 +20,9 @@ pub const ALONE: &str = "none: every value is computed again, by the same route"
 /// of its largest.
 pub const ROOM: f64 = 1e-6;
 
+/// A trace this near to ±2 decides nothing in doubles.
+pub const TRACE_ROOM: f64 = 1e-7;
+
 /// How much is checked, and what one row may cost.
 #[derive(Clone, Debug, Default)]
 pub struct Options {

@@ -16,7 +16,7 @@ const ROUTE: &str = "theta of every h1 by an arctangent, h2 from 1/T_half = a/h1
 
 /// Heights in doubles are right to some units in the last place; what is this near the border may lie on
 /// either side.
-const NEAR: f64 = 1e-9;
+const BORDER_ROOM: f64 = 1e-9;
 
 /// The fast clock's limit, θ = π: curves end before it.
 const LIMIT: f64 = 1.0 - 1e-7;
@@ -78,7 +78,7 @@ impl Window {
         // h2 √L1/2 along x = θ/π, and where it turns: (π/2) cos(πx/2) (x − a) = sin(πx/2).
         let height = |x: f64| b as f64 * (FRAC_PI_2 * x).sin() / (x - a as f64);
         let rises = |x: f64| FRAC_PI_2 * (FRAC_PI_2 * x).cos() * (x - a as f64) > (FRAC_PI_2 * x).sin();
-        if from >= LIMIT || to - from <= NEAR * to {
+        if from >= LIMIT || to - from <= BORDER_ROOM * to {
             return None;
         }
         let turn = match (a, b) {
@@ -94,7 +94,7 @@ impl Window {
             }
             _ => return Some(0),
         };
-        let beside = |x: f64, end: f64| (x - end).abs() <= NEAR * end.abs();
+        let beside = |x: f64, end: f64| (x - end).abs() <= BORDER_ROOM * end.abs();
         let [first, middle, last] = [from, turn, to].map(|x| 2.0 / self.root * height(x));
         // A branch from its lower height to its higher one.
         let branch = |bottom: f64, top: f64| match () {
@@ -128,15 +128,16 @@ impl Window {
         let [Some(first), Some(last)] = [piece.first(), piece.last()] else {
             return holds(false, || "a piece has no points".into());
         };
-        let on = |x: f64, end: f64| (x - end).abs() <= NEAR * end.abs();
+        let on = |x: f64, end: f64| (x - end).abs() <= BORDER_ROOM * end.abs();
         let leaves = |x: &CurvePoint| on(x.h2, self.h2.0) || on(x.h2, self.h2.1);
         let left =
             |point: &CurvePoint| format!("beside h1 = {} the crossing of the border is missing", point.h1);
         // Where the window reaches h1 = 0 a curve begins at the least double.
-        let begins = self.h1.0 <= 0.0 && first.h1 < f64::MIN_POSITIVE / NEAR.powi(4);
+        let begins = self.h1.0 <= 0.0 && first.h1 < f64::MIN_POSITIVE / BORDER_ROOM.powi(4);
         holds(begins || on(first.h1, self.h1.0) || leaves(first), || left(first))?;
         holds(last.theta_over_pi >= LIMIT || on(last.h1, self.h1.1) || leaves(last), || left(last))?;
-        let within = |x: f64, (lo, hi): (f64, f64)| x >= lo * (1.0 - NEAR) && x <= hi * (1.0 + NEAR);
+        let within =
+            |x: f64, (lo, hi): (f64, f64)| x >= lo * (1.0 - BORDER_ROOM) && x <= hi * (1.0 + BORDER_ROOM);
         let outside = piece.iter().find(|point| !(within(point.h1, self.h1) && within(point.h2, self.h2)));
         holds(outside.is_none(), || {
             format!("h1 = {} lies outside the window", outside.map_or(0.0, |point| point.h1))

@@ -6,8 +6,9 @@ use serde_json::{Value, json};
 use super::context::{Context, Options};
 use super::kind::Verify;
 use crate::question::{
-    Advised, Bands, Closings, Compare, CompareMethods, Curves, Family, Found, Half, Methods, Polynomial,
-    Proposition, Safe, Simulate, Survey, System, SystemAnswer, SystemVerdict, Tongues, Verdict, Word,
+    Advised, Bands, Closings, Compare, CompareMethods, Curves, Family, Half, Methods, Polynomial,
+    Proposition, Safe, Simulate, Survey, System, SystemAnswer, SystemFound, SystemVerdict, Tongues, Verdict,
+    Word,
 };
 use clocks::propagator::{TwoClocks, half_period};
 use clocks::verdict::{Kind, Side, Verdict as Decided};
@@ -360,14 +361,14 @@ fn forged_systems_are_found() {
     finds::<System>(
         asked(json!({"scan_x": "potentials.0.step=1/8..3/4:1/8"})),
         &[|answer| {
-            let Found::Map(map) = &mut answer.found else { panic!("a map") };
+            let SystemFound::Map(map) = &mut answer.found else { panic!("a map") };
             map.points[1].kind = Some(Kind::Parabolic);
         }],
     );
     finds::<System>(
         asked(json!({"intervals": "outer=1/8..1/2", "width": "1e-2"})),
         &[|answer| {
-            let Found::Intervals(found) = &mut answer.found else { panic!("intervals") };
+            let SystemFound::Intervals(found) = &mut answer.found else { panic!("intervals") };
             found.stretches.swap(0, 1);
         }],
     );
@@ -375,7 +376,7 @@ fn forged_systems_are_found() {
 }
 
 fn system_verdict(answer: &mut SystemAnswer) -> &mut SystemVerdict {
-    let Found::Verdict(verdict) = &mut answer.found else { panic!("a verdict") };
+    let SystemFound::Verdict(verdict) = &mut answer.found else { panic!("a verdict") };
     verdict
 }
 

@@ -61,6 +61,7 @@ mod sample;
 mod side;
 mod survey;
 mod system;
+mod told;
 mod tongues;
 mod verdict;
 mod word;
@@ -79,6 +80,7 @@ use crate::question::{
 use number::error::{Error, Result};
 
 pub use context::{Failure, Options, Outcome, Progress};
+pub use told::schema;
 
 /// All documents that can be verified.
 const KINDS: &[Kind] = &[

@@ -1,6 +1,6 @@
 //! Integrators side by side: counted again by traces in doubles.
 
-use super::context::{Checked, Context, Outcome, holds};
+use super::context::{Checked, Context, Outcome, TRACE_ROOM, holds};
 use super::kind::Verify;
 use crate::question::{CompareMethods, Side};
 use number::error::Result;
@@ -9,9 +9,6 @@ use number::{Radical, Real};
 use words::{Bounded, Damping, Force, Integrator, Letter, Word};
 
 const ROUTE: &str = "the trace at every point in doubles, letter by letter; points within 1e-7 of an edge may fall on either side";
-
-/// A trace this near to ±2 decides nothing in doubles.
-const NEAR: f64 = 1e-7;
 
 impl Verify for CompareMethods {
     fn check(&self, sides: &Vec<Side>, context: &Context) -> Result<Outcome> {
@@ -34,9 +31,9 @@ fn is_so_at(side: &Side, rows: &[Vec<(f64, f64)>]) -> Checked {
     for (&(s, rho), bounded) in rows.iter().flatten().zip(side.rows.iter().flatten()) {
         let excess = trace(&side.integrator, s, rho).abs() - 2.0;
         let is_so = match bounded {
-            Bounded::Stable => excess < NEAR,
-            Bounded::Unstable => excess > -NEAR,
-            Bounded::Edge => excess.abs() < NEAR,
+            Bounded::Stable => excess < TRACE_ROOM,
+            Bounded::Unstable => excess > -TRACE_ROOM,
+            Bounded::Edge => excess.abs() < TRACE_ROOM,
         };
         holds(is_so, || format!("at h^2 lambda1 = {s}, lambda2/lambda1 = {rho} |trace| - 2 is {excess}"))?;
     }

@@ -3,7 +3,7 @@
 use nalgebra::Matrix2;
 use num_traits::{One, Zero};
 
-use super::context::{Checked, Context, Failure, Outcome, holds, same};
+use super::context::{Checked, Context, Failure, Outcome, TRACE_ROOM, holds, same};
 use super::kind::Verify;
 use super::side::step;
 use crate::question::{Family, Held, Linted, Listed, Member, Members, Methods, Span, Word, WordCheck};
@@ -16,9 +16,6 @@ const ROUTE: &str = "letter by letter in exact numbers: a step of each interval,
 
 /// Orders are seen at steps of 2^-80 and half of it: the next order's error is as much smaller.
 const STEP_LOG2: u32 = 80;
-
-/// Traces this near to an edge decide nothing in doubles.
-const NEAR: f64 = 1e-7;
 
 /// The product of the letters at h² Λ1 = s, Λ2 = ρ Λ1, in the coordinates (x, h v).
 fn product(word: &words::Word, s: &Rational, rho: &Rational) -> Matrix2<Radical> {
@@ -161,7 +158,7 @@ fn is_so_in_doubles(span: &Span, word: &words::Word, rho: f64, friction: f64) ->
     let omega_h = upper.map_or(lower + 0.01, |ends| (lower + ends.0) / 2.0);
     let (trace, determinant) = step(word, omega_h * omega_h, rho, friction * omega_h);
     let margin = 1.0 + determinant - trace.abs();
-    holds(margin.abs() < NEAR || (margin > 0.0) == span.stable, || verdict_at(omega_h, margin > 0.0))
+    holds(margin.abs() < TRACE_ROOM || (margin > 0.0) == span.stable, || verdict_at(omega_h, margin > 0.0))
 }
 
 fn verdict_at(omega_h: f64, stable: bool) -> String {

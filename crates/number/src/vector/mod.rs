@@ -1,14 +1,11 @@
-//! Doubles side by side in the processor's registers.
+//! FloatRing side by side in the processor's registers.
 //!
 //! A compiler makes vector instructions of most plain loops over lanes, but not of every one where it must
 //! not fail: the few kernels that everything waits for are written for a [`Vector`] instead, and compiled for
 //! each kind of registers.
 
 pub mod instructions;
-mod pair;
 mod portable;
-
-pub use pair::Pair;
 
 /// How many numbers a vector has as a rule; [`Vector::WIDTH`] is the exact number.
 pub const LANES: usize = 16;
@@ -62,8 +59,69 @@ pub fn integer_of(x: f64) -> u64 {
     (x + WHOLE).to_bits() ^ WHOLE.to_bits()
 }
 
+/// Sums and products, and what rounding takes from them: of doubles, alone or side by side.
+pub trait FloatRing: Copy {
+    fn add(self, other: Self) -> Self;
+    fn sub(self, other: Self) -> Self;
+    fn mul(self, other: Self) -> Self;
+    /// self · b + c, rounded once.
+    fn mul_add(self, b: Self, c: Self) -> Self;
+    /// self · b − c, rounded once.
+    fn mul_sub(self, b: Self, c: Self) -> Self;
+
+    /// The rounded sum and what rounding took from it, exactly (Knuth).
+    #[inline(always)]
+    fn two_sum(self, other: Self) -> (Self, Self) {
+        let sum = self.add(other);
+        let part = sum.sub(self);
+        (sum, self.sub(sum.sub(part)).add(other.sub(part)))
+    }
+
+    /// The rounded difference, and what rounding took from it, exactly.
+    #[inline(always)]
+    fn two_sub(self, other: Self) -> (Self, Self) {
+        let difference = self.sub(other);
+        let part = difference.sub(self);
+        (difference, self.sub(difference.sub(part)).sub(other.add(part)))
+    }
+
+    /// The rounded product and what rounding took from it, exactly (barring underflow).
+    #[inline(always)]
+    fn two_product(self, other: Self) -> (Self, Self) {
+        let product = self.mul(other);
+        (product, self.mul_sub(other, product))
+    }
+}
+
+impl FloatRing for f64 {
+    #[inline(always)]
+    fn add(self, other: f64) -> f64 {
+        self + other
+    }
+
+    #[inline(always)]
+    fn sub(self, other: f64) -> f64 {
+        self - other
+    }
+
+    #[inline(always)]
+    fn mul(self, other: f64) -> f64 {
+        self * other
+    }
+
+    #[inline(always)]
+    fn mul_add(self, b: f64, c: f64) -> f64 {
+        f64::mul_add(self, b, c)
+    }
+
+    #[inline(always)]
+    fn mul_sub(self, b: f64, c: f64) -> f64 {
+        f64::mul_add(self, b, -c)
+    }
+}
+
 /// One number for each lane. All instruction sets give the same bits.
-pub trait Vector: Copy {
+pub trait Vector: FloatRing {
     /// How many numbers it has.
     const WIDTH: usize;
     /// A yes or no for each lane.
@@ -78,15 +136,8 @@ pub trait Vector: Copy {
     fn alternatives(this: Self, that: Self) -> [Self; 2];
     /// `this` of the [alternatives](Vector::alternatives) where the mask says yes, else `that`.
     fn choose(mask: Self::Mask, alternatives: [Self; 2]) -> Self;
-    fn add(self, other: Self) -> Self;
-    fn sub(self, other: Self) -> Self;
-    fn mul(self, other: Self) -> Self;
-    /// self · b + c, rounded once.
-    fn mul_add(self, b: Self, c: Self) -> Self;
     /// c − self · b, rounded once.
     fn neg_mul_add(self, b: Self, c: Self) -> Self;
-    /// self · b − c, rounded once.
-    fn mul_sub(self, b: Self, c: Self) -> Self;
     fn div(self, other: Self) -> Self;
     fn sqrt(self) -> Self;
     fn abs(self) -> Self;
@@ -122,29 +173,6 @@ pub trait Vector: Copy {
     #[inline(always)]
     fn lesser(self, other: Self) -> Self {
         other.if_above(self, self, other)
-    }
-
-    /// The rounded sum and what rounding took from it, exactly (Knuth).
-    #[inline(always)]
-    fn two_sum(self, other: Self) -> (Self, Self) {
-        let sum = self.add(other);
-        let part = sum.sub(self);
-        (sum, self.sub(sum.sub(part)).add(other.sub(part)))
-    }
-
-    /// The rounded difference, and what rounding took from it, exactly.
-    #[inline(always)]
-    fn two_sub(self, other: Self) -> (Self, Self) {
-        let difference = self.sub(other);
-        let part = difference.sub(self);
-        (difference, self.sub(difference.sub(part)).sub(other.add(part)))
-    }
-
-    /// The rounded product and what rounding took from it, exactly (barring underflow).
-    #[inline(always)]
-    fn two_product(self, other: Self) -> (Self, Self) {
-        let product = self.mul(other);
-        (product, self.mul_sub(other, product))
     }
 }
 

@@ -1,6 +1,33 @@
 //! Vectors as plain arrays.
 
-use super::{EXPONENTS, SIGN, Vector, double_of, each};
+use super::{EXPONENTS, FloatRing, SIGN, Vector, double_of, each};
+
+impl<const N: usize> FloatRing for [f64; N] {
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        each(|i| self[i] + other[i])
+    }
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        each(|i| self[i] - other[i])
+    }
+
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        each(|i| self[i] * other[i])
+    }
+
+    #[inline(always)]
+    fn mul_add(self, b: Self, c: Self) -> Self {
+        each(|i| self[i].mul_add(b[i], c[i]))
+    }
+
+    #[inline(always)]
+    fn mul_sub(self, b: Self, c: Self) -> Self {
+        each(|i| self[i].mul_add(b[i], -c[i]))
+    }
+}
 
 impl<const N: usize> Vector for [f64; N] {
     const WIDTH: usize = N;
@@ -37,33 +64,8 @@ impl<const N: usize> Vector for [f64; N] {
     }
 
     #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        each(|i| self[i] + other[i])
-    }
-
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        each(|i| self[i] - other[i])
-    }
-
-    #[inline(always)]
-    fn mul(self, other: Self) -> Self {
-        each(|i| self[i] * other[i])
-    }
-
-    #[inline(always)]
-    fn mul_add(self, b: Self, c: Self) -> Self {
-        each(|i| self[i].mul_add(b[i], c[i]))
-    }
-
-    #[inline(always)]
     fn neg_mul_add(self, b: Self, c: Self) -> Self {
         each(|i| (-self[i]).mul_add(b[i], c[i]))
-    }
-
-    #[inline(always)]
-    fn mul_sub(self, b: Self, c: Self) -> Self {
-        each(|i| self[i].mul_add(b[i], -c[i]))
     }
 
     #[inline(always)]

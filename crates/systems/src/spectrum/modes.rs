@@ -15,15 +15,18 @@ use crate::half::compose::rounded_inverse_mass;
 use crate::linear::frame::Frame;
 use crate::linear::system::System;
 use crate::single::clocks::shortest_family;
+use number::named;
 use number::rational::to_f64;
 
-/// How an unstable multiplier left the unit circle.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Origin {
-    /// λ real: one mode against itself.
-    RealPair,
-    /// λ, 1/λ and their conjugates: two modes collided.
-    Collision,
+named! {
+    /// How an unstable multiplier left the unit circle.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum Origin {
+        /// λ real: one mode against itself.
+        RealPair = "real pair",
+        /// λ, 1/λ and their conjugates: two modes collided.
+        Collision = "collision",
+    }
 }
 
 /// The resonance next to an unstable multiplier: w_i ± w_j ≈ 2π Σ a_k/h_k.

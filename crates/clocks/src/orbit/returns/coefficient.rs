@@ -3,7 +3,7 @@
 use super::enclosure::quotient;
 
 pub use super::enclosure::exact;
-use super::lanes::{Lanes, Twofolds};
+use super::lanes::Lanes;
 use super::long;
 pub use super::long::Long;
 use number::{Ball, Rational, Twofold, U};
@@ -162,7 +162,7 @@ impl Coefficient for f64 {
 
 impl Coefficient for Twofold {
     type Lower = f64;
-    type Lanes = Twofolds;
+    type Lanes = Twofold<[f64; 4]>;
     const UNIT: f64 = 1.0 / (1u128 << 101) as f64;
     const BITS: u32 = 130;
     const TERMS: usize = 22;

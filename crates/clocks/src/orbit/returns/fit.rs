@@ -18,7 +18,7 @@ use super::turn::Turn;
 const STEPS: usize = 12;
 
 /// Coordinates nearer to the present ones than this are not worth a change.
-const NEAR: f64 = 0.05;
+const LEAST_MOVE: f64 = 0.05;
 
 /// Coordinates farther from the present ones than this are not gone to at once: doubles would lose digits.
 const FAR: f64 = 6.0;
@@ -55,7 +55,7 @@ fn step(both: &[Real; 2]) -> Option<Real> {
     let length = (u * u + v * v).sqrt();
     let far = length.min(1.0) / length;
     let (u, v, length) = (u * far, v * far, length.min(1.0));
-    (length > 0.1 * NEAR).then(|| {
+    (length > 0.1 * LEAST_MOVE).then(|| {
         // sinh(length/2)/length within a percent; the determinant is 1 whatever it is.
         let sinh = 0.5 + length * length / 48.0;
         let cosh = (1.0 + sinh * sinh * length * length).sqrt();
@@ -87,7 +87,7 @@ pub fn coordinates<T: Coefficient>(left: &Map<T>, right: &Map<T>) -> Option<(Map
     let (p, q, r) = (a * a + c * c, a * b + c * d, b * b + d * d);
     // cosh of the distance from the present one.
     let far = 0.5 * (p + r);
-    if !(1.0 + 0.5 * NEAR * NEAR..FAR.cosh()).contains(&far) {
+    if !(1.0 + 0.5 * LEAST_MOVE * LEAST_MOVE..FAR.cosh()).contains(&far) {
         return None;
     }
     // [[1, x], [0, 1]] [[1, 0], [y, 1]] has r = x² + 1, q = x (1 + x y) + y; the other order has p = y² + 1.

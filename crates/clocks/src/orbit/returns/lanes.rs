@@ -1,7 +1,6 @@
 //! Four numbers side by side: the entries of a matrix, in one register.
 
 use number::Twofold;
-use number::vector::Pair;
 
 /// Four numbers, with the operations of each.
 pub trait Lanes<T>: Copy {
@@ -19,29 +18,25 @@ pub trait Lanes<T>: Copy {
     }
 }
 
-/// Pairs of doubles.
-#[derive(Clone, Copy)]
-pub struct Twofolds(Pair<[f64; 4]>);
-
-impl Lanes<Twofold> for Twofolds {
+impl Lanes<Twofold> for Twofold<[f64; 4]> {
     #[inline(always)]
     fn of(x: [&Twofold; 4]) -> Self {
-        Twofolds(Pair { hi: x.map(|x| x.hi), lo: x.map(|x| x.lo) })
+        Twofold { hi: x.map(|x| x.hi), lo: x.map(|x| x.lo) }
     }
 
     #[inline(always)]
     fn entries(self) -> [Twofold; 4] {
-        std::array::from_fn(|i| Twofold { hi: self.0.hi[i], lo: self.0.lo[i] })
+        std::array::from_fn(|i| Twofold { hi: self.hi[i], lo: self.lo[i] })
     }
 
     #[inline(always)]
     fn plus(&self, other: &Self) -> Self {
-        Twofolds(self.0.plus(other.0))
+        Twofold::plus(*self, *other)
     }
 
     #[inline(always)]
     fn times(&self, other: &Self) -> Self {
-        Twofolds(self.0.times(other.0))
+        Twofold::times(*self, *other)
     }
 
     #[inline(always)]

@@ -241,13 +241,13 @@ mod tests {
             }
             let mut whole = Map::<f64>::of(terms.clone());
             whole.least = whole.least.max(least);
-            let exact = Map::<Twofold>::of(terms.iter().map(|term| term.map(Twofold::of)).collect());
+            let exact = Map::<Twofold>::of(terms.iter().map(|term| term.map(<Twofold>::of)).collect());
             let (beta, first) = (0.1 * random().abs(), -0.9 + 0.1 * random());
             let places: Vec<f64> = (0..q).map(|i| first + 0.2 * i as f64).collect();
             let Some(row) = product(&whole, &places, &beta) else { continue };
             rows += 1;
             cut += usize::from(row.terms().len() < (n - 1) * q + 1);
-            let parts = places.iter().map(|&alpha| exact.part(&Twofold::of(alpha), &Twofold::of(beta)));
+            let parts = places.iter().map(|&alpha| exact.part(&<Twofold>::of(alpha), &<Twofold>::of(beta)));
             let single = parts.reduce(|earlier, later| later.after(&earlier)).unwrap();
             // Some 8 roundings of 2 u 4 (4 + 16/5) and as much again of parts, and what is left out on
             // purpose, each times what the other factors make of it.

@@ -18,10 +18,10 @@ pub struct Turn {
 }
 
 /// How near [`angle`] is, and what of [`CERTAIN`] is left to the vector's own error.
-const NEAR: f64 = 0.0039;
+const ANGLE_ERROR: f64 = 0.0039;
 const OWN: f64 = 0.016;
 
-/// The angle of a vector that is not zero, in [-π, π], within [`NEAR`]: directions need no more, and an
+/// The angle of a vector that is not zero, in [-π, π], within [`ANGLE_ERROR`]: directions need no more, and an
 /// arctangent costs as much as a product of matrices.
 #[inline(always)]
 pub fn angle([x, y]: [f64; 2]) -> f64 {
@@ -37,7 +37,7 @@ pub fn angle([x, y]: [f64; 2]) -> f64 {
 /// The direction of a vector known up to `error`; `None` where that is not certain.
 #[inline(always)]
 pub fn direction([x, y]: [f64; 2], error: f64) -> Option<f64> {
-    const { assert!(NEAR + OWN < CERTAIN) };
+    const { assert!(ANGLE_ERROR + OWN < CERTAIN) };
     // asin r < 1.001 r for r this small.
     let length = (x * x + y * y).sqrt();
     (1.001 * error <= OWN * length && length > 0.0).then(|| angle([x, y]))
@@ -107,7 +107,7 @@ mod tests {
         for turn in turns {
             let (y, x) = turn.sin_cos();
             let lost = principal(angle([3.0 * x, 3.0 * y]) - turn).abs();
-            assert!(lost < NEAR - 3e-5, "{turn}: {lost}");
+            assert!(lost < ANGLE_ERROR - 3e-5, "{turn}: {lost}");
         }
     }
 

@@ -33,7 +33,7 @@ use crate::tongue::string::lanes::{LONGEST, power_of_two};
 use crate::tongue::string::{HalfString, KINDS, Step};
 use number::Twofold;
 use number::vector::instructions::Kernel;
-use number::vector::{LANES, Pair, Vector};
+use number::vector::{LANES, Vector};
 
 /// The error of one operation on two doubles, relative to its terms: the roundings of the kick itself
 /// included.
@@ -178,7 +178,7 @@ impl Kernel for Meet<'_> {
 
 /// Kicks by kind of node, in a unit of time that no spring is longer than.
 struct Table<V> {
-    kicks: [Pair<V>; KINDS],
+    kicks: [Twofold<V>; KINDS],
     /// Units in a tick: a power of two.
     tick: f64,
 }
@@ -197,9 +197,9 @@ impl<V: Vector> Table<V> {
             }
         }
         let mut table =
-            Table { kicks: [Pair { hi: V::splat(0.0), lo: V::splat(0.0) }; KINDS], tick: 1.0 / unit };
+            Table { kicks: [Twofold { hi: V::splat(0.0), lo: V::splat(0.0) }; KINDS], tick: 1.0 / unit };
         for (kick, [hi, lo]) in table.kicks.iter_mut().zip(&kicks) {
-            *kick = Pair { hi: V::load(hi), lo: V::load(lo) };
+            *kick = Twofold { hi: V::load(hi), lo: V::load(lo) };
         }
         table
     }
@@ -284,8 +284,8 @@ fn rescalings<V: Vector>(length: V) -> Option<(V, V)> {
 
 /// (x, v) 2^exponent with its slope (dx, dv), short of a node's kick: in each lane.
 struct Walk<V> {
-    x: Pair<V>,
-    v: Pair<V>,
+    x: Twofold<V>,
+    v: Twofold<V>,
     dx: V,
     dv: V,
     exponent: V,
@@ -308,7 +308,7 @@ impl<V: Vector> Walk<V> {
             // A lane that has arrived has no kick and no drift any more, and nothing to round.
             let moves = upto.if_above(j, one, zero);
             let k = table.kicks[step.kind];
-            let k = Pair { hi: k.hi.mul(moves), lo: k.lo.mul(moves) };
+            let k = Twofold { hi: k.hi.mul(moves), lo: k.lo.mul(moves) };
             let t = V::splat(step.length * table.tick).mul(moves);
             first.pass(k, t, moves);
             second.pass(k, t, moves);
@@ -319,12 +319,12 @@ impl<V: Vector> Walk<V> {
     #[inline(always)]
     fn new(free: V) -> Self {
         let (zero, one) = (V::splat(0.0), V::splat(1.0));
-        let (x, v) = (Pair { hi: free, lo: zero }, Pair { hi: one.sub(free), lo: zero });
+        let (x, v) = (Twofold { hi: free, lo: zero }, Twofold { hi: one.sub(free), lo: zero });
         Walk { x, v, dx: zero, dv: zero, exponent: zero, length: one, across: zero, along: zero }
     }
 
     #[inline(always)]
-    fn pass(&mut self, k: Pair<V>, t: V, moves: V) {
+    fn pass(&mut self, k: Twofold<V>, t: V, moves: V) {
         self.dv = self.dv.sub(k.hi.mul(self.dx.add(self.x.hi)));
         let pull = k.times(self.x);
         self.v = self.v.minus(pull);

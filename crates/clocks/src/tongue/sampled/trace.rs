@@ -46,7 +46,7 @@ pub struct Near {
 
 /// Points of the whole, and of one tongue: closer than a third of a millimetre on paper.
 const SAMPLES: u32 = 900;
-const NEAR: u32 = 600;
+const SAMPLES_OF_TONGUE: u32 = 600;
 /// No thinner tongue, relative to s, is sampled by doubles: a thousand of them between its edges.
 const THINNEST: f64 = 2e-13;
 
@@ -78,7 +78,8 @@ impl Trace {
 /// From one width below the tongue to one above it.
 fn near(gap: &Gap, at: impl Fn(f64) -> HalfPeriod<Rational> + Sync) -> Near {
     let (m, [lower, upper]) = (gap.m, gap.middles());
-    let places: Vec<f64> = (0..=NEAR).map(|n| 3.0 * f64::from(n) / f64::from(NEAR) - 1.0).collect();
+    let places: Vec<f64> =
+        (0..=SAMPLES_OF_TONGUE).map(|n| 3.0 * f64::from(n) / f64::from(SAMPLES_OF_TONGUE) - 1.0).collect();
     let halves = map(&places, |x| at(lower + x * (upper - lower)));
     let two = Rational::from_integer(2.into());
     let sign = |trace: Rational| if m.is_multiple_of(2) { trace } else { -trace };

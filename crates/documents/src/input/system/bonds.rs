@@ -21,7 +21,7 @@ pub(super) struct Nonlinear {
 }
 
 /// An orbit as near to the equilibrium as Newton's method leaves both is the equilibrium.
-const NEAR: f64 = 1e-12;
+const LEAST_DISPLACEMENT: f64 = 1e-12;
 
 impl Nonlinear {
     /// `None` where the equilibrium is the orbit.
@@ -39,7 +39,7 @@ impl Nonlinear {
         let off = orbit.start.iter().zip(&self.equilibrium).map(|(y, x)| (y - x).abs());
         let displacement = off.fold(0.0, f64::max);
         let scale = self.equilibrium.iter().fold(1.0, |a: f64, x| a.max(x.abs()));
-        if displacement <= NEAR * scale {
+        if displacement <= LEAST_DISPLACEMENT * scale {
             return Ok(None);
         }
         let analysis = decide_along(masses, &schedule, &orbit.hessians, limits)?;

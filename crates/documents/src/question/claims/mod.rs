@@ -234,8 +234,5 @@ fn record<'a>() -> Record<'static, Row<'a>> {
         .field(Column::new("holds").left(), |row| row.check.holds.into())
         .says(FLAG, "Whether the claim holds.")
         .field(Column::new("by").left(), |row| row.check.by.clone().map_or(Cell::Missing, Cell::Text))
-        .says(
-            Shape::OrNull(&TEXT),
-            "What is in the way: the leading commutators, the letter that has no mirror image, the sum that is not 1, the difference; null where nothing is.",
-        )
+        .says(Shape::OrNull(&TEXT), "What is in the way: the leading commutators, the letter that has no mirror image, the sum that is not 1, the difference; null where nothing is.")
 }

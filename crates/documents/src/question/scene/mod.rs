@@ -6,7 +6,7 @@ pub use products::{Made, Products};
 
 use std::path::Path;
 
-use serde_json::{Map as Input, Value, json};
+use serde_json::{Map as Input, Value};
 
 use super::asking::{Fields, question};
 use super::curves::Curves;
@@ -15,10 +15,12 @@ use super::map::Map;
 use super::ratios::{MOST_SUM, Ratios};
 use super::survey::{Survey, THINNEST};
 use super::tongues::{Colour, Tongues};
-use super::want::Want;
+use super::want::{Product, Want};
 use crate::input::json;
 use crate::input::kind::of_another_kind;
 use crate::report::document::Document;
+use crate::report::record::Record;
+use crate::report::shape::{GROUP, QUANTITY, Schema, Shape, TEXT};
 use clocks::resonance::Families;
 use clocks::tongue::Stiffness;
 use number::error::{Error, Result};
@@ -43,9 +45,9 @@ question! {
     struct Scene {
         /// Shown on figures and summaries.
         title: String = "",
-        /// The stiffness of the fast force, 1/time².
+        /// The stiffness of the fast force, positive, in 1/time².
         lambda1: Option<Laurent>,
-        /// The stiffness of the slow force.
+        /// The stiffness of the slow force, in 1/time²; may be negative.
         lambda2: Option<Laurent>,
         /// The spacing of h1.
         step1: Option<Laurent>,
@@ -61,23 +63,24 @@ question! {
         b: Option<(i64, i64)>,
         /// Points a curve.
         samples: Option<usize>,
-        /// How near q h2 must be to a multiple of T½ to count as resonant, in units of T½.
+        /// How near q h2 must be to a multiple of T½ to count as resonant, in units of T½; 1/20 unless given.
         tolerance: Option<Rational>,
         /// h2/h1 = p/q.
         ratio: Option<Ratio>,
-        /// The bound on p and q of an exhaustive check of the Proposition.
+        /// The bound on p and q of an exhaustive check of the Proposition; 60 unless given.
         max: Option<u64>,
-        /// All coprime p + q up to this number.
+        /// All coprime p + q up to this number, for tongues, closings, survey and atlas; without it they are about
+        /// the ratio.
         max_sum: Option<u64>,
-        /// λ2/λ1, in place of λ2.
+        /// λ2/λ1, in place of λ2, for tongues, survey and atlas.
         rho: Option<Rational>,
         /// The closed range of h1 that tongues and the atlas show.
         window_h1: Option<StepRange>,
         /// The closed range of h2 that they show.
         window_h2: Option<StepRange>,
-        /// The quantity shown by the colours of the atlas.
+        /// The quantity shown by the colours of the atlas; family unless given.
         colour: Option<Colour>,
-        /// The closed range of ρ in which closings are searched.
+        /// The closed range of ρ in which closings are searched; 1/10000..100 unless given.
         rho_range: Option<(Rational, Rational)>,
         /// The products wanted, in the order of the file.
         want: Vec<Want>,
@@ -139,12 +142,29 @@ impl Scene {
         Ok(scene)
     }
 
+    /// The schema of its files, by their name: the fields in their groups, as a person may write them.
+    pub fn file_schema() -> (&'static str, Value) {
+        let required = ["want", "grid.h1", "grid.h2", "window.h1", "window.h2"];
+        let keys = Scene::keys()
+            .without(&["want"])
+            .key("want", Shape::List(&Shape::Words(Want::texts)), "The products to compute, NAME or NAME.FORMAT; nothing else is computed.")
+            .key("grid", GROUP, "All pairs of positive multiples of the spacings in closed ranges of h1 and h2.")
+            .key("grid.step", QUANTITY, "The spacing of both steps.")
+            .key("families", GROUP, "The curves 1/T_half = a/h1 + b/h2 to draw; a from 0 to 3 and b from -12 to 12 unless given, of 400 points.")
+            .key("window", GROUP, "The steps that tongues and the atlas show.")
+            .written(place, &required);
+        let rules = r#"{"allOf": [{"properties": {"grid": {
+            "anyOf": [{"required": ["step"]}, {"required": ["step1", "step2"]}]
+        }}}]}"#;
+        let about = "The input of `kickdrift run`. Every quantity is exact, a JSON number or a string: sums, products, quotients and integer powers of decimals, fractions and pi.";
+        let schema = Schema::new("A scene: what to compute, and which products to write", keys);
+        ("scene", schema.about(about).rules(rules).file("scene"))
+    }
+
     /// The document on the files of its products in a folder.
     pub fn written(&self, folder: &Path) -> Document {
-        let file = |want: &Want| self.file(folder, want);
-        let product = |want: &Want| json!({"product": want.product.name(), "file": file(want)});
-        let products: Vec<Value> = self.want.iter().map(product).collect();
-        Document::new("run").inputs(self.input()).entry("products", products)
+        let products = self.want.iter().map(|want| (want.product, self.file(folder, want))).collect();
+        record().document(Document::new("run").inputs(self.input()), &products)
     }
 
     fn file(&self, folder: &Path, want: &Want) -> String {
@@ -218,6 +238,25 @@ impl Scene {
     fn stiffness(&self) -> Result<Stiffness> {
         Stiffness::new(self.rho.clone(), self.lambda1.clone(), self.lambda2.clone())
     }
+}
+
+/// A product, and the path of its file.
+type Written = (Product, String);
+
+/// The record of a run.
+fn record() -> Record<'static, Vec<Written>> {
+    const WRITTEN: Shape = Shape::List(&Shape::Object(|| written().keys()));
+    Record::new()
+        .value("products", |all: &Vec<Written>| written().all(all).into())
+        .says(WRITTEN, "The files written, in the order of the scene.")
+}
+
+fn written() -> Record<'static, Written> {
+    Record::new()
+        .json("product", |(product, _): &Written| product.name().into())
+        .says(Shape::OneOf(Product::NAMES), "")
+        .json("file", |(_, file)| file.as_str().into())
+        .says(TEXT, "The path, relative to where the program ran unless it was asked otherwise.")
 }
 
 fn given((field, value): (&str, &Option<Laurent>)) -> Result<Laurent> {

@@ -8,7 +8,7 @@ use std::path::Path;
 
 use plot::Figure;
 
-use super::{Scene, given, missing};
+use super::{Scene, given, missing, record};
 use crate::format::Format;
 use crate::question::asking::{Question, Work};
 use crate::question::closings::{Closings, DIGITS};
@@ -21,6 +21,7 @@ use crate::question::want::Product;
 use crate::report::document::Document;
 use crate::report::map::{MapArrays, MapTally, Marked, Rows, marked};
 use crate::report::plane::{self, Cloud};
+use crate::report::shape::Schema;
 use clocks::map::{Grid, Products as Columns};
 use clocks::resonance::{Curve, Window};
 use number::error::Result;
@@ -236,6 +237,10 @@ impl Question for Scene {
     const NAME: &'static str = "run";
     const EXAMPLES: &'static [&'static str] = &["run data/scenes/small.json --output small"];
     type Answer = Products;
+
+    fn schema() -> Option<Schema> {
+        Some(Schema::new("What a run of a scene wrote", record().keys()))
+    }
 
     fn answer(&self, work: &Work) -> Result<Products> {
         self.check()?;

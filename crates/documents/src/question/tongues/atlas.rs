@@ -5,6 +5,7 @@ use plot::{Figure, Foot};
 use crate::question::field::notation;
 use crate::question::ratios::Ratios;
 use crate::report::plane::{self, Segment};
+use crate::report::shape::Shape;
 use clocks::resonance::{Curve, Families, Window};
 use clocks::tongue::{Bounds, Listing, Range, Tongue, TongueEdge};
 use number::error::{Error, Result};
@@ -30,7 +31,7 @@ impl Colour {
 }
 
 notation! {
-    Colour: Colour::read, |colour: &Colour| colour.name().to_string();
+    Colour: Colour::read, |colour: &Colour| colour.name().to_string(), Shape::OneOf(Colour::NAMES);
 }
 
 /// A figure to which tongues are added.

@@ -114,17 +114,11 @@ fn record() -> Record<'static, Listed> {
         .field(Column::new("general_order").in_words("general"), |listed| {
             listed.linted.general.as_ref().ok().map(|orders| orders.general.nominal).into()
         })
-        .says(
-            Shape::OrNull(&INTEGER),
-            "The order on all problems that split into drifts and kicks, when coefficients below 2^-30 count as 0; null where a letter is no exponential of commutators.",
-        )
+        .says(Shape::OrNull(&INTEGER), "The order on all problems that split into drifts and kicks, when coefficients below 2^-30 count as 0; null where a letter is no exponential of commutators.")
         .field(Column::new("nystrom_order").in_words("Nystrom"), |listed| {
             listed.linted.general.as_ref().ok().map(|orders| orders.nystrom.nominal).into()
         })
-        .says(
-            Shape::OrNull(&INTEGER),
-            "The same where the kinetic energy is quadratic and the forces are those of a potential.",
-        )
+        .says(Shape::OrNull(&INTEGER), "The same where the kinetic energy is quadratic and the forces are those of a potential.")
         .field(Column::new("evaluations").in_words("cost"), |listed| listed.linted.cost.total().into())
         .says(INTEGER, "Evaluations, gradients, solves and exact flows of a step.")
         .field(Column::new("palindrome").left(), |listed| listed.linted.word.asymmetry().is_none().into())

@@ -73,25 +73,16 @@ pub(super) fn with_orders(mut record: Record<'_, Linted>) -> Record<'_, Linted> 
                 ),
             )
             .json(&format!("nominal_{name}_order"), move |linted| of(linted).map(|found| found.nominal).into())
-            .says(
-                Shape::OrNull(&INTEGER),
-                "The same when coefficients below 2^-30 count as 0, as rounded coefficients leave them.",
-            )
+            .says(Shape::OrNull(&INTEGER), "The same when coefficients below 2^-30 count as 0, as rounded coefficients leave them.")
             .json(&format!("{name}_error"), move |linted| {
                 of(linted).map_or(Cell::Missing, |found| terms(&found.nominal_error))
             })
-            .says(
-                Shape::OrNull(&TEXT),
-                "The commutators of degree (nominal order + 1) in the error, drifts being A and kicks B, or B1 and B2; coefficients of more than 24 characters with seven digits.",
-            )
+            .says(Shape::OrNull(&TEXT), "The commutators of degree (nominal order + 1) in the error, drifts being A and kicks B, or B1 and B2; coefficients of more than 24 characters with seven digits.")
             .json(&format!("{name}_rounding"), move |linted| {
                 let rounded = of(linted).filter(|found| found.nominal > found.order);
                 rounded.map_or(Cell::Missing, |found| terms(&found.error))
             })
-            .says(
-                Shape::OrNull(&TEXT),
-                "The commutators of degree (order + 1) that the nominal order leaves out; null where both orders are equal.",
-            );
+            .says(Shape::OrNull(&TEXT), "The commutators of degree (order + 1) that the nominal order leaves out; null where both orders are equal.");
     }
     record
 }

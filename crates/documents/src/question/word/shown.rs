@@ -319,10 +319,7 @@ pub(super) fn record(question: &Word) -> Record<'_, Linted> {
         .json("verdict.impedance", move |linted| at(linted, |found| &found.impedance))
         .says(ENDS_OR_NULL, "The effective impedance, where it is elliptic and A = D.")
         .json("verdict.bias", move |linted| bias(linted, question).map(|bias| bias.to_f64_enclosure()).into())
-        .says(
-            ENDS_OR_NULL,
-            "(lambda1 + lambda2) <x^2>/<v^2> at the ends of the word, where it is elliptic and A = D: 1 of the exact motion.",
-        )
+        .says(ENDS_OR_NULL, "(lambda1 + lambda2) <x^2>/<v^2> at the ends of the word, where it is elliptic and A = D: 1 of the exact motion.")
 }
 
 /// ω²/(the impedance)² at the step that was asked about.

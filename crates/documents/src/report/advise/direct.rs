@@ -2,12 +2,16 @@
 
 use super::answer;
 use super::lines::{self, advised, read_from};
-use super::tables::{self, enclosed, for_people, published};
+use super::tables::{self, Told, enclosed, for_people};
 use super::words::{fs, nearest, percent, within};
 use crate::report::decimal::is_nothing;
-use crate::report::document::{Document, enclosure};
+use crate::report::document::Document;
 use crate::report::record::Record;
-use crate::report::table::{Cell, Column, Table};
+use crate::report::shape::{
+    ALL_ROUNDED, ENCLOSED_OR_NULL, FLAG_OR_NULL, POSITIVE, RATIONAL, RATIONAL_OR_NULL, ROUNDED,
+    ROUNDED_OR_NULL, Shape, TEXT, TEXTS,
+};
+use crate::report::table::{Cell, Column};
 use molecules::engine::Reading;
 use molecules::unit::TimeUnit;
 use molecules::unit::decimal;
@@ -22,25 +26,9 @@ const UNKNOWN: [&str; 2] = [
 
 /// The document `kickdrift/advise-direct/1`.
 pub(super) fn document(findings: &DirectFindings, reading: Option<&Reading>, notes: &[String]) -> Document {
-    let (rows, ladder) = (rows(findings), ladder(findings));
-    let best = &findings.schemes[0];
-    let step = advised(&best.scheme, &best.safe);
-    let document = Document::new("advise-direct")
-        .entry("asymmetries", findings.asymmetries.clone())
-        .entry("accuracy", findings.accuracy)
-        .entry("growth_without_steps", findings.without_steps.map(per_ps).map(enclosure))
-        .entry("times", TIMES)
-        .entry("fastest_period", findings.fastest)
-        .entry("rows", rows.to_json_rows())
-        .entry("ladder", ladder.to_json_rows())
-        .entry(
-            "published",
-            published(best.scheme.steps().len(), [FASTEST; 2], |caution: &Caution| {
-                (findings.fastest / caution.place.parts()).into()
-            }),
-        )
-        .entry("unknown", UNKNOWN.to_vec())
-        .entries(reading.map(|reading| ("engine", tables::engine(step, reading))));
+    let rows = row().table("rows", "Each scheme of steps", &findings.schemes);
+    let caption = "Every multiple of the step before the outermost one that was looked at";
+    let ladder = rung().table("ladder", caption, &rungs(findings));
     let has_friction = findings.friction.is_some();
     let lines = summary(findings, reading, notes);
     let shown = |key: &str| match key {
@@ -49,11 +37,44 @@ pub(super) fn document(findings: &DirectFindings, reading: Option<&Reading>, not
         "within_run" => findings.length.is_some(),
         _ => true,
     };
-    document
+    head()
+        .document(Document::new("advise-direct"), &(findings, reading))
         .long_rows(for_people(&rows, shown))
         .and_rows(for_people(&ladder, shown))
         .summary(&lines)
         .answer(answer::of(&lines))
+}
+
+/// The record of the whole.
+pub(super) fn head<'a>() -> Record<'a, Told<'a, DirectFindings>> {
+    Record::new()
+        .value("asymmetries", |(findings, _): &Told<DirectFindings>| findings.asymmetries.clone().into())
+        .says(ALL_ROUNDED, "|J - J'|/|J + J'| of each potential.")
+        .json("accuracy", |(findings, _)| findings.accuracy.into())
+        .says(ROUNDED_OR_NULL, "Every Jacobian is known to this times its norm, null of exact ones. A double, rounded.")
+        .json("growth_without_steps", |(findings, _)| findings.without_steps.map(per_ps).into())
+        .says(ENCLOSED_OR_NULL, "Of x'' = -J x itself, per ps; null where it is not bounded.")
+        .json("times", |_| TIMES.into())
+        .says(ROUNDED, "Growth with the steps may be so many times that without. A double, rounded.")
+        .json("fastest_period", |(findings, _)| findings.fastest.into())
+        .says(ROUNDED, "Of the fastest motion of the forces of the innermost step alone, in fs. A double, rounded.")
+        .value("rows", |(findings, _)| row().all(&findings.schemes).into())
+        .says(Shape::List(&Shape::Object(|| row().keys())), "One for each scheme of steps; steps in fs. `largest`: the longest multiple of the step before the outermost one up to which all multiples add little, in the band too; `safe`: below what is published too: T/3 of the fastest motion, and the inner step below T/6.28 of it (h w <= 1), which harmonic bonds lift; `masked`: the longest up to which the friction given is proven to mask all growth.")
+        .value("ladder", |(findings, _)| rung().all(&rungs(findings)).into())
+        .says(Shape::List(&Shape::Object(|| rung().keys())), "Every multiple of the step before the outermost one that was looked at; between them nothing is told.")
+        .value("published", |(findings, _)| {
+            let steps = findings.schemes[0].scheme.steps().len();
+            let limit = |caution: &Caution| (findings.fastest / caution.place.parts()).into();
+            tables::published(steps, [FASTEST; 2], limit)
+        })
+        .says(tables::PUBLISHED, tables::PUBLISHED_SAYS)
+        .value("unknown", |_| UNKNOWN.to_vec().into())
+        .says(TEXTS, "What Hessians at one place do not tell.")
+        .optional("engine", |(findings, reading)| {
+            let best = &findings.schemes[0];
+            Some(tables::engine(advised(&best.scheme, &best.safe), (*reading)?))
+        })
+        .says(tables::ENGINE, tables::ENGINE_SAYS)
 }
 
 const FASTEST: &str = "the fastest motion of the innermost forces";
@@ -236,52 +257,81 @@ fn rates(key: &str, title: &str) -> Column {
     enclosed(key, title).in_unit("1/ps")
 }
 
-fn rows(findings: &DirectFindings) -> Table {
+const STATUS: &str = "What the steps add: little: growth is proven to be at most `times` that without steps (none, where that is none), or tenfold after 1 µs at the earliest; much: it is proven to be more; not told: neither.";
+const IN_BAND: &str = "The same with all periods shorter by the band.";
+const ADDS: Shape = Shape::OneOf(Adds::NAMES);
+
+/// The record of a scheme.
+fn row() -> Record<'static, DirectFinding> {
     let exact = |x: &Option<Rational>| Cell::from(x.as_ref().map(Cell::exact));
     let column = |key: &str, title: &str| Column::new(key).in_words(title);
     Record::new()
         .field(column("outer", "outer step").in_unit("fs"), |direct_finding: &DirectFinding| {
             Cell::exact(direct_finding.scheme.outer())
         })
+        .says(RATIONAL, "")
         .field(column("status", "the steps add").left(), |direct_finding| direct_finding.adds.name().into())
+        .says(ADDS, STATUS)
         .field(column("in_band", "in the band").left(), |direct_finding| direct_finding.in_band.name().into())
+        .says(ADDS, IN_BAND)
         .field(rates("growth_rate", "growth"), |direct_finding| direct_finding.rate.map(per_ps).into())
+        .says(ENCLOSED_OR_NULL, "With the steps, per ps, for the Jacobians given; null where it is not bounded.")
         .field(rates("added_by_steps", "of which by steps"), |direct_finding| {
             direct_finding.added.map(per_ps).into()
         })
+        .says(ENCLOSED_OR_NULL, "That less the growth without steps, per ps; null where one of them is not bounded.")
         .field(rates("within_accuracy", "within the accuracy"), |direct_finding| {
             direct_finding.within_accuracy.map(per_ps).into()
         })
+        .says(ENCLOSED_OR_NULL, "Growth with the steps for all Jacobians within their accuracy, per ps; null of exact ones, and where it is not bounded.")
         .field(enclosed("tenfold_steps", "tenfold in steps"), |direct_finding| {
             direct_finding.tenfold_steps.into()
         })
+        .says(ENCLOSED_OR_NULL, "Outer steps until an amplitude is tenfold; null where growth is not proven.")
         .field(column("atoms", "moving most").left(), |direct_finding| direct_finding.atoms.as_deref().into())
+        .says(Shape::OrNull(&TEXT), "Who moves in what grows fastest.")
         .field(column("masked_above", "masked by a friction").in_unit("1/ps"), |direct_finding| {
             direct_finding.masking.map(|masking| 1000.0 * masking).into()
         })
+        .says(ROUNDED_OR_NULL, "A friction per ps, about the least, that is proven to keep all bounded; null where nothing grows or none is proven. A double, rounded.")
         .field(Column::new("damped"), |direct_finding| direct_finding.is_damped.into())
+        .says(FLAG_OR_NULL, "Whether the friction given is proven to keep all bounded, or something is proven to grow all the same; null where neither is, or none was given.")
         .field(Column::new("largest").in_unit("fs"), move |direct_finding| exact(&direct_finding.largest))
+        .says(RATIONAL_OR_NULL, "")
         .field(Column::new("safe").in_unit("fs"), move |direct_finding| exact(&direct_finding.safe))
+        .says(RATIONAL_OR_NULL, "")
         .field(column("masked", "masked up to").in_unit("fs"), move |direct_finding| {
             exact(&direct_finding.masked)
         })
+        .says(RATIONAL_OR_NULL, "")
         .field(Column::new("within_run"), |direct_finding| direct_finding.within_run.into())
-        .table("rows", "Each scheme of steps", &findings.schemes)
+        .says(FLAG_OR_NULL, "Whether an amplitude is tenfold within the run; null where neither is proven, or no length was given.")
 }
 
-fn ladder(findings: &DirectFindings) -> Table {
-    let schemes = (1u64..).zip(&findings.schemes);
-    let all: Vec<(u64, &Rung)> = schemes
-        .flat_map(|(n, direct_finding)| direct_finding.ladder.iter().map(move |rung| (n, rung)))
-        .collect();
+/// A rung, and the number of its scheme.
+type Numbered<'a> = (usize, &'a Rung);
+
+fn rungs(findings: &DirectFindings) -> Vec<Numbered<'_>> {
+    let schemes = (1..).zip(&findings.schemes);
+    schemes.flat_map(|(n, scheme)| scheme.ladder.iter().map(move |rung| (n, rung))).collect()
+}
+
+/// The record of a rung.
+fn rung<'a>() -> Record<'a, Numbered<'a>> {
     let column = |key: &str, title: &str| Column::new(key).in_words(title);
     Record::new()
-        .field(Column::new("scheme"), |pair: &(u64, &Rung)| pair.0.into())
+        .field(Column::new("scheme"), |pair: &Numbered| pair.0.into())
+        .says(POSITIVE, "")
         .field(Column::new("multiple"), |pair| pair.1.multiple.into())
+        .says(POSITIVE, "")
         .field(column("outer", "outer step").in_unit("fs"), |pair| Cell::exact(&pair.1.outer))
+        .says(RATIONAL, "")
         .field(rates("growth_rate", "growth"), |pair| pair.1.rate.map(per_ps).into())
+        .says(ENCLOSED_OR_NULL, "With the steps, per ps; null where it is not bounded.")
         .field(column("status", "the steps add").left(), |pair| pair.1.adds.name().into())
+        .says(ADDS, STATUS)
         .field(column("in_band", "in the band").left(), |pair| pair.1.in_band.name().into())
+        .says(ADDS, IN_BAND)
         .field(Column::new("damped"), |pair| pair.1.is_damped.into())
-        .table("ladder", "Every multiple of the step before the outermost one that was looked at", &all)
+        .says(FLAG_OR_NULL, "As of rows.")
 }

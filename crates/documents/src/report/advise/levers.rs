@@ -6,9 +6,10 @@ use super::tables::{enclosed, for_people};
 use super::words::nearest;
 use crate::report::document::Document;
 use crate::report::record::Record;
+use crate::report::shape::{ENCLOSED_OR_NULL, EXACT, FLAG, RATIONAL_OR_NULL, ROUNDED_OR_NULL, Shape, TEXT};
 use crate::report::table::{Cell, Column, Table};
 use molecules::unit::{TimeUnit, decimal};
-use molecules::{Bound, Engine, Lever, Levers, Way};
+use molecules::{Bound, Keyword, Lever, Levers, Way};
 use number::Rational;
 use number::rational::to_f64;
 
@@ -23,7 +24,7 @@ fn method(way: Way) -> &'static str {
     }
 }
 
-fn joined(engines: &[Engine], each: impl Fn(&Engine) -> String) -> Cell {
+fn joined(engines: &[Keyword], each: impl Fn(&Keyword) -> String) -> Cell {
     let all: Vec<String> = engines.iter().map(each).collect();
     if all.is_empty() { Cell::Missing } else { Cell::Text(all.join("; ")) }
 }
@@ -35,34 +36,58 @@ fn record(unit: TimeUnit) -> Record<'static, Lever> {
     let column = |key: &str, title: &str| Column::new(key).in_words(title);
     let rounded = |x: Option<Rational>| Cell::from(x.as_ref().map(to_f64));
     let step = |lever: &Lever| lever.step.as_ref().map(|(step, _)| step.clone());
+    const METHOD: Shape = Shape::OneOf(&[
+        "kicks and drifts",
+        "molly-short",
+        "molly-linear",
+        "molly-long",
+        "molly-equilibrium",
+        "implicit-explicit",
+        "kicks and drifts with friction",
+    ]);
     Record::new()
         .field(Column::new("lever").left(), |lever: &Lever| lever.name.as_str().into())
+        .says(TEXT, "")
         .field(Column::new("method").left(), |lever| method(lever.way).into())
+        .says(METHOD, "")
         .field(enclosed("first", "first unstable").in_unit(time), |lever| lever.first.into())
+        .says(ENCLOSED_OR_NULL, "The first unstable outer step, of periods that of one fast mode at a time; null where there is none (free) or it is not told.")
         .field(column("first_exact", "exactly").in_unit(time), |lever| {
             lever.exact.as_ref().map(Cell::exact).into()
         })
+        .says(Shape::OrNull(&EXACT), "The same exactly, where it is a rational times a power of pi.")
         .field(Column::new("free"), |lever| lever.is_free.into())
+        .says(FLAG, "Whether no outer step at all is unstable by a resonance of one fast mode, for all periods in the band: proven.")
         .field(enclosed("band_edge", "proven below").in_unit(time), |lever| lever.band_edge.into())
+        .says(ENCLOSED_OR_NULL, "Every outer step below its lower end is proven stable for all periods in the band: of periods for any coupling of such modes, of Hessians within their accuracy, fast periods each for itself and slow ones together; null where that is not told.")
         .field(column("step", "take").in_unit(time), move |lever| {
             step(lever).as_ref().map(Cell::exact).into()
         })
+        .says(RATIONAL_OR_NULL, "The outer step to take; null where none is proven.")
         .field(column("bound", "bounded by").left(), |lever| {
             lever.step.as_ref().map(|(_, bound)| bound.name()).into()
         })
+        .says(Shape::OrNull(&Shape::OneOf(Bound::NAMES)), "What bounds the step: the edge of the band; the aperture of a bond whose shape is known, measured; T/3 of the fastest period, published of kicks and drifts; h w <= 1 of the fastest motion on an inner clock or the only one; the same of the slow force, which every method follows by Verlet's rule; the friction given, for the periods given and none beside.")
         .field(Column::new("inner").in_unit(time), |lever| lever.inner.as_ref().map(Cell::exact).into())
+        .says(RATIONAL_OR_NULL, "The innermost step beside it; null where the fast forces are solved for.")
         .field(column("slow_per_ps", &format!("slow{per}")), move |lever| rounded(lever.slow_per_ps(unit)))
+        .says(ROUNDED_OR_NULL, "Evaluations of the slowest force a picosecond; the nearest double.")
         .field(column("fast_per_ps", &format!("fast{per}")), move |lever| rounded(lever.fast_per_ps(unit)))
+        .says(ROUNDED_OR_NULL, "Evaluations of the fastest force; the nearest double.")
         .field(column("solves_per_ps", &format!("solves{per}")), move |lever| {
             rounded(lever.solves_per_ps(unit))
         })
+        .says(ROUNDED_OR_NULL, "Linear systems; the nearest double.")
         .field(Column::new("gain"), move |lever| rounded(lever.gain.clone()))
+        .says(ROUNDED_OR_NULL, "The step over the longest one of kicks and drifts as they are today, as given or at another ratio; the nearest double.")
         .field(column("engines", "who has it").left(), |lever| {
-            joined(lever.way.engines(), |engine| format!("{} {}", engine.name, engine.keyword))
+            joined(lever.way.engines(), |known| format!("{} {}", known.engine, known.keyword))
         })
+        .says(Shape::OrNull(&TEXT), "Engines that are known to have it, with their keywords.")
         .field(Column::new("sources").left(), |lever| {
-            joined(lever.way.engines(), |engine| engine.source.into())
+            joined(lever.way.engines(), |known| known.source.into())
         })
+        .says(Shape::OrNull(&TEXT), "Where that is written, in the same order.")
 }
 
 /// For people: three digits; who has it stands in lines.
@@ -91,15 +116,22 @@ fn shown(levers: &Levers, full: &Table, unit: TimeUnit) -> Table {
     table
 }
 
-/// Adds the table and what was left out, where they were asked for.
+/// The sentences on the entries `levers` and `levers_left_out` of a document, and what the first is.
+pub(super) const SAYS: &str =
+    "What would let the outer step of the first scheme grow, where that was asked; lengths in fs.";
+pub(super) const LEFT_OUT: &str = "What was not computed, and why.";
+pub(super) const SHAPE: Shape = Shape::List(&Shape::Object(|| record(TimeUnit::Femtoseconds).keys()));
+
+/// The entry `levers`.
+pub(super) fn value(levers: &Levers, unit: TimeUnit) -> Value {
+    record(unit).all(&levers.rows).into()
+}
+
+/// Adds the table for people, where they were asked for.
 pub(super) fn add(document: Document, levers: Option<&Levers>, unit: TimeUnit) -> Document {
-    let Some(levers) = levers else { return document };
+    let Some(levers) = levers.filter(|levers| !levers.rows.is_empty()) else { return document };
     let caption = "What would let the outer step grow: proven below for all periods in the band";
-    let table = record(unit).table("levers", caption, &levers.rows);
-    let document = document
-        .entry("levers", table.to_json_rows())
-        .entry("levers_left_out", Value::from(levers.left_out.clone()));
-    if levers.rows.is_empty() { document } else { document.and_rows(shown(levers, &table, unit)) }
+    document.and_rows(shown(levers, &record(unit).table("levers", caption, &levers.rows), unit))
 }
 
 /// Levers whose gains are within 2 % of each other are one.
@@ -193,7 +225,7 @@ pub(super) fn lines(levers: &Levers, unit: TimeUnit) -> Vec<String> {
                 .way
                 .engines()
                 .iter()
-                .map(|engine| format!("{} {}", engine.name, engine.keyword))
+                .map(|known| format!("{} {}", known.engine, known.keyword))
                 .collect();
             let name = if lever.way == Way::Respa { "as given, other ratios" } else { &lever.name };
             lines.push(format!("             {name}: {}", all.join("; ")));

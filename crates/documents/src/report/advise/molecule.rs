@@ -2,54 +2,83 @@
 
 use super::answer;
 use super::lines::{self, advised, read_from};
-use super::tables::{self, enclosed, for_people, published};
+use super::tables::{self, Told, enclosed, for_people};
 use super::words::{Choice, cap, down, fs, nearest, percent, within};
 use crate::report::document::Document;
 use crate::report::record::Record;
-use crate::report::system::of_each;
-use crate::report::table::{Cell, Column, Table};
+use crate::report::shape::{
+    ENCLOSED_OR_NULL, FLAG_OR_NULL, POSITIVE, RATIONAL, RATIONAL_OR_NULL, ROUNDED, ROUNDED_OR_NULL, Shape,
+    TEXT, TEXTS,
+};
+use crate::report::system::{motions, of_each};
+use crate::report::table::{Cell, Column};
 use molecules::engine::Reading;
 use molecules::unit::{TimeUnit, decimal};
 use molecules::{Bound, Caution, Finding, Findings, Group, MostBiased, Scheme, Status};
 use number::Rational;
 use number::rational::to_f64;
+use systems::Holds;
 use systems::levels::Growing;
 
 /// The document `kickdrift/advise-system/1`.
 pub(super) fn document(findings: &Findings, reading: Option<&Reading>, notes: &[String]) -> Document {
-    let removed = findings.removed.as_ref();
-    let fastest = &findings.fastest;
-    let (groups, rows, intervals) = (groups(findings), rows(findings), intervals(findings));
-    let (best, between) = (&findings.schemes[0], &findings.between);
+    let rows = row().table("rows", "The molecule at each scheme of steps", &findings.schemes);
+    let caption = "Unstable intervals of the outer step: the beginning of the first and that it is stable again proven, the rest sampled";
+    let intervals = growing().table("intervals", caption, &all_growing(findings));
+    let caption = "Modes of the fast stiffness alone, the fastest first";
+    let groups = group().table("groups", caption, &findings.groups);
     let lines = summary(findings, reading, notes);
-    let document = Document::new("advise-system")
-        .entries((!between.is_empty()).then(|| ("between_periods", between.clone())))
-        .entry("rigid_motions.count", removed.map(|removed| removed.count))
-        .entry("rigid_motions.found_by", removed.map(|removed| removed.found_by))
-        .entry("rigid_motions.held", removed.map(|removed| removed.held.clone()))
-        .entry("accuracy", findings.accuracy)
-        .entry("slow_period", findings.slow)
-        .entry("groups", groups.to_json_rows())
-        .entry("rows", rows.to_json_rows())
-        .entry("intervals", intervals.to_json_rows())
-        .entry(
-            "published",
-            published(best.scheme.steps().len(), [called(fastest); 2], |caution: &Caution| {
-                (fastest.period.0 / caution.place.parts()).into()
-            }),
-        )
-        .entry("unknown", UNKNOWN.to_vec())
-        .entries(reading.map(|reading| ("engine", tables::engine(advised_step(best), reading))))
-        .long_rows(for_people(&rows, |key| match key {
+    let document = head().document(Document::new("advise-system"), &(findings, reading)).long_rows(
+        for_people(&rows, |key| match key {
             "holds" => false,
             "masked_above" | "damped" => findings.friction.is_some(),
             _ => true,
-        }));
+        }),
+    );
     super::levers::add(document, findings.levers.as_ref(), TimeUnit::Femtoseconds)
         .and_rows(for_people(&intervals, |_| true))
         .and_rows(for_people(&groups, |_| true))
         .summary(&lines)
         .answer(answer::of(&lines))
+}
+
+/// The record of the whole.
+pub(super) fn head<'a>() -> Record<'a, Told<'a, Findings>> {
+    Record::new()
+        .optional("between_periods", |(findings, _): &Told<Findings>| {
+            (!findings.between.is_empty()).then(|| findings.between.clone().into())
+        })
+        .says(Shape::List(&ROUNDED_OR_NULL), "Those of the levels between the fast and the slowest one, from the inside out, in fs, null where the level has none; not there where there are none.")
+        .value("rigid_motions", |(findings, _)| findings.removed.as_ref().map(|r| motions().entries(r)).into())
+        .says(Shape::OrNull(&Shape::Object(|| motions().keys())), "Those projected out of both stiffnesses.")
+        .json("accuracy", |(findings, _)| findings.accuracy.into())
+        .says(ROUNDED, "Every stiffness is known to this times its norm; a rounded double.")
+        .json("slow_period", |(findings, _)| findings.slow.into())
+        .says(ROUNDED_OR_NULL, "The shortest period of the slowest stiffness alone, in fs; a rounded double, null where nothing is slow.")
+        .value("groups", |(findings, _)| group().all(&findings.groups).into())
+        .says(Shape::List(&Shape::Object(|| group().keys())), "Modes of the innermost stiffness alone, the fastest first, those of nearly one period together; fs, rounded doubles.")
+        .value("rows", |(findings, _)| row().all(&findings.schemes).into())
+        .says(Shape::List(&Shape::Object(|| row().keys())), "One for each scheme of steps; steps in fs.")
+        .value("intervals", |(findings, _)| growing().all(&all_growing(findings)).into())
+        .says(Shape::List(&Shape::Object(|| growing().keys())), "Unstable intervals of the outer step at each scheme's ratio, steps in fs: up to the first that is not thin (a thousandth of the step); thinner ones between may be missing.")
+        .value("published", |(findings, _)| {
+            let (fastest, steps) = (&findings.fastest, findings.schemes[0].scheme.steps().len());
+            let limit = |caution: &Caution| (fastest.period.0 / caution.place.parts()).into();
+            tables::published(steps, [called(fastest); 2], limit)
+        })
+        .says(tables::PUBLISHED, tables::PUBLISHED_SAYS)
+        .value("unknown", |_| UNKNOWN.to_vec().into())
+        .says(TEXTS, "What Hessians at one place do not tell.")
+        .optional("engine", |(findings, reading)| {
+            Some(tables::engine(advised_step(&findings.schemes[0]), (*reading)?))
+        })
+        .says(tables::ENGINE, tables::ENGINE_SAYS)
+        .optional("levers", |(findings, _)| {
+            Some(super::levers::value(findings.levers.as_ref()?, TimeUnit::Femtoseconds))
+        })
+        .says(super::levers::SHAPE, super::levers::SAYS)
+        .optional("levers_left_out", |(findings, _)| Some(findings.levers.as_ref()?.left_out.clone().into()))
+        .says(TEXTS, super::levers::LEFT_OUT)
 }
 
 /// Limits of Hessians at one place.
@@ -262,41 +291,60 @@ fn grows(finding: &Finding) -> String {
     )
 }
 
-fn groups(findings: &Findings) -> Table {
+/// The record of a group.
+fn group() -> Record<'static, Group> {
     Record::new()
-        .field(Column::new("count"), |group: &Group| (group.count as u64).into())
+        .field(Column::new("count"), |group: &Group| group.count.into())
+        .says(POSITIVE, "")
         .field(Column::new("shortest").in_words("shortest period").in_unit("fs"), |group| {
             group.period.0.into()
         })
+        .says(ROUNDED, "")
         .field(Column::new("longest").in_unit("fs"), |group| group.period.1.into())
+        .says(ROUNDED, "")
         .field(Column::new("half").in_words("T/2"), |group| (group.period.0 / 2.0).into())
+        .says(ROUNDED, "Half the shortest period; a rounded double.")
         .field(Column::new("name").in_words("modes").left(), |group| group.name.as_deref().into())
+        .says(Shape::OrNull(&TEXT), "What these modes are called, as O-H stretch of HOH; null where it is not known who is bonded to whom, or a mode is mostly neither a stretch, a bend nor the motion of whole molecules.")
         .field(Column::new("atoms").in_words("the fastest moves").left(), |group| group.atoms.as_str().into())
-        .table("groups", "Modes of the fast stiffness alone, the fastest first", &findings.groups)
+        .says(TEXT, "Who moves in the fastest of them.")
 }
 
+/// An interval, and the number of its scheme.
+type Numbered<'a> = (usize, &'a Growing);
+
 /// The intervals of each scheme at its ratio.
-fn intervals(findings: &Findings) -> Table {
-    let schemes = (1u64..).zip(&findings.schemes);
-    let found: Vec<(u64, &Growing)> =
-        schemes.flat_map(|(n, finding)| finding.growing.iter().map(move |growing| (n, growing))).collect();
+fn all_growing(findings: &Findings) -> Vec<Numbered<'_>> {
+    let schemes = (1..).zip(&findings.schemes);
+    schemes.flat_map(|(n, finding)| finding.growing.iter().map(move |growing| (n, growing))).collect()
+}
+
+/// The record of an interval.
+fn growing<'a>() -> Record<'a, Numbered<'a>> {
     let column = |key: &str, title: &str| Column::new(key).in_words(title);
-    let record = Record::new()
-        .field(Column::new("scheme"), |pair: &(u64, &Growing)| pair.0.into())
+    Record::new()
+        .field(Column::new("scheme"), |pair: &Numbered| pair.0.into())
+        .says(POSITIVE, "")
         .field(column("lower", "grows from").in_unit("fs"), |pair| pair.1.lower.into())
+        .says(ROUNDED, "Where it begins: of the first proven unstable, of the next ones sampled; a rounded double.")
         .field(column("upper", "to").in_unit("fs"), |pair| pair.1.upper.into())
+        .says(ROUNDED_OR_NULL, "Growth was found at every step sampled from lower up to this one; null where it goes on beyond 1.3 times lower; a rounded double.")
         .field(column("stable_again", "stable again").in_unit("fs"), |pair| pair.1.stable_again.into())
+        .says(ROUNDED_OR_NULL, "The first step above that which is proven stable again, as near as doubles tell; null where none was found; a rounded double.")
         .field(column("worst_outer", "worst at").in_unit("fs"), |pair| pair.1.worst.0.into())
+        .says(ROUNDED, "Where growth is fastest of those sampled; a rounded double.")
         .field(column("worst_growth_rate", "growth there").in_unit("1/ps"), |pair| {
             (1000.0 * pair.1.worst.1).into()
         })
+        .says(ROUNDED, "Growth there, per ps; a rounded double.")
         .field(column("worst_tenfold_steps", "tenfold in steps"), |pair| {
             (std::f64::consts::LN_10 / (pair.1.worst.0 * pair.1.worst.1)).into()
-        });
-    record.table("intervals", "Unstable intervals of the outer step: the beginning of the first and that it is stable again proven, the rest sampled", &found)
+        })
+        .says(ROUNDED, "Outer steps until an amplitude is tenfold there; a rounded double.")
 }
 
-fn rows(findings: &Findings) -> Table {
+/// The record of a scheme.
+fn row() -> Record<'static, Finding> {
     let exact = |x: &Option<Rational>| Cell::from(x.as_ref().map(Cell::exact));
     let per_ps = |rate: Option<f64>| Cell::from(rate.map(|rate| 1000.0 * rate));
     let column = |key: &str, title: &str| Column::new(key).in_words(title);
@@ -305,28 +353,47 @@ fn rows(findings: &Findings) -> Table {
         .field(column("outer", "outer step").in_unit("fs"), |finding: &Finding| {
             Cell::exact(finding.scheme.outer())
         })
+        .says(RATIONAL, "")
         .field(Column::new("status").left(), |finding| finding.status.name().into())
+        .says(Shape::OneOf(Status::NAMES), "safe: proven stable for all periods in the band, and below what is published; caution: proven, but not below that; near: in the first stable region, not for all periods in the band; island: stable above an unstable step, never to be recommended; not told: the data are not accurate enough; unstable.")
         .field(Column::new("holds").left(), |finding| finding.holds.name().into())
+        .says(Shape::OneOf(Holds::NAMES), "What is proven of all matrices within their accuracy.")
         .field(column("margin", "margin of the stiffness"), |finding| finding.margin.into())
+        .says(ROUNDED_OR_NULL, "The largest change of the stiffnesses, relative to their norms, under which the verdict is proven to stand; null where nothing is; a rounded double.")
         .field(enclosed("first", "first unstable from").in_unit("fs"), |finding| finding.first.into())
+        .says(ENCLOSED_OR_NULL, "Every outer step up to lo is proven stable at this ratio, hi is proven unstable.")
         .field(column("first_upper", "at least to").in_unit("fs"), |finding| finding.first_upper.into())
+        .says(ROUNDED_OR_NULL, "Every outer step from there to this one is proven unstable, and the interval may end later; a rounded double.")
         .field(column("growth_rate", "growth").in_unit("1/ps"), move |finding| per_ps(finding.rate))
+        .says(ROUNDED_OR_NULL, "Per ps; a rounded double, 0 where nothing grows; null where that is not decided.")
         .field(column("tenfold_steps", "tenfold in steps"), |finding| finding.tenfold_steps().into())
+        .says(ROUNDED_OR_NULL, "Outer steps until an amplitude is tenfold; a rounded double.")
         .field(column("name", "growing").left(), |finding| finding.name.as_deref().into())
+        .says(Shape::OrNull(&TEXT), "What grows fastest is called; null as of groups.")
         .field(column("atoms", "moving most").left(), |finding| finding.atoms.as_deref().into())
+        .says(Shape::OrNull(&TEXT), "Who moves in what grows fastest.")
         .field(column("masked_above", "masked by a friction").in_unit("1/ps"), move |finding| {
             per_ps(finding.masking)
         })
+        .says(ROUNDED_OR_NULL, "A friction per ps that is proven to mask the growth, about the least; null where none was given or nothing grows; a rounded double.")
         .field(Column::new("damped"), |finding| finding.is_damped.into())
+        .says(FLAG_OR_NULL, "Whether the friction given keeps all bounded: by the spectral radius in doubles; null where none was given.")
         .field(column("band_edge", "stable below").in_unit("fs"), |finding| finding.band_edge.into())
+        .says(ROUNDED_OR_NULL, "Every outer step up to this is proven stable at this ratio for the band: fast periods shorter or longer each for itself, those of each slower level together, as long as the total stiffness is definite (proofs/REGION.md); a rounded double.")
         .field(Column::new("largest").in_unit("fs"), move |finding| exact(&finding.largest))
+        .says(RATIONAL_OR_NULL, "The longest multiple of the step before the outermost one for which that holds, and for all shorter ones; of one step alone the end of the band.")
         .field(Column::new("safe").in_unit("fs"), move |finding| exact(&finding.safe))
+        .says(RATIONAL_OR_NULL, "The same, and below what is published: T/3 of the fastest mode on any clock but the outermost, T/6.28 of each clock's own forces (h w <= 1), which harmonic bonds lift; null where an inner step is not.")
         .field(Column::new("bound").left(), |finding| finding.bound.map(|bound| bound.name()).into())
+        .says(Shape::OrNull(&Shape::OneOf(Bound::NAMES)), "What bounds safe: the band, or what is published.")
         .field(Column::new("within_run"), |finding| finding.within_run.into())
+        .says(FLAG_OR_NULL, "Whether an amplitude is tenfold within the run; null where it does not grow or no length was given.")
         .field(column("bias", "bias R"), move |finding| bias(&finding.bias))
+        .says(ROUNDED_OR_NULL, "A double, rounded: R, the potential over the kinetic energy at the kicks of the normal mode that is most off, as at constant energy; 1 is right; null unless stable for all matrices, and where it would cost more than some seconds.")
         .field(column("biased", "most off").left(), |finding| {
             finding.bias.as_ref().map(|most| most.mode.as_str()).into()
         })
+        .says(Shape::OrNull(&TEXT), "That mode: its name or, where it has none, who moves in it.")
         .field(column("safe_bias", "bias R of safe"), move |finding| bias(&finding.safe_bias))
-        .table("rows", "The molecule at each scheme of steps", &findings.schemes)
+        .says(ROUNDED_OR_NULL, "A double, rounded: R of the mode that is most off with the step safe; null where there is none.")
 }

@@ -5,7 +5,7 @@ mod chart;
 use super::decimal::few;
 use super::document::Document;
 use super::record::Record;
-use super::shape::{FLAG, Keys, ROUNDED, Shape, TEXT};
+use super::shape::{ABOVE_0, FLAG, Keys, ROUNDED, ROUNDED_OR_NULL, Shape, TEXT};
 use super::table::{Cell, Column};
 pub use chart::figure;
 use molecules::aperture::{EARLY, Hottest, LATE, Measured, PHASES, Resonance, Step, rungs};
@@ -37,9 +37,6 @@ pub fn keys() -> Keys {
     head().keys().key("steps", STEPS, says)
 }
 
-/// A double, measured or computed, that may be missing.
-const ROUNDED_OR_NULL: Shape = Shape::OrNull(&ROUNDED);
-const ABOVE_0: Shape = Shape::With(&ROUNDED, r#"{"exclusiveMinimum": 0}"#);
 const NOT_BELOW_0: Shape = Shape::With(&ROUNDED, r#"{"minimum": 0}"#);
 
 /// All but the steps.
@@ -56,25 +53,13 @@ fn head() -> Record<'static, Measured> {
         .json("thermal_energy", |measured| measured.measurement.thermal().into())
         .says(ABOVE_0, "kT in kJ/mol; a rounded double.")
         .json("limit", |measured| measured.measurement.limit.into())
-        .says(
-            Shape::OrNull(&NOT_BELOW_0),
-            "The step in fs at which linear stability ends; null where a slow force has steps of its own, or where there is no end; a rounded double.",
-        )
+        .says(Shape::OrNull(&NOT_BELOW_0), "The step in fs at which linear stability ends; null where a slow force has steps of its own, or where there is no end; a rounded double.")
         .json("depth", |measured| measured.measurement.depth.into())
-        .says(
-            ROUNDED_OR_NULL,
-            "The energy in kT at which the bond breaks by itself, whatever the step; null where it does not; a rounded double.",
-        )
+        .says(ROUNDED_OR_NULL, "The energy in kT at which the bond breaks by itself, whatever the step; null where it does not; a rounded double.")
         .json("level", |measured| measured.level.into())
-        .says(
-            NOT_BELOW_0,
-            "The logarithm of bonds times picoseconds: about the energy in kT of the hottest of them; a rounded double.",
-        )
+        .says(NOT_BELOW_0, "The logarithm of bonds times picoseconds: about the energy in kT of the hottest of them; a rounded double.")
         .value("resonances", |measured| resonance().all(&measured.resonances).into())
-        .says(
-            Shape::List(&Shape::Object(|| resonance().keys())),
-            "The first steps at which the method turns by the k-th part of a full turn.",
-        )
+        .says(Shape::List(&Shape::Object(|| resonance().keys())), "The first steps at which the method turns by the k-th part of a full turn.")
 }
 
 /// A step, and whether it is enough.
@@ -88,10 +73,7 @@ fn record<'a>() -> Record<'a, Row<'a>> {
         .field(Column::math("h", "h").in_unit("fs"), |(step, _): &Row| to_f64(&step.step).into())
         .says(ABOVE_0, "The step in fs; a rounded double.")
         .field(Column::new("turn"), |(step, _)| step.turn.into())
-        .says(
-            TURN,
-            "The share of a full turn that the method makes in a step, for small oscillations; null where the step is linearly unstable; a rounded double.",
-        )
+        .says(TURN, "The share of a full turn that the method makes in a step, for small oscillations; null where the step is linearly unstable; a rounded double.")
         .field(Column::math("k", "k"), |(step, _)| step.nearest.map(|(k, _)| k).into())
         .says(
             Shape::OrNull(&Shape::Plain(r#"{"type": "integer", "minimum": 2}"#)),
@@ -100,46 +82,25 @@ fn record<'a>() -> Record<'a, Row<'a>> {
         .field(Column::new("resonance").in_words("its step").in_unit("fs"), |(step, _)| {
             step.nearest.and_then(|(_, h)| h).into()
         })
-        .says(
-            ROUNDED_OR_NULL,
-            "The step in fs nearest to this one at which the method turns by 2 pi/k; null where there is none from 0 to three times this step; a rounded double.",
-        )
+        .says(ROUNDED_OR_NULL, "The step in fs nearest to this one at which the method turns by 2 pi/k; null where there is none from 0 to three times this step; a rounded double.")
         .field(Column::new("aperture").titled("E*", "$E^*$").in_unit("kT"), |(step, _)| step.aperture.into())
-        .says(
-            ROUNDED_OR_NULL,
-            "The least energy in kT at which some phase is lost within 20000 steps; null where none is up to 40 kT; a rounded double.",
-        )
+        .says(ROUNDED_OR_NULL, "The least energy in kT at which some phase is lost within 20000 steps; null where none is up to 40 kT; a rounded double.")
         .field(Column::new("half_aperture").titled("half", "half").in_unit("kT"), |(step, _)| step.half.into())
-        .says(
-            ROUNDED_OR_NULL,
-            "The least energy in kT at which at least half of all phases are lost within 20000 steps; null where they are at none up to 40 kT; a rounded double.",
-        )
+        .says(ROUNDED_OR_NULL, "The least energy in kT at which at least half of all phases are lost within 20000 steps; null where they are at none up to 40 kT; a rounded double.")
         .field(Column::new("share_lost").in_words("share lost"), |(step, _)| step.share.into())
         .says(SHARE, "The share of a thermal ensemble of starts that is lost within 3000 steps; a rounded double.")
         .field(Column::new("enough_for").in_words("enough for"), |(step, _)| step.enough.into())
-        .says(
-            ROUNDED_OR_NULL,
-            "exp(aperture): about one of so many bonds times picoseconds is as hot; null above 40 kT; a rounded double.",
-        )
+        .says(ROUNDED_OR_NULL, "exp(aperture): about one of so many bonds times picoseconds is as hot; null above 40 kT; a rounded double.")
         .field(Column::new("band_aperture").in_words("least of band").in_unit("kT"), |(step, _)| {
             step.band.as_ref().and_then(|hottest| hottest.aperture).into()
         })
-        .says(
-            ROUNDED_OR_NULL,
-            "The least aperture of all bonds whose periods are longer by up to the band; null where none of them is lost up to 40 kT, and where no band was asked for; a rounded double.",
-        )
+        .says(ROUNDED_OR_NULL, "The least aperture of all bonds whose periods are longer by up to the band; null where none of them is lost up to 40 kT, and where no band was asked for; a rounded double.")
         .field(Column::new("band_step").in_words("at").in_unit("fs"), |(step, _)| {
             step.band.as_ref().map(|hottest| to_f64(&hottest.step)).into()
         })
-        .says(
-            Shape::OrNull(&ABOVE_0),
-            "The step in fs at which the bond at rest has it; null where no band was asked for; a rounded double.",
-        )
+        .says(Shape::OrNull(&ABOVE_0), "The step in fs at which the bond at rest has it; null where no band was asked for; a rounded double.")
         .field(Column::new("enough"), |(_, enough)| (*enough).into())
-        .says(
-            FLAG,
-            "Whether the step is linearly stable and its aperture, with a band that of the band, not below the level.",
-        )
+        .says(FLAG, "Whether the step is linearly stable and its aperture, with a band that of the band, not below the level.")
 }
 
 fn resonance() -> Record<'static, Resonance> {
@@ -147,10 +108,7 @@ fn resonance() -> Record<'static, Resonance> {
         .field(Column::new("k"), |resonance: &Resonance| resonance.k.into())
         .says(Shape::Plain(r#"{"type": "integer", "minimum": 3, "maximum": 8}"#), "The part of a full turn.")
         .field(Column::new("h"), |resonance| resonance.step.into())
-        .says(
-            ROUNDED_OR_NULL,
-            "The step in fs; null where there is none up to the linear limit, or to 5/4 of the longest step asked for; a rounded double.",
-        )
+        .says(ROUNDED_OR_NULL, "The step in fs; null where there is none up to the linear limit, or to 5/4 of the longest step asked for; a rounded double.")
 }
 
 fn lines(measured: &Measured) -> Vec<String> {

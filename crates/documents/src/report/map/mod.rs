@@ -73,13 +73,7 @@ fn record() -> Record<'static, MapTally> {
         .json("work.escalated", |tally| tally.counters.escalated.into())
         .says(COUNT, "Pairs that the filter sent up the ladder.")
         .optional("families", MapTally::families)
-        .says(
-            tally::FAMILIES,
-            "Growing pairs by the a of their dominant family; only where labels were asked for and some pair grows.",
-        )
+        .says(tally::FAMILIES, "Growing pairs by the a of their dominant family; only where labels were asked for and some pair grows.")
         .optional("fastest", MapTally::fastest)
-        .says(
-            tally::FASTEST,
-            "The pair that grows fastest: no other one is proven to grow faster. Only where growth was asked for and some pair grows.",
-        )
+        .says(tally::FASTEST, "The pair that grows fastest: no other one is proven to grow faster. Only where growth was asked for and some pair grows.")
 }

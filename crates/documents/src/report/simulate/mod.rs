@@ -55,19 +55,13 @@ pub fn keys() -> Keys {
 fn head() -> Record<'static, Run> {
     Record::new()
         .json("growth_rate_predicted", |run: &Run| run.predicted.into())
-        .says(
-            Shape::OrNull(&ROUNDED),
-            "The middle of the enclosure that a verdict holds, a rounded double; null where none is proven.",
-        )
+        .says(Shape::OrNull(&ROUNDED), "The middle of the enclosure that a verdict holds, a rounded double; null where none is proven.")
         .json("growth_rate_measured", |run| run.measured.into())
         .says(Shape::OrNull(&ROUNDED), "The growth rate of small deviations; rounded double; null where the run overflows.")
         .json("linear", |run| run.linear.into())
         .says(FLAG, "Whether deviations of any size move like small ones.")
         .json("irreversibility", |run| run.irreversibility.into())
-        .says(
-            Shape::OrNull(&ROUNDED),
-            "Rounded double: forward one period and back, the largest difference relative to the start; null where it overflows.",
-        )
+        .says(Shape::OrNull(&ROUNDED), "Rounded double: forward one period and back, the largest difference relative to the start; null where it overflows.")
         .optional("own_orbit", |run| Some(serde_json::json!({"displacement": run.displacement?})))
         .says(
             Shape::Object(|| {

@@ -1,7 +1,7 @@
 //! Entries beside the verdict of a system: the unit of time, friction, the integrator's own orbit, the
 //! motions of the growing modes.
 
-use serde_json::{Value, json};
+use serde_json::Value;
 
 use super::bias::Biases;
 use super::nearest;
@@ -9,6 +9,11 @@ use super::words::{rate, rate_per};
 use crate::report::decimal;
 use crate::report::document::enclosure;
 use crate::report::friction;
+use crate::report::record::Record;
+use crate::report::shape::{
+    ALL_ROUNDED, COUNT, ENCLOSED_OR_NULL, ENCLOSURE, FLAG, FLAG_OR_NULL, KIND_IF_DECIDED, POSITIVE, ROUNDED,
+    ROUNDED_OR_NULL, Shape, TEXT,
+};
 use systems::friction::Friction;
 use systems::nearest::Nearest;
 use systems::{Analysis, Instability, NoGradient, OwnOrbit, Scheme, SchemeSummary, middle};
@@ -36,45 +41,80 @@ pub struct Beside<'a> {
     pub no_gradient: Option<&'a NoGradient>,
 }
 
+/// An analysis, and what stands beside it.
+pub(super) type About<'a> = (&'a Analysis, &'a Beside<'a>);
+
 /// A growing mode lists this many degrees of freedom: those that move most.
 const LISTED: usize = 4;
 
-/// The entries of a document.
-pub(super) fn entries(beside: &Beside, analysis: &Analysis) -> Vec<(&'static str, Value)> {
-    let moving = |labels: &&[String]| {
-        let modes = analysis.parts.iter().flat_map(|part| &part.instabilities);
-        let one =
-            |(i, amplitude): (usize, f64)| json!({"dof": i, "label": labels[i], "amplitude": amplitude});
-        let all = modes.map(|mode| Value::from(moving(mode).into_iter().map(one).collect::<Vec<_>>()));
-        Value::from(all.collect::<Vec<_>>())
-    };
-    let orbit = beside.orbit.map(|orbit| {
-        let about = &orbit.analysis;
-        json!({
-            "displacement": orbit.displacement, "start": orbit.start, "kind": about.kind_name(), "stable": about.holds().is_stable(),
-            "proven": about.is_proof(), "growth_rate": about.growth_rate().map(enclosure),
+/// Adds its entries to the record of a document.
+pub(super) fn fields<'a>(record: Record<'a, About<'a>>) -> Record<'a, About<'a>> {
+    record
+        .optional("time_unit", |(_, beside): &About| beside.unit.map(Value::from))
+        .says(TEXT, "The unit of times, rates per it; where the file gives one.")
+        .optional("friction", |(_, beside)| beside.friction.map(friction::value))
+        .says(friction::SHAPE, friction::SAYS)
+        .optional("own_orbit", |(_, beside)| beside.orbit.map(|orbit| own_orbit().entries(orbit)))
+        .says(Shape::Object(|| own_orbit().keys()), "The integrator's own periodic orbit beside the equilibrium, where nonlinear bonds displace it; the rest of the document speaks about the equilibrium.")
+        .optional("moving", |&(analysis, beside)| {
+            let modes = analysis.parts.iter().flat_map(|part| &part.instabilities);
+            beside.labels.map(|labels| modes.map(|mode| moved().all(&named(mode, labels))).collect())
         })
-    });
-    let all = [
-        ("time_unit", beside.unit.map(Value::from)),
-        ("friction", beside.friction.map(friction::value)),
-        ("own_orbit", orbit),
-        ("moving", beside.labels.as_ref().map(moving)),
-        ("nearest_unstable", beside.nearest.map(nearest::value)),
-        ("local_steps", beside.local.map(local_steps)),
-        ("no_gradient", beside.no_gradient.map(|forces| no_gradient(forces, analysis))),
-    ];
-    all.into_iter().filter_map(|(key, value)| Some((key, value?))).collect()
+        .says(Shape::List(&Shape::List(&Shape::Object(|| moved().keys()))), "The degrees of freedom that move most in each growing mode; only where they have labels.")
+        .optional("nearest_unstable", |(_, beside)| beside.nearest.map(|all| nearest::record().entries(all)))
+        .says(Shape::Object(|| nearest::record().keys()), "The unstable intervals of the outer step next to the file's, all steps in their ratios; only where asked for.")
+        .optional("local_steps", |(_, beside)| beside.local.map(|local| local_steps().entries(local)))
+        .says(Shape::Object(|| local_steps().keys()), "Only with a scheme of local time steps.")
+        .optional("no_gradient", |&(analysis, beside)| {
+            beside.no_gradient.map(|forces| no_gradient().entries(&(forces, analysis)))
+        })
+        .says(Shape::Object(|| no_gradient().keys()), "Only of forces that are no gradient.")
 }
 
-fn no_gradient(no_gradient: &NoGradient, analysis: &Analysis) -> Value {
-    json!({
-        "asymmetries": no_gradient.asymmetries,
-        "without_steps": no_gradient.without_steps.map(enclosure),
-        "added_by_steps": no_gradient.added_by_steps(analysis).map(enclosure),
-        "within_accuracy": no_gradient.within_accuracy.map(enclosure),
-        "masking_friction": no_gradient.masking,
-    })
+fn own_orbit() -> Record<'static, OwnOrbit> {
+    Record::new()
+        .json("displacement", |orbit: &OwnOrbit| orbit.displacement.into())
+        .says(ROUNDED, "Rounded double: the largest |start - equilibrium|.")
+        .value("start", |orbit| orbit.start.clone().into())
+        .says(ALL_ROUNDED, "Where the orbit is at rest.")
+        .json("kind", |orbit| orbit.analysis.kind_name().into())
+        .says(KIND_IF_DECIDED, "")
+        .json("stable", |orbit| orbit.analysis.holds().is_stable().into())
+        .says(FLAG_OR_NULL, "null: not decided.")
+        .json("proven", |orbit| orbit.analysis.is_proof().into())
+        .says(FLAG, "For the Hessians along the computed orbit as they are in doubles.")
+        .json("growth_rate", |orbit| orbit.analysis.growth_rate().into())
+        .says(ENCLOSED_OR_NULL, "The largest, per unit time; null where no bound is proven.")
+}
+
+/// A degree of freedom, its name, and how far it moves.
+type Moved<'a> = (usize, &'a str, f64);
+
+fn moved<'a>() -> Record<'a, Moved<'a>> {
+    Record::new()
+        .json("dof", |&(i, ..): &Moved| i.into())
+        .says(COUNT, "")
+        .json("label", |&(_, label, _)| label.into())
+        .says(TEXT, "")
+        .json("amplitude", |&(.., amplitude)| amplitude.into())
+        .says(ROUNDED, "Rounded double; the longest is 1.")
+}
+
+type Forces<'a> = (&'a NoGradient, &'a Analysis);
+
+fn no_gradient<'a>() -> Record<'a, Forces<'a>> {
+    const ENCLOSED: Shape = Shape::OrNull(&ENCLOSURE);
+    Record::new()
+        .value("asymmetries", |(forces, _): &Forces| forces.asymmetries.clone().into())
+        .says(ALL_ROUNDED, "|J - J'|/|J + J'| of each potential in Frobenius's norm, rounded.")
+        .json("without_steps", |(forces, _)| forces.without_steps.into())
+        .says(ENCLOSED, "The growth rate of the equations themselves, without steps, enclosed; null: not bounded.")
+        .json("added_by_steps", |&(forces, analysis)| forces.added_by_steps(analysis).into())
+        .says(ENCLOSED, "The growth rate less that without steps, enclosed.")
+        .json("within_accuracy", |(forces, _)| forces.within_accuracy.into())
+        .says(ENCLOSED, "The growth rate for all measured matrices within their accuracy, enclosed; null: exact matrices, or not bounded.")
+        .json("masking_friction", |(forces, _)| forces.masking.into())
+        .says(ROUNDED_OR_NULL, "The least friction per unit time under which nothing grows, rounded; null: not looked for, beyond 150 degrees of freedom.")
 }
 
 /// The growth of such forces, with the steps and without; `per` is the unit of time.
@@ -112,17 +152,25 @@ pub(super) fn no_gradient_lines(no_gradient: &NoGradient, analysis: &Analysis, p
     lines
 }
 
-fn local_steps(scheme_summary: &SchemeSummary) -> Value {
-    let level = |&(fine, substeps): &(usize, u32)| json!({"fine": fine, "substeps": substeps});
-    let mut value = json!({
-        "scheme": scheme_summary.scheme.name(),
-        "levels": scheme_summary.levels.iter().map(level).collect::<Vec<_>>(),
-        "plain_limit": scheme_summary.plain_limit.map(enclosure),
-    });
-    if let Some(first) = scheme_summary.first_unstable {
-        value["first_unstable"] = enclosure(first);
-    }
-    value
+fn local_steps() -> Record<'static, SchemeSummary> {
+    const LEVELS: Shape = Shape::List(&Shape::Object(|| level().keys()));
+    Record::new()
+        .json("scheme", |summary: &SchemeSummary| summary.scheme.name().into())
+        .says(Shape::OneOf(Scheme::NAMES), "")
+        .value("levels", |summary| level().all(&summary.levels).into())
+        .says(LEVELS, "The coarsest first.")
+        .json("plain_limit", |summary| summary.plain_limit.into())
+        .says(Shape::OrNull(&ENCLOSURE), "Where plain leapfrog with the step of the whole becomes unstable, enclosed; null: never by its stiffness.")
+        .optional("first_unstable", |summary| summary.first_unstable.map(enclosure))
+        .says(ENCLOSURE, "Only of sparse stiffnesses, under lts with one level: every step up to the lower number is proven stable, some step up to the upper one is proven unstable.")
+}
+
+fn level() -> Record<'static, (usize, u32)> {
+    Record::new()
+        .json("fine", |&(fine, _): &(usize, u32)| fine.into())
+        .says(COUNT, "How many degrees of freedom, in avi elements.")
+        .json("substeps", |&(_, substeps)| u64::from(substeps).into())
+        .says(POSITIVE, "In a step of the level above.")
 }
 
 /// The scheme, and the limit of plain leapfrog; `unit` is that of times, after a space.
@@ -151,7 +199,8 @@ pub(super) fn lines(beside: &Beside, analysis: &Analysis) -> Vec<String> {
     let mut lines = Vec::new();
     if let Some(labels) = beside.labels {
         for (n, mode) in fastest(analysis).0 {
-            let named: Vec<_> = moving(mode).iter().map(|&(i, x)| format!("{} {x:.3}", labels[i])).collect();
+            let named: Vec<_> =
+                named(mode, labels).iter().map(|(_, name, x)| format!("{name} {x:.3}")).collect();
             lines.push(format!("  growing mode {n} moves most: {}", named.join(", ")));
         }
     }
@@ -176,6 +225,11 @@ pub(super) fn fastest(analysis: &Analysis) -> (Vec<(usize, &Instability)>, usize
     modes.truncate(SHOWN_MODES);
     modes.sort_by_key(|(n, _)| *n);
     (modes, left_out)
+}
+
+/// The same with their names.
+fn named<'a>(mode: &Instability, labels: &'a [String]) -> Vec<Moved<'a>> {
+    moving(mode).into_iter().map(|(i, amplitude)| (i, labels[i].as_str(), amplitude)).collect()
 }
 
 /// The degrees of freedom with the longest entries of a shape, and these.

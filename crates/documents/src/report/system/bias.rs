@@ -1,8 +1,10 @@
 //! The bias of a stable system's modes, in JSON and in words.
 
-use serde_json::{Value, json};
+use serde_json::Value;
 
 use crate::report::decimal::few;
+use crate::report::record::Record;
+use crate::report::shape::{ABOVE_0, Shape};
 use crate::report::text::counted;
 use systems::{BiasedMode, NoBias};
 
@@ -12,16 +14,26 @@ pub type Biases = Result<Vec<BiasedMode>, NoBias>;
 /// The modes that a person is shown.
 const SHOWN: usize = 3;
 
+/// The sentence on the entry `bias` of a document.
+pub(super) const SAYS: &str = "The normal modes of the period, the fastest first, and by how much the potential energy of each is off; null unless the system is elliptic, of other than kicks and drifts of dense symmetric stiffnesses at one place, and where it would cost more than some seconds.";
+/// What it is.
+pub(super) const SHAPE: Shape = Shape::OrNull(&Shape::List(&Shape::Object(|| record().keys())));
+
 /// The entry `bias` of a document.
 pub(super) fn value(bias: Option<&Biases>) -> Value {
-    let mode = |mode: &BiasedMode| {
-        json!({
-            "turn": mode.turn, "period": mode.period,
-            "at_kicks": mode.bias.at_kicks, "in_drifts": mode.bias.in_drifts,
-        })
-    };
-    let modes = bias.and_then(|bias| bias.as_ref().ok());
-    modes.map(|modes| modes.iter().map(mode).collect::<Vec<_>>()).into()
+    bias.and_then(|bias| bias.as_ref().ok()).map(|modes| record().all(modes)).into()
+}
+
+fn record() -> Record<'static, BiasedMode> {
+    Record::new()
+        .json("turn", |mode: &BiasedMode| mode.turn.into())
+        .says(ABOVE_0, "A double, rounded: its turn over the period as a part of a full one, whole turns left out, 1/2 at most.")
+        .json("period", |mode| mode.period.into())
+        .says(ABOVE_0, "A double, rounded: 2 pi sqrt(x'Mx/x'Kx), x its positions at the start of a period and K the sum of all stiffnesses.")
+        .json("at_kicks", |mode| mode.bias.at_kicks.into())
+        .says(ABOVE_0, "A double, rounded: its potential over its kinetic energy where all clocks kick, as at constant energy; 1 is right.")
+        .json("in_drifts", |mode| mode.bias.in_drifts.into())
+        .says(ABOVE_0, "A double, rounded: its potential energy over kT/2 under a weak thermostat in the middle of every drift (BAOAB); 1 is right.")
 }
 
 /// The entry in words, the modes that are most off first; `unit` is that of times, after a space.

@@ -5,8 +5,9 @@ use plot::{Axis, Figure, Hatch, Layer, Panel, Place, Stroke};
 
 use super::chart::axis;
 use crate::report::decimal;
-use crate::report::document::{Document, enclosure};
+use crate::report::document::Document;
 use crate::report::record::Record;
+use crate::report::shape::{COUNT, ENCLOSURE, POSITIVE, ROUNDED, Schema, Shape};
 use crate::report::table::Column;
 use crate::report::text::counted;
 use systems::Holds;
@@ -94,13 +95,7 @@ pub fn figure(intervals: &Intervals, rates: &[Option<f64>], title: &str, number:
 
 /// The document `kickdrift/system-intervals/1`; the caller adds the input.
 pub fn document(intervals: &Intervals) -> Document {
-    let record = Record::new()
-        .field(Column::new("lo"), |stretch: &Stretch| stretch.lo.into())
-        .field(Column::new("hi"), |stretch| stretch.hi.into())
-        .field(Column::new("verdict").left(), |stretch| stretch.verdict.name().into());
-    let number =
-        |verdict: Holds| intervals.stretches.iter().filter(|stretch| stretch.verdict == verdict).count();
-    let (unstable, undecided) = (number(Holds::Unstable), number(Holds::Undecided));
+    let [unstable, undecided] = [Holds::Unstable, Holds::Undecided].map(|verdict| number(intervals, verdict));
     let is_place =
         |stretch: &&Stretch| stretch.verdict == Holds::Undecided && stretch.lo.next_up() == stretch.hi;
     let places = intervals.stretches.iter().filter(is_place).count();
@@ -130,17 +125,50 @@ pub fn document(intervals: &Intervals) -> Document {
             "  {all} between neighbouring doubles not decided, the same verdict on both sides"
         ));
     }
-    let first = intervals.first_unstable();
-    if let Some((lo, hi)) = first {
+    if let Some((lo, hi)) = intervals.first_unstable() {
         lines.push(format!("  the first begins at {}", decimal::enclosure(lo, hi)));
     }
-    Document::new("system-intervals")
-        .entry("inner_steps", intervals.inner_steps)
-        .entry("unstable", unstable)
-        .entry("untold", undecided)
-        .entry("first_unstable", first.map(enclosure))
-        .rows(record.table("stretches", "Verdicts on stretches of the number", &intervals.stretches))
+    head()
+        .document(Document::new("system-intervals"), intervals)
+        .rows(record().table("stretches", "Verdicts on stretches of the number", &intervals.stretches))
         .summary(&lines)
+}
+
+/// Its schema.
+pub fn schema() -> Schema {
+    let about = "Stretches that cover a range of the number; of a step at fixed other steps, the multiples of the inner one from lo to hi.";
+    let stretches = Shape::List(&Shape::Object(|| record().keys()));
+    let keys = head().keys().key("stretches", stretches, "");
+    Schema::new("Stable and unstable intervals of one number of a system", keys).about(about)
+}
+
+/// All but the stretches.
+fn head() -> Record<'static, Intervals> {
+    Record::new()
+        .json("inner_steps", |intervals: &Intervals| intervals.inner_steps.into())
+        .says(Shape::OrNull(&POSITIVE), "In an outer step, where these are two measured levels and the number is the outer step.")
+        .json("unstable", |intervals| number(intervals, Holds::Unstable).into())
+        .says(COUNT, "")
+        .json("untold", |intervals| number(intervals, Holds::Undecided).into())
+        .says(COUNT, "Stretches where nothing is proven.")
+        .json("first_unstable", |intervals| intervals.first_unstable().into())
+        .says(Shape::OrNull(&ENCLOSURE), "What is proven stable before the first unstable stretch ends at lo, that begins at hi: doubles, taken exactly; null where there is none.")
+}
+
+/// The record of a stretch.
+fn record() -> Record<'static, Stretch> {
+    Record::new()
+        .field(Column::new("lo"), |stretch: &Stretch| stretch.lo.into())
+        .says(ROUNDED, "The stretch begins here, a double taken exactly.")
+        .field(Column::new("hi"), |stretch| stretch.hi.into())
+        .says(ROUNDED, "The stretch ends here, a double taken exactly.")
+        .field(Column::new("verdict").left(), |stretch| stretch.verdict.name().into())
+        .says(Shape::OneOf(Holds::NAMES), "Proven of every number between.")
+}
+
+/// How many stretches are so.
+fn number(intervals: &Intervals, verdict: Holds) -> usize {
+    intervals.stretches.iter().filter(|stretch| stretch.verdict == verdict).count()
 }
 
 #[cfg(test)]

@@ -1,28 +1,43 @@
 //! How far a verdict on measured stiffnesses stands, in JSON and in words.
 
-use serde_json::{Value, json};
-
 use crate::report::decimal;
-use crate::report::document::enclosure;
+use crate::report::record::Record;
+use crate::report::shape::{ALL_ROUNDED, COUNT, ENCLOSURE, FLAG, ROUNDED, ROUNDED_OR_NULL, Shape, TEXT};
 use systems::levels::Method;
-use systems::{Holds, Measured};
+use systems::{Holds, Measured, Removed};
 
-/// The entry `measured` of a document.
-pub(super) fn value(measured: &Measured) -> Value {
-    let removed =
-        measured.removed.as_ref().map(|r| json!({"count": r.count, "found_by": r.found_by, "held": r.held}));
-    let mut value = json!({
-        "accuracy": measured.accuracy,
-        "holds": measured.holds.name(),
-        "margin": measured.margin,
-        "first_unstable": measured.first_unstable.map(enclosure),
-        "above_unstable": measured.is_above_unstable,
-        "rigid_motions": removed,
-    });
-    if has_other_method(measured) {
-        value["method"] = measured.method.into();
-    }
-    value
+/// The record of the entry `measured` of a document.
+pub(super) fn record() -> Record<'static, Measured> {
+    const MOTIONS: Shape = Shape::OrNull(&Shape::Object(|| motions().keys()));
+    Record::new()
+        .json("accuracy", |measured: &Measured| measured.accuracy.into())
+        .says(ROUNDED, "A double: every stiffness is known to this times its norm (2-norm, mass-weighted), along an orbit times the largest norm of its clock's kicks.")
+        .json("holds", |measured| measured.holds.name().into())
+        .says(Shape::OneOf(Holds::NAMES), "For every matrix within the accuracy.")
+        .json("margin", |measured| measured.margin.into())
+        .says(ROUNDED_OR_NULL, "A double: the verdict, stable or unstable, is proven of all stiffnesses within this times their norms; null where it is of none.")
+        .json("first_unstable", |measured| measured.first_unstable.into())
+        .says(Shape::OrNull(&ENCLOSURE), "Every outer step up to lo is proven stable with all other steps in their ratios to it, hi is proven unstable: doubles, taken exactly.")
+        .json("above_unstable", |measured| measured.is_above_unstable.into())
+        .says(FLAG, "Whether the step lies above an unstable one.")
+        .value("rigid_motions", |measured| measured.removed.as_ref().map(|r| motions().entries(r)).into())
+        .says(MOTIONS, "Projected out of every potential, and what of the norms they held.")
+        .optional("method", |measured| has_other_method(measured).then(|| measured.method.into()))
+        .says(Shape::Words(|| Method::all().skip(1).map(|method| method.name().into()).collect()), "The integrator, where it is another than kicks and drifts: the fast force is taken in one go over the outer step.")
+}
+
+/// The record of what was projected out.
+pub(in crate::report) fn motions() -> Record<'static, Removed> {
+    Record::new()
+        .json("count", |removed: &Removed| removed.count.into())
+        .says(COUNT, "")
+        .json("found_by", |removed| removed.found_by.into())
+        .says(TEXT, "")
+        .value("held", |removed| removed.held.clone().into())
+        .says(
+            ALL_ROUNDED,
+            "Rounded doubles: the part of its norm that each potential held along them, by increasing step.",
+        )
 }
 
 /// Whether it is another than kicks and drifts: there are no inner steps then.

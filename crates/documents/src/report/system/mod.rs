@@ -12,20 +12,23 @@ mod nearest;
 mod viewers;
 mod words;
 
-use serde_json::{Value, json};
-
 use super::decimal;
-use super::document::{Document, enclosure};
+use super::document::Document;
 use super::record::Record;
-use super::table::Column;
+use super::shape::{
+    ALL_ROUNDED, COUNT, ENCLOSED_OR_NULL, FLAG, FLAG_OR_NULL, INTEGER, KIND_IF_DECIDED, POSITIVE, ROUNDED,
+    ROUNDED_OR_NULL, Schema, Shape, TEXT, TEXTS, WIDE_ENCLOSURE,
+};
+use super::table::{Cell, Column};
 use super::text::counted;
+use beside::About;
 pub use beside::Beside;
 pub use bias::Biases;
 pub use chart::Colouring;
 pub use intervals::figure as intervals_figure;
-pub use intervals::{document as intervals, sampled};
+pub use intervals::{document as intervals, sampled, schema as intervals_schema};
 pub use map::SystemMap;
-pub(in crate::report) use measured::of_each;
+pub(in crate::report) use measured::{motions, of_each};
 pub use modes::figure;
 use systems::{Analysis, Clocked, Holds, Instability, MuCount, Multiplier, Origin, Part, Resonance};
 pub use viewers::{vtu, xyz};
@@ -34,84 +37,152 @@ use words::{rate, rate_per};
 const CAPTION: &str =
     "Multipliers $\\lambda$ over one synchronization period, $\\lambda + 1/\\lambda = 2 + 4\\mu$";
 
+/// A part, and its number from 1.
+type Numbered<'a> = (u64, &'a Part);
+
 /// The document `kickdrift/system-verdict/1`; the caller adds the input.
 pub fn document(analysis: &Analysis, beside: &Beside) -> Document {
-    let parts = || (1..).zip(&analysis.parts);
-    let all: Vec<Own> = parts().flat_map(|(n, part)| multipliers(n, part)).collect();
+    let all: Vec<Own> = numbered(analysis).into_iter().flat_map(multipliers).collect();
     let table =
         record().table("multipliers", "Multipliers over one synchronization period", &all).captioned(CAPTION);
-    let document = Document::new("system-verdict")
-        .entry("degrees_of_freedom", analysis.size)
-        .entry("clocks", analysis.clocks)
-        .entry("period", analysis.period.to_string())
-        .entry("kind", analysis.kind_name())
-        .entry("stable", analysis.holds().is_stable())
-        .entry("proven", analysis.is_proof())
-        .entry("growth_rate", analysis.growth_rate().map(enclosure))
-        .entry("rigid_modes", analysis.rigid_modes.len())
-        .entry("parts", parts().map(part).collect::<Vec<_>>())
-        .entry("warnings", analysis.warnings.clone())
-        .entries(analysis.measured.as_ref().map(|measured| ("measured", measured::value(measured))))
-        .entry("bias", bias::value(beside.bias))
-        .entries(beside::entries(beside, analysis));
+    let document = head().document(Document::new("system-verdict"), &(analysis, beside));
     document.long_rows(table).summary_alone(&lines(analysis, beside))
 }
 
-fn multipliers(n: u64, part: &Part) -> impl Iterator<Item = Own<'_>> {
+/// Its schema.
+pub fn schema() -> Schema {
+    let about = "M x'' + sum K_k x = 0, each potential with its own clock. Multipliers satisfy lambda + 1/lambda = 2 + 4 mu.";
+    Schema::new("The verdict on a system", head().keys()).about(about)
+}
+
+/// The record of the whole.
+fn head<'a>() -> Record<'a, About<'a>> {
+    const PARTS: Shape = Shape::List(&Shape::Object(|| part().keys()));
+    let record = Record::new()
+        .json("degrees_of_freedom", |(analysis, _): &About| analysis.size.into())
+        .says(POSITIVE, "")
+        .json("clocks", |(analysis, _)| analysis.clocks.into())
+        .says(POSITIVE, "")
+        .json("period", |(analysis, _)| Cell::exact(&analysis.period))
+        .says(TEXT, "The synchronization period: exact, rational or with pi.")
+        .json("kind", |(analysis, _)| analysis.kind_name().into())
+        .says(KIND_IF_DECIDED, "")
+        .json("stable", |(analysis, _)| analysis.holds().is_stable().into())
+        .says(FLAG_OR_NULL, "null: not decided.")
+        .json("proven", |(analysis, _)| analysis.is_proof().into())
+        .says(FLAG, "False where nothing is decided; a warning says why.")
+        .json("growth_rate", |(analysis, _)| analysis.growth_rate().into())
+        .says(ENCLOSED_OR_NULL, "The largest, per unit time, 0 where nothing grows exponentially; null where no bound is proven.")
+        .json("rigid_modes", |(analysis, _)| analysis.rigid_modes.len().into())
+        .says(COUNT, "Common null vectors of all potentials, set apart.")
+        .value("parts", |(analysis, _)| part().all(&numbered(analysis)).into())
+        .says(PARTS, "Degrees of freedom that no potential joins, each set decided over its own period.")
+        .value("warnings", |(analysis, _)| analysis.warnings.clone().into())
+        .says(TEXTS, "")
+        .optional("measured", |(analysis, _)| {
+            analysis.measured.as_ref().map(|measured| measured::record().entries(measured))
+        })
+        .says(Shape::Object(|| measured::record().keys()), "How far the verdict on measured stiffnesses stands; only where they are given by reference, and where a warning does not say that their accuracy is not used.")
+        .value("bias", |(_, beside)| bias::value(beside.bias))
+        .says(bias::SHAPE, bias::SAYS);
+    beside::fields(record)
+}
+
+fn numbered(analysis: &Analysis) -> Vec<Numbered<'_>> {
+    (1..).zip(&analysis.parts).collect()
+}
+
+fn multipliers<'a>((n, part): Numbered<'a>) -> impl Iterator<Item = Own<'a>> {
     part.multipliers.iter().map(move |multiplier| (n, part, multiplier))
 }
 
-fn part((n, part): (u64, &Part)) -> Value {
-    json!({
-        "dofs": part.dofs,
-        "size": part.size,
-        "period": part.period.to_string(),
-        "kind": part.kind_name(),
-        "decided_by": part.evidence.name(),
-        "multipliers": multipliers(n, part).map(|multiplier| record().entries(&multiplier)).collect::<Vec<_>>(),
-        "instabilities": part.instabilities.iter().map(instability).collect::<Vec<_>>(),
-        "roots": part.roots.as_ref().map(roots),
-        "oscillator": part.oscillator.as_ref().map(clocked),
-    })
+fn part<'a>() -> Record<'a, Numbered<'a>> {
+    const DECIDED_BY: Shape = Shape::OneOf(&["filter", "refine", "exact", "signs", "discs", "estimate"]);
+    Record::new()
+        .value("dofs", |(_, part): &Numbered| part.dofs.clone().into())
+        .says(Shape::List(&COUNT), "")
+        .json("size", |(_, part)| part.size.into())
+        .says(COUNT, "")
+        .json("period", |(_, part)| Cell::exact(&part.period))
+        .says(TEXT, "")
+        .json("kind", |(_, part)| part.kind_name().into())
+        .says(KIND_IF_DECIDED, "")
+        .json("decided_by", |(_, part)| part.evidence.name().into())
+        .says(DECIDED_BY, "")
+        .value("multipliers", |&numbered| record().all(&multipliers(numbered).collect::<Vec<_>>()).into())
+        .says(Shape::List(&Shape::Object(|| record().keys())), "")
+        .value("instabilities", |(_, part)| instability().all(&part.instabilities).into())
+        .says(Shape::List(&Shape::Object(|| instability().keys())), "")
+        .value("roots", |(_, part)| part.roots.as_ref().map(|count| roots().entries(count)).into())
+        .says(Shape::OrNull(&Shape::Object(|| roots().keys())), "The exact count of the mu by place, each as often as it is one, where exact arithmetic decided: together `size`.")
+        .value("oscillator", |(_, part)| part.oscillator.as_ref().map(|one| clocked().entries(one)).into())
+        .says(Shape::OrNull(&Shape::Object(|| clocked().keys())), "For one degree of freedom.")
 }
 
-fn roots(count: &MuCount) -> Value {
-    json!({
-        "inside": count.inside, "at_zero": count.at_zero, "at_minus_one": count.at_minus_one,
-        "above": count.above, "below": count.below, "complex": count.complex,
-    })
+fn roots() -> Record<'static, MuCount> {
+    Record::new()
+        .json("inside", |count: &MuCount| count.inside.into())
+        .says(COUNT, "Between -1 and 0: lambda on the unit circle.")
+        .json("at_zero", |count| count.at_zero.into())
+        .says(COUNT, "lambda = 1.")
+        .json("at_minus_one", |count| count.at_minus_one.into())
+        .says(COUNT, "lambda = -1.")
+        .json("above", |count| count.above.into())
+        .says(COUNT, "Above 0: lambda > 1.")
+        .json("below", |count| count.below.into())
+        .says(COUNT, "Below -1: lambda < -1.")
+        .json("complex", |count| count.complex.into())
+        .says(COUNT, "Not real.")
 }
 
-fn clocked(clocked: &Clocked) -> Value {
-    json!({
-        "trace": enclosure(clocked.trace.to_f64_enclosure()), "strikes": clocked.strikes,
-        "label": clocked.label, "families": clocked.families,
-    })
+fn clocked() -> Record<'static, Clocked> {
+    const STRIKES: Shape = Shape::List(&POSITIVE);
+    const FAMILIES: Shape = Shape::List(&Shape::List(&INTEGER));
+    Record::new()
+        .json("trace", |clocked: &Clocked| clocked.trace.to_f64_enclosure().into())
+        .says(WIDE_ENCLOSURE, "An enclosure of Tr Q.")
+        .value("strikes", |clocked| clocked.strikes.clone().into())
+        .says(STRIKES, "T/h_k.")
+        .json("label", |clocked| clocked.label.into())
+        .says(Shape::OrNull(&COUNT), "Half turns of the growing solution in a period.")
+        .value("families", |clocked| clocked.families.clone().into())
+        .says(FAMILIES, "The a_k of 1/T_half = sum a_k/h_k, the shortest first.")
 }
 
-fn instability(unstable: &Instability) -> Value {
-    let resonance = unstable.resonance.as_ref().map(|r| {
-        json!({
-            "frequencies": [r.frequencies.0, r.frequencies.1], "sign": r.sign, "m": r.m,
-            "family": r.family, "detuning": r.detuning,
-        })
-    });
-    let lambda = unstable.multiplier.lambda;
-    json!({
-        "lambda": {"re": lambda.re, "im": lambda.im},
-        "origin": origin(unstable.origin),
-        "growth_rate": unstable.growth_rate.map(enclosure),
-        "shape": unstable.shape,
-        "quadrature": unstable.quadrature,
-        "resonance": resonance,
-    })
+fn instability() -> Record<'static, Instability> {
+    Record::new()
+        .json("lambda.re", |unstable: &Instability| unstable.multiplier.lambda.re.into())
+        .says(ROUNDED, "")
+        .json("lambda.im", |unstable| unstable.multiplier.lambda.im.into())
+        .says(ROUNDED, "")
+        .json("origin", |unstable| unstable.origin.name().into())
+        .says(Shape::OneOf(Origin::NAMES), "")
+        .json("growth_rate", |unstable| unstable.growth_rate.into())
+        .says(ENCLOSED_OR_NULL, "Per unit time; null where no bound is proven.")
+        .value("shape", |unstable| unstable.shape.clone().into())
+        .says(ALL_ROUNDED, "The positions of the growing solution at the start of a period, the longest 1.")
+        .value("quadrature", |unstable| unstable.quadrature.clone().into())
+        .says(ALL_ROUNDED, "The imaginary part of the shape.")
+        .value("resonance", |unstable| unstable.resonance.as_ref().map(|r| resonant().entries(r)).into())
+        .says(
+            Shape::OrNull(&Shape::Object(|| resonant().keys())),
+            "The nearest one, by the normal modes in the shape; null where these could not be computed.",
+        )
 }
 
-fn origin(origin: Origin) -> &'static str {
-    match origin {
-        Origin::RealPair => "real pair",
-        Origin::Collision => "collision",
-    }
+fn resonant() -> Record<'static, Resonance> {
+    const TWO: Shape = Shape::With(&ALL_ROUNDED, r#"{"minItems": 2, "maxItems": 2}"#);
+    Record::new()
+        .value("frequencies", |r: &Resonance| vec![r.frequencies.0, r.frequencies.1].into())
+        .says(TWO, "w_i and w_j, per unit time.")
+        .json("sign", |r| i64::from(r.sign).into())
+        .says(Shape::Plain(r#"{"enum": [1, -1]}"#), "Of w_i + w_j or w_i - w_j.")
+        .json("m", |r| r.m.into())
+        .says(INTEGER, "(w_i +- w_j) T/(2 pi) is near it.")
+        .value("family", |r| r.family.clone().into())
+        .says(Shape::List(&INTEGER), "The a_k of m = sum a_k T/h_k; empty where none was found.")
+        .json("detuning", |r| r.detuning.into())
+        .says(ROUNDED, "(w_i +- w_j) T/(2 pi) - m.")
 }
 
 fn lines(analysis: &Analysis, beside: &Beside) -> Vec<String> {
@@ -240,19 +311,23 @@ type Own<'a> = (u64, &'a Part, &'a Multiplier);
 /// The record of a multiplier.
 fn record<'a>() -> Record<'a, Own<'a>> {
     let titled = |key: &str, title: &str| Column::new(key).titled(title, title);
+    let part_of_mu = |key: &str, part: &str| {
+        Column::new(key).titled(&format!("{part} mu"), &format!("$\\operatorname{{{part}}}\\mu$"))
+    };
     Record::new()
         .column(Column::new("part").aside(), |&(n, ..): &Own| n.into())
         .column(Column::new("kind").left(), |(_, part, _)| part.kind_name().into())
         .column(titled("decided_by", "decided by").left().aside(), |(_, part, _)| part.evidence.name().into())
-        .at("mu.re", Column::new("mu_re").titled("Re mu", "$\\operatorname{Re}\\mu$"), |(.., m)| {
-            m.mu.re.into()
-        })
-        .at("mu.im", Column::new("mu_im").titled("Im mu", "$\\operatorname{Im}\\mu$"), |(.., m)| {
-            m.mu.im.into()
-        })
+        .at("mu.re", part_of_mu("mu_re", "Re"), |(.., m)| m.mu.re.into())
+        .says(ROUNDED, "")
+        .at("mu.im", part_of_mu("mu_im", "Im"), |(.., m)| m.mu.im.into())
+        .says(ROUNDED, "")
         .field(Column::new("radius"), |(.., m)| m.radius.into())
+        .says(ROUNDED_OR_NULL, "The exact mu is within this double of the one given; null: not bounded.")
         .json("lambda.re", |(.., m)| m.lambda.re.into())
+        .says(ROUNDED, "")
         .json("lambda.im", |(.., m)| m.lambda.im.into())
+        .says(ROUNDED, "")
         .column(Column::new("lambda_abs").titled("|lambda|", "$|\\lambda|$"), |(.., m)| {
             m.lambda.norm().into()
         })

@@ -119,10 +119,7 @@ fn shape(n: usize, pair: &Growing) -> Panel {
 
 /// Kind, growth and resonance, in the notation of labels.
 fn described(&(unstable, height): &Growing) -> String {
-    let kind = match unstable.origin {
-        Origin::RealPair => "real pair",
-        Origin::Collision => "collision",
-    };
+    let kind = unstable.origin.name();
     let rate = match unstable.growth_rate {
         Some((lo, hi)) if lo > 0.0 && hi.is_finite() => decimal::shortened(lo, hi, 4).to_string(),
         Some(pair) => rate(Some(pair)),

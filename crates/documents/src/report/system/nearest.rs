@@ -1,22 +1,51 @@
 //! The unstable outer steps next to that of a verdict, in JSON and in words.
 
-use serde_json::{Value, json};
+use serde_json::Value;
 
 use crate::report::decimal;
 use crate::report::document::enclosure;
+use crate::report::record::Record;
+use crate::report::shape::{ENCLOSURE, ROUNDED, ROUNDED_OR_NULL, Shape};
 use systems::nearest::{Nearest, Unstable};
 
-/// The entry `nearest_unstable` of a document.
-pub(super) fn value(nearest: &Nearest) -> Value {
-    let interval = |unstable: Unstable| json!({"lo": unstable.proven.0, "hi": unstable.proven.1, "stable_below": unstable.within.0, "stable_above": unstable.within.1});
-    json!({
-        "step": nearest.number,
-        "searched": enclosure(nearest.searched),
-        "own": nearest.own.map(interval),
-        "below": nearest.below.map(interval),
-        "above": nearest.above.map(interval),
-        "untold": nearest.untold.iter().copied().map(enclosure).collect::<Vec<_>>(),
-    })
+/// The record of the entry `nearest_unstable` of a document.
+pub(super) fn record() -> Record<'static, Nearest> {
+    const INTERVAL: Shape = Shape::OrNull(&Shape::Object(|| ends().keys()));
+    const NONE: &str = "null: none between the step and the end of what was searched.";
+    fn entries(unstable: Option<&Unstable>) -> Value {
+        unstable.map(|unstable| ends().entries(unstable)).into()
+    }
+    Record::new()
+        .json("step", |nearest: &Nearest| nearest.number.into())
+        .says(ROUNDED, "A double: the outer step of the file, rounded.")
+        .json("searched", |nearest| nearest.searched.into())
+        .says(ENCLOSURE, "Every outer step between these doubles is covered: what is neither in an interval nor untold, edges apart, is proven stable up to the nearest ones.")
+        .value("own", |nearest| entries(nearest.own.as_ref()))
+        .says(INTERVAL, "The one that holds the step.")
+        .value("below", |nearest| entries(nearest.below.as_ref()))
+        .says(INTERVAL, NONE)
+        .value("above", |nearest| entries(nearest.above.as_ref()))
+        .says(INTERVAL, NONE)
+        .value("untold", |nearest| nearest.untold.iter().copied().map(enclosure).collect())
+        .says(Shape::List(&ENCLOSURE), "Steps no farther than these of which nothing is proven.")
+}
+
+fn ends() -> Record<'static, Unstable> {
+    Record::new()
+        .json("lo", |unstable: &Unstable| unstable.proven.0.into())
+        .says(ROUNDED, "A double: the first outer step that is proven unstable.")
+        .json("hi", |unstable| unstable.proven.1.into())
+        .says(ROUNDED, "A double: the last one.")
+        .json("stable_below", |unstable| unstable.within.0.into())
+        .says(
+            ROUNDED_OR_NULL,
+            "A double: the last outer step below that is proven stable; null beyond what was searched.",
+        )
+        .json("stable_above", |unstable| unstable.within.1.into())
+        .says(
+            ROUNDED_OR_NULL,
+            "A double: the first outer step above that is proven stable; null beyond what was searched.",
+        )
 }
 
 /// The entry as lines of text; `unit` is that of times, after a space.

@@ -13,7 +13,7 @@ mod local;
 
 use super::sample::sample;
 use crate::input::SystemScene;
-use crate::question::{Found, Simulate, Simulated, System, SystemAnswer};
+use crate::question::{Simulate, Simulated, System, SystemAnswer, SystemFound};
 use crate::report::system::SystemMap;
 use crate::verify::again::Excluded;
 use crate::verify::context::{ALONE, Checked, Context, Fault, Outcome, failure, same, too_costly};
@@ -37,14 +37,14 @@ impl Verify for System {
 
     fn check(&self, SystemAnswer { scene, found }: &SystemAnswer, context: &Context) -> Result<Outcome> {
         match found {
-            Found::Verdict(decided) => {
+            SystemFound::Verdict(decided) => {
                 let mut found = verdict(scene, &decided.analysis, decided.local.as_ref(), context)?;
                 let bias = bias::check(scene, &decided.analysis, decided.bias.as_ref());
                 found.failures.extend(failure(1, bias)?);
                 Ok(found)
             }
-            Found::Map(map) => points(self, scene, map, context),
-            Found::Intervals(found) => intervals::check(self, scene, found, context),
+            SystemFound::Map(map) => points(self, scene, map, context),
+            SystemFound::Intervals(found) => intervals::check(self, scene, found, context),
         }
     }
 }

@@ -6,7 +6,7 @@
 
 use std::arch::x86_64::*;
 
-use crate::vector::{EXPONENTS, SIGN, Vector, WHOLE};
+use crate::vector::{EXPONENTS, FloatRing, SIGN, Vector, WHOLE};
 
 /// A value for the k-th register, of every one. A loop and no closure: compilers leave closures for the
 /// processor's common instructions.
@@ -31,6 +31,33 @@ macro_rules! registers {
      choice: $choose:ident $any:ident $mask:ty, $exceeds:ident $contrast:ident $select:ident) => {
         #[derive(Clone, Copy)]
         pub(super) struct $name([$register; $count]);
+
+        impl FloatRing for $name {
+            #[inline(always)]
+            fn add(self, other: Self) -> Self {
+                each!(self, k => $add(self.0[k], other.0[k]))
+            }
+
+            #[inline(always)]
+            fn sub(self, other: Self) -> Self {
+                each!(self, k => $sub(self.0[k], other.0[k]))
+            }
+
+            #[inline(always)]
+            fn mul(self, other: Self) -> Self {
+                each!(self, k => $mul(self.0[k], other.0[k]))
+            }
+
+            #[inline(always)]
+            fn mul_add(self, b: Self, c: Self) -> Self {
+                each!(self, k => $mul_add(self.0[k], b.0[k], c.0[k]))
+            }
+
+            #[inline(always)]
+            fn mul_sub(self, b: Self, c: Self) -> Self {
+                each!(self, k => $mul_sub(self.0[k], b.0[k], c.0[k]))
+            }
+        }
 
         impl Vector for $name {
             const WIDTH: usize = $count * $width;
@@ -78,33 +105,8 @@ macro_rules! registers {
             }
 
             #[inline(always)]
-            fn add(self, other: Self) -> Self {
-                each!(self, k => $add(self.0[k], other.0[k]))
-            }
-
-            #[inline(always)]
-            fn sub(self, other: Self) -> Self {
-                each!(self, k => $sub(self.0[k], other.0[k]))
-            }
-
-            #[inline(always)]
-            fn mul(self, other: Self) -> Self {
-                each!(self, k => $mul(self.0[k], other.0[k]))
-            }
-
-            #[inline(always)]
-            fn mul_add(self, b: Self, c: Self) -> Self {
-                each!(self, k => $mul_add(self.0[k], b.0[k], c.0[k]))
-            }
-
-            #[inline(always)]
             fn neg_mul_add(self, b: Self, c: Self) -> Self {
                 each!(self, k => $neg_mul_add(self.0[k], b.0[k], c.0[k]))
-            }
-
-            #[inline(always)]
-            fn mul_sub(self, b: Self, c: Self) -> Self {
-                each!(self, k => $mul_sub(self.0[k], b.0[k], c.0[k]))
             }
 
             #[inline(always)]
