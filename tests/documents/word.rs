@@ -104,7 +104,9 @@ fn the_catalogue_is_what_its_sources_say() {
         "mclachlan-atela-3",
         "mclachlan-atela-4",
         "mclachlan-atela-5",
+        "calvo-sanz-serna-4",
         "bbk",
+        "wisdom-holman-composition",
     ];
     for method in METHODS {
         let word = method.word();

@@ -3,7 +3,7 @@
 use num_traits::{One, Zero};
 
 use super::letters::Word;
-use super::product::{Forces, TERMS};
+use super::product::{FEW_TERMS, Forces, TERMS};
 use number::{Polynomial, Radical, Rational, Real, Ring, rational};
 
 /// Polynomials in ρ = Λ2/Λ1.
@@ -32,7 +32,7 @@ pub struct Order {
 }
 
 /// The largest order that is given for a word with exact flows or filters: it has this order or a higher one.
-pub const MOST_ORDER: u64 = 2 * TERMS as u64 - 3;
+pub const MOST_ORDER: u64 = known_order(TERMS);
 
 /// An error coefficient below this counts as 0 for the nominal order.
 const ROUNDED: i64 = -30;
@@ -49,9 +49,14 @@ fn exact(k: usize, offset: i64, named: bool) -> InRho {
     (0..k).fold(InRho::one(), |power, _| &power * &sum).scale(&Radical::from_rational(&(sign / factorial)))
 }
 
+/// The order up to which the series of so many terms are known.
+const fn known_order(terms: usize) -> u64 {
+    2 * terms as u64 - 3
+}
+
 /// A power series in s without the terms that flows and filters leave out.
-fn first_terms(series: Polynomial<InRho>) -> Polynomial<InRho> {
-    Polynomial::new(series.coefficients().iter().take(TERMS + 1).cloned().collect())
+fn first_terms(series: Polynomial<InRho>, terms: usize) -> Polynomial<InRho> {
+    Polynomial::new(series.coefficients().iter().take(terms + 1).cloned().collect())
 }
 
 fn is_small(f: &InRho) -> bool {
@@ -62,13 +67,24 @@ fn is_small(f: &InRho) -> bool {
 impl Word {
     /// The order on oscillators, with the leading errors.
     pub fn order(&self) -> Order {
+        // The frequency's error of one force may come much later than that of the entries.
+        if !self.is_algebraic() && self.names_forces() {
+            let order = self.order_by(FEW_TERMS);
+            if order.nominal < known_order(FEW_TERMS) {
+                return order;
+            }
+        }
+        self.order_by(TERMS)
+    }
+
+    fn order_by(&self, terms: usize) -> Order {
         let named = self.names_forces();
         let s = Polynomial::<InRho>::variable();
         let rho = if named { InRho::variable() } else { InRho::zero() };
         let embed = |c: &Radical| Polynomial::constant(InRho::constant(c.clone()));
         let mut forces = Forces::new([s.clone(), s.scale(&rho)], embed);
         if !self.is_algebraic() {
-            forces.trim = first_terms;
+            (forces.terms, forces.trim) = (terms, first_terms);
         }
         let product = self.product(&forces);
         let below = product.denominator.coefficients();
@@ -89,7 +105,7 @@ impl Word {
         };
         // No rational function of s is the exact flow, so both are found; of series the first terms are
         // known.
-        let most = if self.is_algebraic() { u64::MAX } else { MOST_ORDER + 1 };
+        let most = if self.is_algebraic() { u64::MAX } else { known_order(terms) + 1 };
         let first = |counts: &dyn Fn(&InRho) -> bool| {
             (1..most).find(|&power| errors(power).iter().any(counts)).unwrap_or(most)
         };
@@ -101,7 +117,7 @@ impl Word {
             // δ cos θ = −sin θ δθ, so δθ/θ = −(the error of Tr/2)/(ω h)².
             let wrong = |k: usize| &error(&m[(0, 0)], k, 0) + &error(&m[(1, 1)], k, 0);
             let differs = |k: &usize| !wrong(*k).is_zero();
-            let most = if self.is_algebraic() { usize::MAX } else { TERMS - 1 };
+            let most = if self.is_algebraic() { usize::MAX } else { terms - 1 };
             frequency = (2..most).find(differs).map(|k| (2 * k as u64 - 2, -halved(wrong(k))));
             if m[(0, 0)] == m[(1, 1)] {
                 // −C/(s B) = 1 + 2 c s^k + ...

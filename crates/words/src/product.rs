@@ -17,8 +17,10 @@ pub struct Forces<S> {
     pub embed: fn(&Radical) -> S,
     /// γ h, of letters F and I; letters O do nothing.
     pub friction: S,
-    /// An entry without what is not asked for: products of series grow.
-    pub trim: fn(S) -> S,
+    /// Terms of the series of flows and filters.
+    pub terms: usize,
+    /// An entry without what is behind so many terms: products of series grow.
+    pub trim: fn(S, usize) -> S,
 }
 
 /// A product of letters in the coordinates (x, h v): the matrix divided by the denominator and by what
@@ -41,7 +43,7 @@ pub type Polynomials = Product<Polynomial<Radical>>;
 impl<S: Ring> Forces<S> {
     /// Without friction, and every entry as it comes.
     pub fn new(of: [S; 2], embed: fn(&Radical) -> S) -> Self {
-        Forces { of, embed, friction: S::zero(), trim: |x| x }
+        Forces { of, embed, friction: S::zero(), terms: TERMS, trim: |x, _| x }
     }
 }
 
@@ -84,8 +86,11 @@ pub(super) trait Setting<S: Ring> {
     }
 }
 
-/// Terms of the series of flows and filters in [`Forces`]: orders up to twice as many are found.
+/// The most terms of the series of flows and filters in [`Forces`]: orders up to twice as many are found.
 pub(super) const TERMS: usize = 12;
+
+/// Terms that decide most words: the numbers in a product grow with the square of these.
+pub(super) const FEW_TERMS: usize = 4;
 
 /// Σ f_k F^k by Horner's rule.
 fn series<S: Ring>(all: &[S], force: &S) -> S {
@@ -117,13 +122,13 @@ impl<S: Ring> Setting<S> for Forces<S> {
                 );
                 Some(number)
             };
-            (0..TERMS as u64).scan(Rational::one(), next).collect::<Vec<_>>()
+            (0..self.terms as u64).scan(Rational::one(), next).collect::<Vec<_>>()
         };
         [series(&terms(0), &x), S::product(&c, &series(&terms(1), &x))]
     }
 
     fn filter(&self, filter: Filter) -> S {
-        let all: Vec<S> = filter.series(TERMS).iter().map(S::from_rational).collect();
+        let all: Vec<S> = filter.series(self.terms).iter().map(S::from_rational).collect();
         series(&all, &self.of[0])
     }
 
@@ -136,7 +141,7 @@ impl<S: Ring> Setting<S> for Forces<S> {
     }
 
     fn trimmed(&self, x: S) -> S {
-        (self.trim)(x)
+        (self.trim)(x, self.terms)
     }
 }
 
@@ -237,19 +242,26 @@ impl Word {
         self.product(forces)
     }
 
-    /// Kicks and midpoints when nothing is abbreviated, each counted by its powers of the force: the degree
-    /// of the entries in s, and a measure of what they cost.
+    /// Kicks and midpoints when nothing is abbreviated, each counted by its powers of the force, and the terms
+    /// of flows: the degree of the entries in s.
     pub fn degree(&self) -> u64 {
-        fn of(items: &[Item]) -> u64 {
-            let one = |item: &Item| match item {
-                Item::Letter(Letter::Drift(_) | Letter::Friction { .. }) => 0,
-                Item::Letter(Letter::Flow { .. }) => TERMS as u64,
-                Item::Letter(Letter::Kick { powers, .. }) => powers.len() as u64,
-                Item::Letter(Letter::Midpoint { .. }) => 1,
-                Item::Repeat(times, inside) => of(inside).saturating_mul(*times),
-            };
-            items.iter().map(one).fold(0, u64::saturating_add)
-        }
-        of(self.items())
+        force_powers(self.items(), TERMS as u64)
     }
+
+    /// The same with the terms of flows that decide most orders: a measure of what the word costs.
+    pub fn effort(&self) -> u64 {
+        force_powers(self.items(), FEW_TERMS as u64)
+    }
+}
+
+/// Powers of the force, a flow having so many.
+fn force_powers(items: &[Item], flow: u64) -> u64 {
+    let one = |item: &Item| match item {
+        Item::Letter(Letter::Drift(_) | Letter::Friction { .. }) => 0,
+        Item::Letter(Letter::Flow { .. }) => flow,
+        Item::Letter(Letter::Kick { powers, .. }) => powers.len() as u64,
+        Item::Letter(Letter::Midpoint { .. }) => 1,
+        Item::Repeat(times, inside) => force_powers(inside, flow).saturating_mul(*times),
+    };
+    items.iter().map(one).fold(0, u64::saturating_add)
 }

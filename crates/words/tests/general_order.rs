@@ -24,14 +24,20 @@ fn terms(order: &kickdrift_words::FormalOrder) -> Vec<String> {
 /// order 6 whose constant is 1e-6.
 const STEP_LOG2: u32 = 5;
 
+/// For words whose leading term is small beside the next ones, as those for planets are: the coefficients of these
+/// are long.
+const SHORT_STEP_LOG2: u32 = 7;
+
 /// That the error halves as the order says; the next term changes it by about a step's length, 3 %.
 fn shows(word: &Word, quadratic: bool, order: u64, name: &str) {
-    shows_at(STEP_LOG2, word, quadratic, order, name);
+    shows_at(&[STEP_LOG2, SHORT_STEP_LOG2], word, quadratic, order, name);
 }
 
-fn shows_at(step_log2: u32, word: &Word, quadratic: bool, order: u64, name: &str) {
-    let seen = order_shown(word, quadratic, step_log2).unwrap();
-    assert!((seen - order as f64).abs() < 0.25, "{name}: order {order}, seen {seen}");
+/// At one of the steps.
+fn shows_at(steps_log2: &[u32], word: &Word, quadratic: bool, order: u64, name: &str) {
+    let seen: Vec<f64> = steps_log2.iter().map(|&log2| order_shown(word, quadratic, log2).unwrap()).collect();
+    let is_near = |seen: &f64| (seen - order as f64).abs() < 0.25;
+    assert!(seen.iter().any(is_near), "{name}: order {order}, seen {seen:?}");
 }
 
 #[test]
@@ -51,7 +57,7 @@ fn methods_of_the_catalogue_converge_as_their_orders_say() {
         }
         assert_eq!(orders.nystrom.nominal, listed.order, "{}: the order that its source states", listed.name);
     }
-    assert!(held > 80, "{held} methods");
+    assert!(held > 115, "{held} methods");
 }
 
 /// A limit that a source prints holds to its last digit, or the catalogue says why not.
@@ -168,8 +174,8 @@ fn random_words_show_the_order_that_is_computed() {
         let word: Word = letters.join(" ").parse().unwrap();
         let orders = word.general_order().unwrap();
         // The leading term may be small beside the next one.
-        shows_at(7, &word, true, orders.nystrom.order, &word.to_string());
-        shows_at(7, &word, false, orders.general.order, &word.to_string());
+        shows_at(&[SHORT_STEP_LOG2], &word, true, orders.nystrom.order, &word.to_string());
+        shows_at(&[SHORT_STEP_LOG2], &word, false, orders.general.order, &word.to_string());
         seen[orders.general.order as usize] += 1;
     }
     assert!(seen[1] > 40 && seen[2] > 40, "{seen:?}");

@@ -10,6 +10,7 @@
 
 mod commutator;
 mod series;
+mod whole;
 
 use std::fmt;
 use std::marker::PhantomData;
@@ -23,6 +24,7 @@ pub use commutator::ErrorTerm;
 use commutator::{Algebra, in_commutators};
 use number::{Radical, Rational, Ring, rational};
 use series::{Generator, Monomial, Scalar, Series};
+use whole::Whole;
 
 /// An order with what is in its way.
 #[derive(Clone, Debug, PartialEq)]
@@ -98,7 +100,7 @@ impl Word {
         if numbers.all(|number| number.field().is_none()) {
             Expansion::<BigInt>::new(self).orders()
         } else {
-            Expansion::<Radical>::new(self).orders()
+            Expansion::<Whole>::new(self).orders()
         }
     }
 }

@@ -5,7 +5,7 @@ use std::ops::{AddAssign, MulAssign, Neg};
 
 use num_bigint::BigInt;
 use num_traits::{One, Zero};
-use number::{Radical, Rational, Real, Ring};
+use number::{Radical, Rational, Ring};
 
 /// A letter of a monomial. In this order: the kicks come first, so that the Lyndon words of all commutators
 /// that vanish for kicks by a potential begin with three kicks.
@@ -65,11 +65,11 @@ impl Monomial {
     }
 }
 
-/// Numbers that series have: whole ones, or whole ones of a field of one root.
+/// Numbers that series have: whole ones, or [`Whole`] ones of a field of one root.
 pub(super) trait Scalar:
     Clone + PartialEq + Zero + One + Neg<Output = Self> + AddAssign + MulAssign
 {
-    /// A number of the word that is whole, in a word whose numbers are of this kind.
+    /// A number of the word that is whole in this sense, in a word whose numbers are of this kind.
     fn of(x: &Radical) -> Self;
 
     fn whole(x: i64) -> Self;
@@ -102,29 +102,6 @@ impl Scalar for BigInt {
 
     fn radical(&self) -> Radical {
         Radical::from_rational(&Rational::from_integer(self.clone()))
-    }
-}
-
-impl Scalar for Radical {
-    fn of(x: &Radical) -> Radical {
-        x.clone()
-    }
-
-    fn whole(x: i64) -> Radical {
-        BigInt::from(x).radical()
-    }
-
-    fn add_product(&mut self, a: &Radical, b: &Radical) {
-        Ring::add_product(self, a, b);
-    }
-
-    fn is_below(&self, limit: &BigInt) -> bool {
-        // Within 2^-32 of a number that lies near the limit either answer will do.
-        self.is_zero() || self.enclosure(32).abs().upper() < Rational::from_integer(limit.clone())
-    }
-
-    fn radical(&self) -> Radical {
-        self.clone()
     }
 }
 
@@ -183,19 +160,21 @@ impl<T: Scalar> Series<T> {
     /// The product, up to `degree`.
     pub(super) fn product(&self, next: &Series<T>, degree: usize) -> Series<T> {
         let mut product = Series::zero();
+        // What follows monomials of m generators, times (m + n)!/(m! n!).
+        let (mut m, mut following) = (usize::MAX, Vec::new());
         for (left, a) in self.terms() {
-            let m = left.degree();
-            let of_degree = |n: usize| {
-                let mut scaled = a.clone();
-                scaled *= T::whole(num_integer::binomial((m + n) as i64, m as i64));
-                scaled
-            };
-            let (mut n, mut scaled) = (0, a.clone());
-            for (right, b) in next.terms().take_while(|(right, _)| m + right.degree() <= degree) {
-                if right.degree() != n {
-                    (n, scaled) = (right.degree(), of_degree(right.degree()));
-                }
-                product.add(left.times(right), &scaled, b);
+            if left.degree() != m {
+                m = left.degree();
+                let fits = next.terms().take_while(|(right, _)| m + right.degree() <= degree);
+                let scaled = fits.map(|(right, b)| {
+                    let mut scaled = b.clone();
+                    scaled *= T::whole(num_integer::binomial((m + right.degree()) as i64, m as i64));
+                    (right, scaled)
+                });
+                following = scaled.collect();
+            }
+            for (right, b) in &following {
+                product.add(left.times(*right), a, b);
             }
         }
         product

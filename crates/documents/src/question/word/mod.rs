@@ -121,7 +121,7 @@ impl Question for Word {
 
 /// Refuses what costs more than the budget allows.
 fn affordable(word: &words::Word, work: &Work) -> Result<()> {
-    let (needed, most) = (word.degree().max(word.len() / LETTERS), work.budget.unwrap_or(MOST_KICKS));
+    let (needed, most) = (word.effort().max(word.len() / LETTERS), work.budget.unwrap_or(MOST_KICKS));
     if needed > most {
         let cost = format!("the entries of this word are polynomials of degree {needed}");
         return Err(Error::budget(cost, needed).or(format!("write a word of {most} kicks at most")));
