@@ -101,7 +101,11 @@ impl Atlas {
         };
         let foot = clock(Foot::default(), 1, stiffness.lambda1.as_ref(), window.h1.as_ref());
         let foot = clock(foot, 2, stiffness.lambda2.as_ref(), window.h2.as_ref());
-        self.ratios.below(foot)
+        let foot = self.ratios.below(foot);
+        if self.curves.is_empty() {
+            return foot;
+        }
+        foot.part("pale: curves 1/*T*_{1/2} = *a*/*h*_1 + *b*/*h*_2, dark: tongues".into())
     }
 
     fn title(&self) -> String {

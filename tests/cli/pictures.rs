@@ -1,0 +1,36 @@
+//! Pictures explain themselves: each thing has one name in their keys, and words beside them are told.
+
+use super::support::Desk;
+
+/// How often a label says these words.
+fn says(svg: &str, words: &str) -> usize {
+    svg.matches(&format!("aria-label=\"{words}\"")).count()
+}
+
+fn drawn(args: &[&str]) -> String {
+    let desk = Desk::new();
+    let ended = desk.run(args);
+    assert_eq!(ended.code, Some(0), "{args:?}: {}", ended.stderr);
+    String::from_utf8(desk.read("a.svg")).unwrap()
+}
+
+#[test]
+fn a_family_of_curves_and_its_tongues_are_one_entry() {
+    let window = ["--h1-range", "0..2/pi", "--h2-range", "0..7/2", "--width", "85mm", "--output", "a.svg"];
+    let args = ["tongues", "--max-sum", "9", "--lambda1", "pi^2", "--lambda2", "pi^2/25"];
+    let svg = drawn(&[&args[..], &window].concat());
+    let entries: Vec<usize> =
+        ["0", "1", "2", "3", "−1", "−2", "−3"].map(|a| says(&svg, &format!("family a = {a}"))).into();
+    assert_eq!((entries, svg.matches("curves a = ").count()), (vec![1; 7], 0));
+    assert!(svg.contains("pale: curves 1/T"), "what is pale has no name");
+}
+
+#[test]
+fn panels_that_show_the_same_name_it_once() {
+    let side = ["compare", "--methods", "impulse,gautschi", "--lambda1", "pi^2/25", "--h-range", "0..16"];
+    let rest = ["--h-step", "1", "--rho-range", "0..1/4", "--rho-step", "1/8", "--output", "a.svg"];
+    assert_eq!(says(&drawn(&[&side[..], &rest].concat()), "unstable"), 1);
+    let trace = ["tongues", "--ratio", "5/3", "--rho", "1/25", "--figure", "trace", "--output", "a.svg"];
+    let svg = drawn(&trace);
+    assert_eq!(["tongue, between certified edges", "|Tr Q| = 2"].map(|words| says(&svg, words)), [1, 1]);
+}
