@@ -14,6 +14,8 @@ fn drawn(args: &[&str]) -> String {
     String::from_utf8(desk.read("a.svg")).unwrap()
 }
 
+const PERIODS: [&str; 5] = ["advise", "--period", "OH=10fs", "--period", "40fs"];
+
 #[test]
 fn a_family_of_curves_and_its_tongues_are_one_entry() {
     let window = ["--h1-range", "0..2/pi", "--h2-range", "0..7/2", "--width", "85mm", "--output", "a.svg"];
@@ -33,4 +35,26 @@ fn panels_that_show_the_same_name_it_once() {
     let trace = ["tongues", "--ratio", "5/3", "--rho", "1/25", "--figure", "trace", "--output", "a.svg"];
     let svg = drawn(&trace);
     assert_eq!(["tongue, between certified edges", "|Tr Q| = 2"].map(|words| says(&svg, words)), [1, 1]);
+}
+
+/// A judgement stood beside its step without a word on what it means.
+#[test]
+fn a_judgement_beside_a_step_is_explained_below() {
+    for (step, status, meaning) in [
+        ("0.5fs,3fs", "safe", "below what is published"),
+        ("0.5fs,4fs", "caution", "beyond a published limit"),
+        ("0.5fs,4.5fs", "near", "not for all in the band"),
+        ("0.5fs,5fs", "island", "above an unstable interval"),
+    ] {
+        let svg = drawn(&[&PERIODS[..], &["--steps", step, "--output", "a.svg"]].concat());
+        assert!(svg.contains(&format!(": {status}\"")), "{step} is not {status}");
+        let foot = svg.split("aria-label=\"").find(|label| label.starts_with("OH (T = ")).unwrap();
+        assert!(foot.contains(&format!("{status}: ")) && foot.contains(meaning), "{foot}");
+    }
+}
+
+#[test]
+fn dots_of_strengths_have_a_key() {
+    let args = ["tongues", "--max-sum", "9", "--lambda1", "10", "--lambda2", "2/5", "--figure", "strength"];
+    assert_eq!(says(&drawn(&[&args[..], &["--output", "a.svg"]].concat()), "a tongue, shaded by its q"), 1);
 }

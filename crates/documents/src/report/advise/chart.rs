@@ -14,7 +14,7 @@ use number::rational::to_f64;
 use systems::levels::Growing;
 
 use super::molecule::called;
-use super::words::{length, named, nearest, percent};
+use super::words::{length, meaning, named, nearest, percent};
 
 /// A row's share of the height, in mm, and half the height of its bars in rows.
 const ROW: f64 = 8.5;
@@ -100,6 +100,7 @@ pub(super) fn of_periods(advice: &Advice, title: &str) -> Figure {
     let near = "two modes may resonate (first order)";
     let foot = advice.modes.iter().fold(Foot::default(), |foot, mode| foot.words(&named(mode, advice.unit)));
     let foot = within(foot, &advice.band, advice.friction.as_ref(), advice.unit);
+    let foot = told(foot, advice.schemes.iter().map(|answer| answer.status));
     let blocks = blocks(&advice.schemes, (|answer: &Answer| &answer.scheme, advice.unit), of);
     draw(&blocks, right, (title, near), advice.unit).footed(&foot)
 }
@@ -109,6 +110,16 @@ pub(super) fn within(foot: Foot, band: &Rational, friction: Option<&Rational>, u
     let foot = foot.words(&format!("all periods within {}", percent(band)));
     let rate = |rate: &Rational| unit.rate(decimal(&(rate * Rational::from_integer(unit.in_rates().into()))));
     friction.map_or(foot.clone(), |value| foot.words(&format!("friction {}", rate(value))))
+}
+
+/// What the words beside the steps mean, each once.
+fn told(foot: Foot, statuses: impl Iterator<Item = Status>) -> Foot {
+    let mut statuses: Vec<Status> = statuses.collect();
+    statuses.sort_unstable();
+    statuses.dedup();
+    statuses
+        .into_iter()
+        .fold(foot, |foot, status| foot.words(&format!("{}: {}", status.name(), meaning(status))))
 }
 
 /// Safe up to what is published, caution up to the band's edge, the unstable intervals over what is not
@@ -151,6 +162,7 @@ pub(super) fn of_molecule(findings: &Findings, title: &str) -> Figure {
     let near = "half a turn of these modes alone";
     let unit = TimeUnit::Femtoseconds;
     let foot = within(Foot::default(), &findings.band, findings.friction.as_ref(), unit);
+    let foot = told(foot, findings.schemes.iter().map(|finding| finding.status));
     draw(
         &blocks(&findings.schemes, (|finding: &Finding| &finding.scheme, unit), of),
         right,
