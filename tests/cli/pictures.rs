@@ -53,6 +53,17 @@ fn a_judgement_beside_a_step_is_explained_below() {
     }
 }
 
+/// Fifteen ratios within 2 % of each other were fifteen rows.
+#[test]
+fn levers_that_reach_as_far_are_one_row() {
+    let args = [&PERIODS[..], &["--steps", "0.5fs,4fs", "--levers", "a.svg"]].concat();
+    let svg = drawn(&args);
+    let rows =
+        ["MOLLY, equilibrium or implicit-explicit", "ratio 5 or 9 others", "MOLLY, long average (none)"];
+    assert_eq!(rows.map(|words| says(&svg, words)), [1, 1, 1]);
+    assert_eq!(says(&svg, "ratio 9"), 0);
+}
+
 #[test]
 fn dots_of_strengths_have_a_key() {
     let args = ["tongues", "--max-sum", "9", "--lambda1", "10", "--lambda2", "2/5", "--figure", "strength"];
