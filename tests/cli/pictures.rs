@@ -69,3 +69,29 @@ fn dots_of_strengths_have_a_key() {
     let args = ["tongues", "--max-sum", "9", "--lambda1", "10", "--lambda2", "2/5", "--figure", "strength"];
     assert_eq!(says(&drawn(&[&args[..], &["--output", "a.svg"]].concat()), "a tongue, shaded by its q"), 1);
 }
+
+/// A figure, a caption and a line said `masses.0`.
+#[test]
+fn a_number_that_is_varied_is_named_in_words() {
+    let desk = Desk::new();
+    desk.write(
+        "system.json",
+        r#"{"schema": "kickdrift/system/1", "masses": [1], "potentials": [
+            {"step": "1/10", "springs": [[0, null, 4]]}, {"step": "1/5", "springs": [[0, null, 1]]}]}"#,
+    );
+    for (args, name, words) in [
+        (["--intervals", "masses.0=1/2..1"], "mass of particle 0", ["of the ", " from 1/2 to 1\""]),
+        (["--scan", "potentials.1.step=1/10..1/5:1/10"], "step of potential 1", ["over the ", " by 1/10\""]),
+    ] {
+        let run = |rest: &[&str]| desk.run(&[&["system", "system.json"], &args[..], rest].concat()).stdout;
+        let [text, latex] = ["text", "latex"].map(|format| run(&["--format", format]));
+        run(&["--output", "a.svg"]);
+        // The command that made it is no caption.
+        let svg = String::from_utf8(desk.read("a.svg")).unwrap();
+        let svg = svg.lines().filter(|line| line.contains("aria-label")).collect::<String>();
+        let path = args[1].split('=').next().unwrap();
+        for (shown, words) in [(text, words[0]), (latex, name), (svg, words[1])] {
+            assert!(shown.contains(name) && shown.contains(words) && !shown.contains(path), "{shown}");
+        }
+    }
+}

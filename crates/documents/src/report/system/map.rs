@@ -16,8 +16,8 @@ use systems::scan::Point;
 /// The points of a scan, row by row of y.
 #[derive(Clone, Debug)]
 pub struct SystemMap {
-    /// The number varied along x and, if there are two, along y.
-    pub names: Vec<String>,
+    /// The number varied along x and, if there are two, along y: in words, with the power of time in its unit.
+    pub numbers: Vec<(String, i8)>,
     pub xs: Vec<Rational>,
     pub ys: Vec<Rational>,
     pub points: Vec<Point>,
@@ -58,7 +58,8 @@ impl SystemMap {
             ),
         ];
         if let Some(Point { at: (x, y), growth_rate, .. }) = fastest {
-            let places = self.names.iter().zip([x, y]).map(|(name, value)| format!("{name} = {value}"));
+            let places =
+                self.numbers.iter().zip([x, y]).map(|((name, _), value)| format!("{name} = {value}"));
             let places = places.collect::<Vec<_>>().join(", ");
             let per = self.time_unit.as_deref().unwrap_or("unit time");
             lines.push(format!("  fastest growth {} at {places}", rate_per(*growth_rate, per)));
@@ -66,7 +67,7 @@ impl SystemMap {
         let fastest = fastest.map(|point| {
             let (x, y) = (point.at.0.to_string(), point.at.1.to_string());
             let growth_rate = outward(point.growth_rate).map(enclosure);
-            match self.names.len() {
+            match self.numbers.len() {
                 1 => json!({"x": x, "growth_rate": growth_rate}),
                 _ => json!({"x": x, "y": y, "growth_rate": growth_rate}),
             }
@@ -84,19 +85,22 @@ impl SystemMap {
     }
 
     fn table(&self) -> Table {
-        let x = Column::new("x").in_words(&self.names[0]);
+        let x = Column::new("x").in_words(&self.numbers[0].0);
         let record = Record::new().field(x, |point: &Point| Cell::exact(&point.at.0));
-        let record = match self.names.get(1) {
-            Some(name) => record.field(Column::new("y").in_words(name), |point| Cell::exact(&point.at.1)),
+        let record = match self.numbers.get(1) {
+            Some((name, _)) => {
+                record.field(Column::new("y").in_words(name), |point| Cell::exact(&point.at.1))
+            }
             None => record,
         };
-        let caption = ["Verdicts over a number of the system", "Verdicts over two numbers of the system"];
+        let names: Vec<&str> = self.numbers.iter().map(|(name, _)| &**name).collect();
+        let caption = format!("Verdicts over the {}", names.join(" and the "));
         record
             .field(Column::new("kind").left(), |point| point.kind_name().into())
             .field(Column::new("proven"), |point| point.kind.is_some().into())
             .field(Column::new("growth_rate").titled("growth rate", "growth rate").enclosure(), |point| {
                 outward(point.growth_rate).into()
             })
-            .table("verdicts", caption[self.names.len() - 1], &self.points)
+            .table("verdicts", &caption, &self.points)
     }
 }
