@@ -65,6 +65,36 @@ fn only_what_is_selected_comes_and_is_the_same_as_among_all() {
     assert!(!family.is_empty() && family.len() < all.len());
 }
 
+/// The upper edge at the second ratio went to a table of its own.
+#[test]
+fn a_band_on_paper_has_both_sides_in_one_row_within_the_exact_ones() {
+    let line = "bands --lambda1 pi^2 --lambda2 pi^2/25 --h1-range 1/5..1/4 --h2-range 9/10..1 --sectors 40";
+    let [latex, csv] = ["latex", "csv"].map(|format| stdout(&words(line, &["--format", format])));
+    let cells = |row: &str| -> Vec<f64> {
+        let joined = row.trim_end_matches(" \\\\").replace("$ & $.", ".").replace('$', "");
+        joined.split(" & ").skip(4).map(|cell| cell.trim().parse().unwrap()).collect()
+    };
+    let paper: Vec<Vec<f64>> = latex.lines().filter(|row| row.starts_with("    $0$")).map(cells).collect();
+    let exact: Vec<Vec<f64>> = csv
+        .lines()
+        .skip(1)
+        .map(|row| row.split(',').skip(4).map(|cell| cell.parse().unwrap()).collect())
+        .collect();
+    assert!(!paper.is_empty() && paper.len() == exact.len(), "{latex}");
+    for (shown, whole) in paper.iter().zip(&exact) {
+        // Rounded in the tenth decimal, to the inside.
+        let inwards: Vec<f64> = [1.0, 1.0, -1.0, -1.0]
+            .iter()
+            .zip(shown.iter().zip(whole))
+            .map(|(side, (a, b))| side * (a - b))
+            .collect();
+        assert!(
+            shown.len() == 4 && inwards.iter().all(|off| (0.0..1e-10).contains(off)),
+            "{shown:?} {whole:?}"
+        );
+    }
+}
+
 #[test]
 fn a_window_of_steps_holds_the_tongues_that_meet_it() {
     let all = rows("tongues --max-sum 9 --lambda1 pi^2 --lambda2 pi^2/25");
