@@ -65,6 +65,32 @@ fn only_what_is_selected_comes_and_is_the_same_as_among_all() {
     assert!(!family.is_empty() && family.len() < all.len());
 }
 
+/// A table was of one ratio or of all.
+#[test]
+fn several_ratios_are_one_table_that_verify_takes() {
+    let desk = Desk::new();
+    let run =
+        |ratio: &str, rest: &[&str]| desk.run(&words(&format!("tongues --ratio {ratio} --rho 1/25"), rest));
+    assert_eq!(run("5/2,3/2", &["--output", "d.json"]).code, Some(0));
+    let document: Value = serde_json::from_slice(&desk.read("d.json")).unwrap();
+    assert_eq!(document["input"].to_string(), r#"{"ratio":"5/2,3/2","rho":"1/25"}"#);
+    let alone = ["5/2", "3/2"].map(|ratio| rows(&format!("tongues --ratio {ratio} --rho 1/25"))).concat();
+    assert_eq!(document["tongues"].as_array().unwrap(), &alone);
+    assert!(desk.run(&["verify", "d.json"]).stdout.starts_with("10 of 10 rows hold"));
+    let mut left_out = document.clone();
+    left_out["tongues"].as_array_mut().unwrap().pop();
+    desk.write("d.json", &left_out.to_string());
+    assert_eq!(desk.run(&["verify", "d.json"]).code, Some(2));
+    let csv = run("5/2,3/2", &["--format", "csv"]).stdout;
+    assert!(
+        csv.lines().nth(1).unwrap().starts_with("5,2,1,")
+            && csv.lines().last().unwrap().starts_with("3,2,4,")
+    );
+    assert!(run("5/2,3/2", &["--format", "latex"]).stdout.contains("$h_2/h_1 = 5/2,3/2$"));
+    let twice = run("5/2,10/4", &[]);
+    assert!(twice.code == Some(2) && twice.stderr.contains("name each ratio once"), "{}", twice.stderr);
+}
+
 /// The upper edge at the second ratio went to a table of its own.
 #[test]
 fn a_band_on_paper_has_both_sides_in_one_row_within_the_exact_ones() {

@@ -110,8 +110,9 @@ impl Atlas {
 
     fn title(&self) -> String {
         let rho = &self.listing.stiffness.rho;
-        match self.ratios {
+        match &self.ratios {
             Ratios::One(ratio) => format!("Tongues of *h*_2/*h*_1 = {ratio}, *ρ* = {rho}"),
+            Ratios::Several(list) => format!("Tongues of *h*_2/*h*_1 = {}, *ρ* = {rho}", list.spaced()),
             Ratios::UpTo(max_sum) => format!("All tongues with *p* + *q* ≤ {max_sum}, *ρ* = {rho}"),
         }
     }
