@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from kickdrift import _plot
 from kickdrift._document import Asked, Table, answered
-from kickdrift._numbers import Exact, Labels, Range, labels_text, names_text, optional_range, optional_text
+from kickdrift._numbers import Exact, Labels, Range, labels_text, names_text, optional_range, optional_text, text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -72,8 +72,16 @@ class Tongues(Table):
         return self.to_svg() if {"lambda1", "h1_range", "h2_range"} <= asked.keys() else None
 
 
+def _ratios(given: Exact | Iterable[Exact]) -> str:
+    """One ratio or several, as the library reads them."""
+    if isinstance(given, str):
+        given = given.split(",")
+    several: Iterable[Exact] = given if isinstance(given, Iterable) else [given]
+    return ",".join(text("ratio", ratio) for ratio in several)
+
+
 def tongues(
-    ratio: Exact | None = None,
+    ratio: Exact | Iterable[Exact] | None = None,
     *,
     max_sum: int | None = None,
     rho: Exact | None = None,
@@ -87,12 +95,12 @@ def tongues(
     digits: int | None = None,
     columns: Iterable[Literal["edges", "exact", "growth", "predicted", "first-order"]] | None = None,
 ) -> Tongues:
-    """Find every unstable interval of one ratio of steps, or of all, with certified edges.
+    """Find every unstable interval of one ratio of steps, of some or of all, with certified edges.
 
     Parameters
     ----------
-    ratio : Exact, optional
-        h2/h1 = p/q; or instead
+    ratio : Exact or iterable of them, optional
+        h2/h1 = p/q, or several; or instead
     max_sum : int, optional
         All coprime p + q up to this number.
     rho : Exact, optional
@@ -121,12 +129,14 @@ def tongues(
     >>> tongue = kd.tongues("7/3", rho="1/25", m=4, digits=30)[0]
     >>> tongue["lower"]["entry"], tongue["closed"]
     ('C', False)
+    >>> [(row["p"], row["q"], row["m"]) for row in kd.tongues(["3/2", "5/2"], rho="1/25", m=1)]
+    [(3, 2, 1), (5, 2, 1)]
     """
     return answered(
         Tongues,
         "tongues",
         "tongues",
-        ratio=optional_text("ratio", ratio),
+        ratio=None if ratio is None else _ratios(ratio),
         max_sum=max_sum,
         rho=optional_text("rho", rho),
         lambda1=optional_text("lambda1", lambda1),

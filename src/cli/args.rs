@@ -181,7 +181,7 @@ pub struct Columns {
     /// that fit].
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     columns: Option<Vec<String>>,
-    /// Significant digits of text and latex [default: all; in latex 10, or as many as fit].
+    /// Significant digits of text and latex [default: all; in latex as many as fit].
     #[arg(long, value_name = "N", value_parser = flag::<u32>)]
     digits: Option<u32>,
 }

@@ -10,6 +10,7 @@ mod help;
 mod manners;
 mod mcp;
 mod names;
+mod pictures;
 mod refusals;
 mod remedies;
 mod scenes;

@@ -65,6 +65,62 @@ fn only_what_is_selected_comes_and_is_the_same_as_among_all() {
     assert!(!family.is_empty() && family.len() < all.len());
 }
 
+/// A table was of one ratio or of all.
+#[test]
+fn several_ratios_are_one_table_that_verify_takes() {
+    let desk = Desk::new();
+    let run =
+        |ratio: &str, rest: &[&str]| desk.run(&words(&format!("tongues --ratio {ratio} --rho 1/25"), rest));
+    assert_eq!(run("5/2,3/2", &["--output", "d.json"]).code, Some(0));
+    let document: Value = serde_json::from_slice(&desk.read("d.json")).unwrap();
+    assert_eq!(document["input"].to_string(), r#"{"ratio":"5/2,3/2","rho":"1/25"}"#);
+    let alone = ["5/2", "3/2"].map(|ratio| rows(&format!("tongues --ratio {ratio} --rho 1/25"))).concat();
+    assert_eq!(document["tongues"].as_array().unwrap(), &alone);
+    assert!(desk.run(&["verify", "d.json"]).stdout.starts_with("10 of 10 rows hold"));
+    let mut left_out = document.clone();
+    left_out["tongues"].as_array_mut().unwrap().pop();
+    desk.write("d.json", &left_out.to_string());
+    assert_eq!(desk.run(&["verify", "d.json"]).code, Some(2));
+    let csv = run("5/2,3/2", &["--format", "csv"]).stdout;
+    assert!(
+        csv.lines().nth(1).unwrap().starts_with("5,2,1,")
+            && csv.lines().last().unwrap().starts_with("3,2,4,")
+    );
+    assert!(run("5/2,3/2", &["--format", "latex"]).stdout.contains("$h_2/h_1 = 5/2,3/2$"));
+    let twice = run("5/2,10/4", &[]);
+    assert!(twice.code == Some(2) && twice.stderr.contains("name each ratio once"), "{}", twice.stderr);
+}
+
+/// The upper edge at the second ratio went to a table of its own.
+#[test]
+fn a_band_on_paper_has_both_sides_in_one_row_within_the_exact_ones() {
+    let line = "bands --lambda1 pi^2 --lambda2 pi^2/25 --h1-range 1/5..1/4 --h2-range 9/10..1 --sectors 40";
+    let [latex, csv] = ["latex", "csv"].map(|format| stdout(&words(line, &["--format", format])));
+    let cells = |row: &str| -> Vec<f64> {
+        let joined = row.trim_end_matches(" \\\\").replace("$ & $.", ".").replace('$', "");
+        joined.split(" & ").skip(4).map(|cell| cell.trim().parse().unwrap()).collect()
+    };
+    let paper: Vec<Vec<f64>> = latex.lines().filter(|row| row.starts_with("    $0$")).map(cells).collect();
+    let exact: Vec<Vec<f64>> = csv
+        .lines()
+        .skip(1)
+        .map(|row| row.split(',').skip(4).map(|cell| cell.parse().unwrap()).collect())
+        .collect();
+    assert!(!paper.is_empty() && paper.len() == exact.len(), "{latex}");
+    for (shown, whole) in paper.iter().zip(&exact) {
+        // Rounded in the tenth decimal, to the inside.
+        let inwards: Vec<f64> = [1.0, 1.0, -1.0, -1.0]
+            .iter()
+            .zip(shown.iter().zip(whole))
+            .map(|(side, (a, b))| side * (a - b))
+            .collect();
+        assert!(
+            shown.len() == 4 && inwards.iter().all(|off| (0.0..1e-10).contains(off)),
+            "{shown:?} {whole:?}"
+        );
+    }
+}
+
 #[test]
 fn a_window_of_steps_holds_the_tongues_that_meet_it() {
     let all = rows("tongues --max-sum 9 --lambda1 pi^2 --lambda2 pi^2/25");

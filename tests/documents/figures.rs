@@ -103,7 +103,7 @@ fn the_pdf_has_the_size_asked_for_and_its_letters_can_be_searched() {
     let pdf = tiny().pdf();
     assert_eq!(pdf, tiny().pdf());
     let text = String::from_utf8_lossy(&pdf);
-    assert!(text.starts_with("%PDF-") && text.trim_end().ends_with("%%EOF"));
+    assert!(text.starts_with("%PDF-1.5") && text.trim_end().ends_with("%%EOF"));
     // 40 and 30 mm in points.
     assert!(text.contains("/MediaBox [0 0 113.385826 85.03937]"), "{text}");
     for letter in "Tinyleh01".chars() {

@@ -25,11 +25,19 @@ const ARROW: f64 = 7.0;
 /// Steps of colour in a bar: finer than the eye can distinguish.
 const SHADES: usize = 96;
 
-/// One entry: the layer it stands for and its words.
-type Entry<'a> = (&'a Layer, Label);
+/// One entry: the layers it stands for, whose samples lie over each other, and their words.
+type Entry<'a> = (Vec<&'a Layer>, Label);
 
+/// Each name once.
 fn entries(panel: &Panel) -> Vec<Entry<'_>> {
-    panel.layers.iter().filter_map(|layer| Some((layer, Label::new(layer.label.as_ref()?)))).collect()
+    let mut named: Vec<(&str, Vec<&Layer>)> = Vec::new();
+    for (layer, name) in panel.layers.iter().filter_map(|layer| Some((layer, layer.label.as_deref()?))) {
+        match named.iter_mut().find(|(known, _)| *known == name) {
+            Some((_, layers)) => layers.push(layer),
+            None => named.push((name, vec![layer])),
+        }
+    }
+    named.into_iter().map(|(name, layers)| (layers, Label::new(name))).collect()
 }
 
 fn width((_, label): &Entry) -> f64 {
@@ -53,9 +61,11 @@ fn rows<'a>(entries: Vec<Entry<'a>>, room: f64) -> Vec<Vec<Entry<'a>>> {
 }
 
 /// How far a legend above a frame so wide reaches to the left of it: over the numbers and names there, `left`
-/// wide, if one of its entries is longer than the frame.
+/// wide, if one of its entries is longer than the frame, or it takes fewer lines so.
 fn indent(entries: &[Entry], wide: f64, left: f64) -> f64 {
-    if entries.iter().any(|entry| width(entry) > wide) { left } else { 0.0 }
+    let lines = |room: f64| rows(entries.to_vec(), room).len();
+    let is_long = entries.iter().any(|entry| width(entry) > wide);
+    if is_long || lines(wide + left) < lines(wide) { left } else { 0.0 }
 }
 
 /// The height of a legend above a frame of the given width, with what stands left of that.
@@ -83,8 +93,14 @@ pub(crate) fn legend(canvas: &mut Canvas, panel: &Panel, frame: Rect) {
     }
 }
 
-/// A sample of the layer's mark and its words, around the height y.
-fn draw_entry(canvas: &mut Canvas, (layer, label): &Entry, [x, y]: [f64; 2]) {
+/// Samples of the layers' marks and their words, around the height y.
+fn draw_entry(canvas: &mut Canvas, (layers, label): &Entry, [x, y]: [f64; 2]) {
+    layers.iter().for_each(|layer| draw_sample(canvas, layer, [x, y]));
+    let at = [x + SAMPLE + TO_WORDS, y + NUMBER * 0.23];
+    canvas.text(label.clone(), at, set(NUMBER, Anchor::Start));
+}
+
+fn draw_sample(canvas: &mut Canvas, layer: &Layer, [x, y]: [f64; 2]) {
     let unit = Axis::linear("", 0.0, 1.0);
     let frame = [x, y - 3.5, x + SAMPLE, y + 3.5];
     let plane = Plane { x: &unit, y: &unit, frame };
@@ -111,8 +127,6 @@ fn draw_entry(canvas: &mut Canvas, (layer, label): &Entry, [x, y]: [f64; 2]) {
     if let Some(sample) = sample {
         marks::layer(canvas, &plane, &sample);
     }
-    let at = [x + SAMPLE + TO_WORDS, y + NUMBER * 0.23];
-    canvas.text(label.clone(), at, set(NUMBER, Anchor::Start));
 }
 
 /// The width of a colour bar at the right of a frame of the given height.
@@ -163,4 +177,22 @@ pub(crate) fn bar(canvas: &mut Canvas, bar: &ColourBar, frame: Rect) {
     let x = edge + TICK + GAP + widest_number(&bar.axis, high) + GAP + WORDS * 0.75;
     let upright = Set { turn: 90.0, ..set(WORDS, Anchor::Middle) };
     canvas.text(Label::new(&bar.axis.label), [x, (top + bottom) / 2.0], upright);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Stroke;
+
+    /// Four short names above a narrow frame took four lines.
+    #[test]
+    fn a_legend_reaches_over_the_numbers_where_it_takes_fewer_lines_so() {
+        let panel = Panel::new(Axis::linear("x", 0.0, 1.0), Axis::linear("y", 0.0, 1.0));
+        let names = ["*a* = 0", "*a* = 1", "*a* = 1", "*a* = 2", "*a* = 3"];
+        let line = |name: &&str| Layer::lines(Vec::new(), Stroke::LINE).labelled(name);
+        let panel = names.iter().map(line).fold(panel, Panel::with);
+        let lines = |left: f64| ((rows_height(&panel, 82.0, left) - 3.0) / ROW).round();
+        assert_eq!(entries(&panel).len(), 4, "a name stands twice");
+        assert_eq!([lines(0.0), lines(25.0)], [4.0, 2.0]);
+    }
 }

@@ -21,6 +21,8 @@ pub(crate) fn document(canvas: &Canvas) -> Vec<u8> {
     };
     let [catalog, pages, page, stream, info] = std::array::from_fn(|_| fresh());
     let mut pdf = Pdf::new();
+    // No feature here is newer, and LaTeX includes no later version without a warning.
+    pdf.set_version(1, 5);
     pdf.catalog(catalog).pages(pages);
     let mut about = pdf.document_info(info);
     about.title(TextStr(&canvas.title));

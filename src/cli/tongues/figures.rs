@@ -55,7 +55,7 @@ fn one(labels: &Labels) -> Result<u64> {
 pub fn strengths(ratios: Ratios, stiffness: &Stiffness, theta: &Laurent) -> Result<Figure> {
     let share = share_of_pi(theta)?;
     let around = rational::ratio(HALF_WINDOW.0, HALF_WINDOW.1);
-    let (max_sum, measured) = measure(ratios, stiffness, [&share - &around, &share + &around])?;
+    let (max_sum, measured) = measure(&ratios, stiffness, [&share - &around, &share + &around])?;
     if measured.is_empty() {
         let remedy =
             format!("no tongue with p + q <= {max_sum} is near this angle: choose a larger --max-sum");
@@ -74,7 +74,7 @@ pub fn strengths(ratios: Ratios, stiffness: &Stiffness, theta: &Laurent) -> Resu
 /// All tongues that have a point p θ = m π: their widths against the law.
 pub fn widths(ratios: Ratios, stiffness: &Stiffness) -> Result<Figure> {
     let whole = |n: i64| rational::ratio(n, 1);
-    let (max_sum, measured) = measure(ratios, stiffness, [whole(0), whole(1)])?;
+    let (max_sum, measured) = measure(&ratios, stiffness, [whole(0), whole(1)])?;
     if measured.is_empty() {
         return Err(Error::input(
             "max-sum",
@@ -88,8 +88,8 @@ pub fn widths(ratios: Ratios, stiffness: &Stiffness) -> Result<Figure> {
 }
 
 /// The sum, and its tongues with m/p between two shares of π.
-fn measure(ratios: Ratios, stiffness: &Stiffness, shares: [Rational; 2]) -> Result<(u64, Vec<Measured>)> {
-    let Ratios::UpTo(max_sum) = ratios else {
+fn measure(ratios: &Ratios, stiffness: &Stiffness, shares: [Rational; 2]) -> Result<(u64, Vec<Measured>)> {
+    let Ratios::UpTo(max_sum) = *ratios else {
         return Err(Error::missing("max-sum", "this figure is of many ratios: give --max-sum N"));
     };
     Ok((max_sum, sampled::widths(max_sum, &stiffness.rho, &shares)?))

@@ -24,9 +24,6 @@ use number::{Laurent, Ratio};
 /// Flags of `tongues`: a ratio or all of them, and rho or both stiffnesses.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// h2/h1 = p/q; several, as 5/3,7/2, for a diagram.
-    #[arg(long, value_name = "P/Q", allow_hyphen_values = true, value_delimiter = ',', value_parser = flag::<Ratio>)]
-    ratio: Vec<Ratio>,
     #[command(flatten)]
     asked: Asked,
     /// Count and compare instead of listing: all tongues of all ratios that begin below s = 4
@@ -81,7 +78,7 @@ impl Args {
         if format.is_figure() {
             return self.paper.write(self.drawn(common)?, format, common.output.as_deref(), common);
         }
-        let mut question = self.question()?;
+        let mut question = self.asked.clone();
         if format == Format::Latex {
             question.columns.get_or_insert_with(Columns::edges);
         }
@@ -101,7 +98,7 @@ impl Args {
         if self.figure == Some(Drawn::Diagram) {
             return figures::diagram(self.several()?, &self.asked.stiffness()?.rho, self.paper.width_mm());
         }
-        let question = self.question()?;
+        let question = &self.asked;
         let (ratios, stiffness) = (question.ratios()?, || question.stiffness());
         match self.figure.unwrap_or(Drawn::Atlas) {
             Drawn::Strength => {
@@ -127,7 +124,7 @@ impl Args {
         common.apart_from_output("certificate", path)?;
         let rho = self.asked.stiffness()?.rho;
         let one = |remedy| Error::input("--certificate", path.display(), remedy);
-        let [ratio] = self.question()?.ratios()?.list()[..] else {
+        let [ratio] = self.asked.ratios()?.list()[..] else {
             return Err(one("is for one ratio: give --ratio P/Q"));
         };
         within(ratio.kicks(), EDGES_WORTH_CERTIFYING, common.budget)?;
@@ -186,7 +183,7 @@ impl Args {
     }
 
     fn all_tongues(&self) -> Result<Survey> {
-        let Ratios::UpTo(max_sum) = self.question()?.ratios()? else {
+        let Ratios::UpTo(max_sum) = self.asked.ratios()? else {
             return Err(Error::missing("max-sum", "a survey is of many ratios: give --max-sum N"));
         };
         let (rho, thinnest) = (self.asked.stiffness()?.rho, self.thinnest.unwrap_or(THINNEST));
@@ -195,24 +192,12 @@ impl Args {
 
     /// The ratios that were named, one or more.
     fn several(&self) -> Result<&[Ratio]> {
-        match (&self.ratio[..], self.asked.max_sum) {
-            (named @ [_, ..], None) => Ok(named),
+        match (&self.asked.ratio, self.asked.max_sum) {
+            (Some(named), None) => Ok(named.ratios()),
             _ => Err(Error::missing(
                 "ratio",
                 "a diagram is of ratios by name: give --ratio P/Q or --ratio P/Q,P/Q",
             )),
-        }
-    }
-
-    /// The question about one ratio, or about all up to a sum.
-    fn question(&self) -> Result<Asked> {
-        match (&self.ratio[..], self.asked.max_sum) {
-            ([_, second, ..], None) => Err(Error::input(
-                "ratio",
-                second,
-                "is a second ratio, and tables are of one: ask for each alone, or for all by --max-sum",
-            )),
-            (named, _) => Ok(Asked { ratio: named.first().copied(), ..self.asked.clone() }),
         }
     }
 }

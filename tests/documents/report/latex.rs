@@ -106,6 +106,21 @@ fn wide_tables_take_both_columns_then_smaller_letters_then_more_tables() {
     assert!(labels.len() > 1 && labels[0] != labels[1], "{labels:?}");
 }
 
+/// Ten digits were all, however much room a column had for more.
+#[test]
+fn digits_fill_the_place_that_ten_have() {
+    let table = |columns: usize| {
+        let headings = (0..columns).map(|n| Column::new(&format!("x{n}"))).collect();
+        let mut table = Table::new("t", "T", headings);
+        table.push(vec![Cell::Float(2.0 / 3.0); columns]);
+        let latex = document(&table, &serde_json::Map::new(), None, None).unwrap();
+        let digits = latex.split("$.").nth(1).and_then(|rest| rest.split('$').next()).unwrap().len();
+        (latex.contains("begin{table}") && !latex.contains("small") && !latex.contains("size"), digits)
+    };
+    // A double has sixteen; two columns have room for them, three for some, and no letters become smaller.
+    assert_eq!([1, 2, 3].map(table), [(true, 16), (true, 16), (true, 11)]);
+}
+
 #[test]
 fn more_rows_than_a_page_holds_go_over_pages() {
     let of = |rows| document(&many(rows, 2), &input(), None, None).unwrap();

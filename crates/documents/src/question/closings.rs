@@ -62,11 +62,11 @@ impl Closings {
     /// # Errors
     /// Neither one ratio nor a sum, a sum out of range.
     pub fn ratios(&self) -> Result<Ratios> {
-        Ratios::of(self.ratio, self.max_sum)?.within(MOST_SUM)
+        Ratios::of(self.ratio.map(Ratios::One), self.max_sum)?.within(MOST_SUM)
     }
 
     fn words(&self) -> String {
-        self.ratios().map(Ratios::words).unwrap_or_default()
+        self.ratios().map(|ratios| ratios.words()).unwrap_or_default()
     }
 
     /// (p + q)² for each of the samples.

@@ -59,7 +59,7 @@ pub use half::Half;
 pub use map::Map;
 pub use polynomial::{Polynomial, Polynomials};
 pub use proposition::Proposition;
-pub use ratios::{MOST_SUM, Ratios};
+pub use ratios::{MOST_SUM, RatioList, Ratios};
 pub use scene::{FAMILIES, LONGEST_SCENE, Made, Products, Scene};
 pub use side::{CompareMethods, Side};
 pub use simulate::{Displacement, Simulate, Simulated};

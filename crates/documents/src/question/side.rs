@@ -347,7 +347,8 @@ impl Question for CompareMethods {
         let ends = |all: &[f64], step: f64| (all[0] - step / 2.0, all[all.len() - 1] + step / 2.0);
         let ((left, right), (low, high)) = (ends(&steps, across), ends(&ratios, up));
         let columns = if (5..=6).contains(&sides.len()) { 3 } else { sides.len().min(4) };
-        let panel = |side: &Side| {
+        let mut is_named = [false; 2];
+        let mut panel = |side: &Side| {
             let x = if by_step { "*h*_1" } else { "*h*" };
             let x = if self.by_cost { format!("{x} per evaluation") } else { x.into() };
             let x = Axis::linear(&x, left, right).of_time();
@@ -362,14 +363,19 @@ impl Question for CompareMethods {
                 (Bounded::Unstable, palette::HYPERBOLIC, "unstable"),
                 (Bounded::Edge, palette::PARABOLIC, "on an edge"),
             ];
-            kinds.into_iter().fold(panel, |panel, (kind, colour, name)| {
+            kinds.into_iter().zip(&mut is_named).fold(panel, |panel, ((kind, colour, name), is_named)| {
                 let mut cells = Cells::new([steps[0], ratios[0]], [across, up], vec![colour]);
                 let all = (0u32..)
                     .zip(&side.rows)
                     .flat_map(|(j, row)| (0u32..).zip(row).map(move |(i, bounded)| (i, j, *bounded)));
                 let found: Vec<_> = all.filter(|(.., bounded)| *bounded == kind).collect();
                 found.iter().for_each(|&(i, j, _)| cells.push(i, j, 0));
-                if found.is_empty() { panel } else { panel.with(Layer::cells(cells).labelled(name)) }
+                if found.is_empty() {
+                    return panel;
+                }
+                // The first panel that has it names it for all.
+                let layer = Layer::cells(cells);
+                panel.with(if std::mem::replace(is_named, true) { layer } else { layer.labelled(name) })
             })
         };
         let rows = sides.len().div_ceil(columns) as f64;

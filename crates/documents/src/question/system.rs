@@ -1,6 +1,6 @@
 //! Many clocks, many degrees of freedom: is the system stable, and where does that change?
 
-use plot::{Figure, Foot};
+use plot::{Figure, Foot, literal};
 use serde_json::Value;
 
 use super::asking::{Question, Work, question};
@@ -210,7 +210,8 @@ impl System {
         let bar = work.count(points as u64, "points");
         let decide = |x: &_, y: &_| axes.at(x, y)?.model().at_point(self.route(), &limits);
         let points = scan(&xs, &ys, decide, || bar.advance(1))?;
-        Ok(SystemMap { names: axes.names(), xs, ys, points, time_unit: scene.time_unit().map(String::from) })
+        let numbers = axes.names().iter().map(|path| scene.number(path)).collect();
+        Ok(SystemMap { numbers, xs, ys, points, time_unit: scene.time_unit().map(String::from) })
     }
 
     /// The products that a map costs, roughly, from those of some points spread over it: to ask each takes as
@@ -282,7 +283,9 @@ impl Question for System {
     fn show(&self, SystemAnswer { scene, found }: &SystemAnswer) -> Document {
         match found {
             SystemFound::Map(map) => map.document(),
-            SystemFound::Intervals(intervals) => report::intervals(intervals),
+            SystemFound::Intervals(intervals) => {
+                report::intervals(intervals, &scene.number(&intervals.number).0)
+            }
             SystemFound::Verdict(verdict) => report::document(
                 &verdict.analysis,
                 &Beside {
@@ -342,18 +345,18 @@ impl System {
     pub fn drawn(&self, answer: &SystemAnswer, colouring: report::Colouring, work: &Work) -> Result<Figure> {
         let (scene, title) = (&answer.scene, answer.scene.title());
         let varied = [self.scan_x.as_ref(), self.scan_y.as_ref()].into_iter().flatten();
-        let varied = varied.fold(Foot::default(), |foot, axis| foot.words(&axis.to_string()));
+        let varied = varied.fold(Foot::default(), |foot, axis| {
+            foot.grid(&literal(&scene.number(&axis.path).0), [&axis.lo, &axis.hi, &axis.by])
+        });
         let (figure, varied) = match (&answer.found, &self.intervals) {
-            (SystemFound::Map(map), _) => {
-                let numbers: Vec<_> = map.names.iter().map(|path| scene.number(path)).collect();
-                (map.figure(colouring, title, &numbers), varied)
-            }
+            (SystemFound::Map(map), _) => (map.figure(colouring, title), varied),
             (SystemFound::Intervals(intervals), Some(span)) => {
                 let steps = report::sampled(&intervals.stretches);
                 let rates = scene.growth_rates(span, &steps, &work.products())?;
-                let figure =
-                    report::intervals_figure(intervals, &rates, title, &scene.number(&intervals.number));
-                (figure, varied.words(&span.to_string()))
+                let number = scene.number(&intervals.number);
+                let figure = report::intervals_figure(intervals, &rates, title, &number);
+                let (lo, hi) = span.range();
+                (figure, varied.range(&literal(&number.0), lo, hi))
             }
             (SystemFound::Verdict(verdict), _) => (report::figure(&verdict.analysis, title), varied),
             (SystemFound::Intervals(_), None) => unreachable!("intervals need a number"),

@@ -7,7 +7,11 @@ use super::shape::{COUNT, ENCLOSURE, INTEGER, Keys, Shape};
 use super::table::{Cell as Value, Column};
 use clocks::band::{Bands, Sector};
 
-const CAPTION: &str = "Sectors of steps in which every ratio $h_2/h_1$ is unstable";
+const CAPTION: &str = "Sectors of steps in which every ratio $h_2/h_1$ is unstable: ratios from $r_1$ to $r_2$, and $h_1$ between the sides \
+                       $h_1^-$ and $h_1^+$, each affine in the ratio and rounded into the sector";
+
+/// Decimals of the sides on paper: a row of both sides fits a page.
+const SHOWN: i32 = 10;
 
 /// The document `kickdrift/bands/1`. The caller adds the input.
 pub fn document(bands: &Bands) -> Document {
@@ -16,11 +20,24 @@ pub fn document(bands: &Bands) -> Document {
         "Sectors of steps in which every ratio h2/h1 is unstable",
         &bands.certified,
     );
-    counts().document(Document::new("bands"), bands).rows(table.captioned(CAPTION)).summary(&lines(
-        bands,
-        bands.share().0,
-        bands.area().0,
-    ))
+    let narrowed: Vec<Sector> = bands.certified.iter().map(narrowed).collect();
+    let people = record().table(table.name(), table.caption(), &narrowed).captioned(CAPTION);
+    let lines = lines(bands, bands.share().0, bands.area().0);
+    counts().document(Document::new("bands"), bands).rows(table).for_people(people).summary(&lines)
+}
+
+/// A sector in the decimals of paper, its sides rounded to its inside; as it is where it is too thin for that.
+fn narrowed(sector: &Sector) -> Sector {
+    let Some(unit) = u32::try_from(sector.decimals - SHOWN).ok().and_then(|n| 10i64.checked_pow(n)) else {
+        return sector.clone();
+    };
+    let [lower, upper] = sector.sides;
+    let sides = [
+        lower.map(|end| end.div_euclid(unit) + i64::from(end.rem_euclid(unit) > 0)),
+        upper.map(|end| end.div_euclid(unit)),
+    ];
+    let is_open = sides[0].iter().zip(&sides[1]).all(|(lower, upper)| lower < upper);
+    if is_open { Sector { sides, decimals: SHOWN, ..sector.clone() } } else { sector.clone() }
 }
 
 /// The keys of the document.
@@ -82,7 +99,7 @@ fn record() -> Record<'static, Sector> {
     let ratios = ["least", "largest"];
     for (k, end) in ends.into_iter().enumerate() {
         let column = Column::new(&format!("ratio_{end}"));
-        let column = column.titled(&format!("h2/h1 {end}"), &format!("$h_2/h_1$ {end}"));
+        let column = column.titled(&format!("h2/h1 {end}"), &format!("$r_{}$", k + 1));
         record = record.field(column, move |sector| {
             let (p, q) = sector.ratios[k];
             Value::exact(if q == 1 { p.to_string() } else { format!("{p}/{q}") })
@@ -93,7 +110,7 @@ fn record() -> Record<'static, Sector> {
         for (k, end) in ends.into_iter().enumerate() {
             let column = Column::new(&format!("{name}_{end}"));
             let words = format!("{name} h1 {end}");
-            let column = column.titled(&words, &format!("{name} $h_1$ {end}"));
+            let column = column.titled(&words, &format!("$h_1^{}(r_{})$", ["-", "+"][side], k + 1));
             record = record.field(column, move |sector| {
                 Value::exact(decimal::shifted(sector.sides[side][k], sector.decimals))
             });

@@ -27,7 +27,7 @@ pub fn figure(share: f64, title: &str, measured: &[Measured]) -> Figure {
     let (low, high) =
         all().filter(|&y| y > 0.0).fold((1.0, 0.0), |(lo, hi): (f64, f64), y| (lo.min(y), hi.max(y)));
     let x = Axis::linear("*a*", first as f64 - 0.6, last as f64 + 0.6);
-    let y = Axis::log("width/(2*sρ*), |*S_a*|", 0.7 * low, 1.4 * high);
+    let y = Axis::log("width of a tongue/(2*sρ*), |*S_a*|", 0.7 * low, 1.4 * high);
     let most = measured.iter().map(|m| m.q).max().unwrap_or(1);
     let bar = ColourBar::new(Axis::log("*q*", 1.0, most.max(2) as f64), Gradient::on_white());
     let mut panel = Panel::new(x, y).titled(title).gridded();
@@ -39,6 +39,9 @@ pub fn figure(share: f64, title: &str, measured: &[Measured]) -> Figure {
             panel = panel.with(Layer::dots(points, Shape::Disc, 2.2, colour));
         }
     }
+    // An entry of its own, for the dots' shades are many.
+    let tongues = Layer::dots(Vec::new(), Shape::Disc, 2.2, bar.steps(SHADES)[usize::from(SHADES) * 2 / 3]);
+    panel = panel.with(tongues.labelled("a tongue, shaded by its *q*"));
     let crosses =
         Layer::dots(law, Shape::Cross, 6.0, INK).labelled("first-order law |*S_a*(*θ*)| for long periods");
     Figure::new(130.0, 95.0)
@@ -59,7 +62,8 @@ pub fn widths(title: &str, measured: &[Measured]) -> Figure {
     let all = || places.iter().flat_map(|(_, place)| *place);
     let (low, high) = (0.7 * all().fold(1.0, f64::min), 1.4 * all().fold(0.0, f64::max));
     let axis = |label| Axis::log(label, low, high);
-    let mut panel = Panel::new(axis("|*S_a*(*θ*)|"), axis("width/(2*sρ*)")).titled(title).gridded();
+    let mut panel =
+        Panel::new(axis("|*S_a*(*θ*)|"), axis("width of a tongue/(2*sρ*)")).titled(title).gridded();
     let kinds = [
         ("|*a*| > 3", 4..=u64::MAX, Shape::Cross),
         ("|*a*| = 3", 3..=3, Shape::Square),

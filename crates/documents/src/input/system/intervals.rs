@@ -59,6 +59,13 @@ impl FromStr for Span {
     }
 }
 
+impl Span {
+    /// The least and the largest value.
+    pub fn range(&self) -> (&Rational, &Rational) {
+        (&self.lo, &self.hi)
+    }
+}
+
 impl Display for Span {
     fn fmt(&self, f: &mut Formatter) -> std::fmt::Result {
         f.write_str(&self.text)

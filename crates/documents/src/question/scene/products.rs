@@ -155,8 +155,9 @@ impl Scene {
             Product::Proposition => plain(Proposition { max: self.max.unwrap_or(60) }),
             Product::Polynomial => plain(Polynomial { ratio: self.ratio()? }),
             Product::Closings => {
-                let (one, max_sum) = self.ratios()?.fields();
+                let one = if self.max_sum.is_none() { Some(self.ratio()?) } else { None };
                 let rho_range = self.rho_range.clone().unwrap_or_else(|| (ratio(1, 10_000), ratio(100, 1)));
+                let max_sum = self.max_sum;
                 plain(Closings { ratio: one, max_sum, m: None, rho_range, samples: 400, digits: DIGITS })
             }
             Product::Survey => plain(self.survey()?),

@@ -102,13 +102,18 @@ impl Atlas {
         };
         let foot = clock(Foot::default(), 1, stiffness.lambda1.as_ref(), window.h1.as_ref());
         let foot = clock(foot, 2, stiffness.lambda2.as_ref(), window.h2.as_ref());
-        self.ratios.below(foot)
+        let foot = self.ratios.below(foot);
+        if self.curves.is_empty() {
+            return foot;
+        }
+        foot.part("pale: curves 1/*T*_{1/2} = *a*/*h*_1 + *b*/*h*_2, dark: tongues".into())
     }
 
     fn title(&self) -> String {
         let rho = &self.listing.stiffness.rho;
-        match self.ratios {
+        match &self.ratios {
             Ratios::One(ratio) => format!("Tongues of *h*_2/*h*_1 = {ratio}, *ρ* = {rho}"),
+            Ratios::Several(list) => format!("Tongues of *h*_2/*h*_1 = {}, *ρ* = {rho}", list.spaced()),
             Ratios::UpTo(max_sum) => format!("All tongues with *p* + *q* ≤ {max_sum}, *ρ* = {rho}"),
         }
     }

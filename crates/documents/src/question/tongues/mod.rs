@@ -5,7 +5,7 @@ mod written;
 
 use super::asking::{Fields, Question, Work, question};
 use super::field::{flag, notation};
-use super::ratios::{MOST_SUM, Ratios};
+use super::ratios::{MOST_SUM, RatioList, Ratios};
 use crate::report::document::{Document, Layout};
 use crate::report::shape::{Keys, Schema, Shape};
 use crate::report::tongues::{CAPTION, CAPTION_LATEX, TongueTally, keys, needed, record};
@@ -14,16 +14,16 @@ pub use atlas::Colour;
 use clocks::resonance::Families;
 use clocks::tongue::{Labels, Listing, Range, Request, Selection, StepWindow, Stiffness, Tongue, Wanted};
 use number::error::{Error, Result};
-use number::{Laurent, Ratio, Rational};
+use number::{Laurent, Rational};
 pub use written::Form;
 
 question! {
-    /// Tongues of one ratio or of all, at one ρ, and what is wanted of each.
+    /// Tongues of one ratio, of some or of all, at one ρ, and what is wanted of each.
     #[derive(Default)]
     args struct Tongues {
-        /// h2/h1 = p/q.
-        #[arg(skip)]
-        ratio: Option<Ratio>,
+        /// h2/h1 = p/q; or several, as 3/2,5/2.
+        #[arg(long, value_name = "P/Q", allow_hyphen_values = true, value_parser = flag::<RatioList>)]
+        ratio: Option<RatioList>,
         /// All coprime p + q up to this number.
         #[arg(long, value_name = "N", value_parser = flag::<u64>)]
         max_sum: Option<u64>,
@@ -140,9 +140,9 @@ impl Tongues {
     /// The ratios.
     ///
     /// # Errors
-    /// Neither one ratio nor a sum, or both; a sum out of range.
+    /// Neither ratios nor a sum, or both; a sum out of range.
     pub fn ratios(&self) -> Result<Ratios> {
-        Ratios::of(self.ratio, self.max_sum)?.within(MOST_SUM)
+        Ratios::of(self.ratio.clone().map(Into::into), self.max_sum)?.within(MOST_SUM)
     }
 
     /// ρ, given as such or by both stiffnesses; a document has all three.
@@ -215,12 +215,12 @@ impl Tongues {
         let ratios = self.ratios()?;
         let cost = format!("the tongues of {} are {rows} rows, the budget is {most}", ratios.words());
         Err(Error::budget(cost, rows).or(match ratios {
-            Ratios::One(_) => "choose labels by --m, or a window",
+            Ratios::One(_) | Ratios::Several(_) => "choose labels by --m, or a window",
             Ratios::UpTo(_) => "choose a smaller --max-sum, a window, or --survey",
         }))
     }
 
-    /// Hands on the tongues in the order of p + q, p, m.
+    /// Hands on the tongues in the order of the ratios, then of m.
     fn each(&self, listing: &Listing, work: &Work, see: impl FnMut(&[Tongue]) -> Result<()>) -> Result<()> {
         self.allow(listing, work)?;
         let count = listing.ratios.len() as u64;
@@ -291,8 +291,8 @@ impl Question for Tongues {
         let body = Keys::new()
             .key("tongues", Shape::List(&Shape::Object(keys)), "The tongues, one a row.")
             .and(TongueTally::keys());
-        let says = "By p + q, then p, then m. What was not asked for (--columns, --digits, lambda1) is absent; null says that a tongue has none of it.";
-        // One ratio or all up to a sum, at a rho that is not below 0.
+        let says = "By p + q, then p, or in the order in which ratios are named; then by m. What was not asked for (--columns, --digits, lambda1) is absent; null says that a tongue has none of it.";
+        // Ratios by name or all up to a sum, at a rho that is not below 0.
         let rules = r#"{"allOf": [{"properties": {"input": {
             "required": ["rho"],
             "oneOf": [{"required": ["ratio"]}, {"required": ["max_sum"]}],

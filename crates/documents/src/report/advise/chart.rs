@@ -13,8 +13,9 @@ use number::Rational;
 use number::rational::to_f64;
 use systems::levels::Growing;
 
+use super::levers::{AS_GOOD, one_of};
 use super::molecule::called;
-use super::words::{length, named, nearest, percent};
+use super::words::{length, meaning, named, nearest, percent};
 
 /// A row's share of the height, in mm, and half the height of its bars in rows.
 const ROW: f64 = 8.5;
@@ -100,6 +101,7 @@ pub(super) fn of_periods(advice: &Advice, title: &str) -> Figure {
     let near = "two modes may resonate (first order)";
     let foot = advice.modes.iter().fold(Foot::default(), |foot, mode| foot.words(&named(mode, advice.unit)));
     let foot = within(foot, &advice.band, advice.friction.as_ref(), advice.unit);
+    let foot = told(foot, advice.schemes.iter().map(|answer| answer.status));
     let blocks = blocks(&advice.schemes, (|answer: &Answer| &answer.scheme, advice.unit), of);
     draw(&blocks, right, (title, near), advice.unit).footed(&foot)
 }
@@ -109,6 +111,16 @@ pub(super) fn within(foot: Foot, band: &Rational, friction: Option<&Rational>, u
     let foot = foot.words(&format!("all periods within {}", percent(band)));
     let rate = |rate: &Rational| unit.rate(decimal(&(rate * Rational::from_integer(unit.in_rates().into()))));
     friction.map_or(foot.clone(), |value| foot.words(&format!("friction {}", rate(value))))
+}
+
+/// What the words beside the steps mean, each once.
+fn told(foot: Foot, statuses: impl Iterator<Item = Status>) -> Foot {
+    let mut statuses: Vec<Status> = statuses.collect();
+    statuses.sort_unstable();
+    statuses.dedup();
+    statuses
+        .into_iter()
+        .fold(foot, |foot, status| foot.words(&format!("{}: {}", status.name(), meaning(status))))
 }
 
 /// Safe up to what is published, caution up to the band's edge, the unstable intervals over what is not
@@ -151,6 +163,7 @@ pub(super) fn of_molecule(findings: &Findings, title: &str) -> Figure {
     let near = "half a turn of these modes alone";
     let unit = TimeUnit::Femtoseconds;
     let foot = within(Foot::default(), &findings.band, findings.friction.as_ref(), unit);
+    let foot = told(foot, findings.schemes.iter().map(|finding| finding.status));
     draw(
         &blocks(&findings.schemes, (|finding: &Finding| &finding.scheme, unit), of),
         right,
@@ -234,30 +247,62 @@ fn axis(unit: TimeUnit) -> &'static str {
     if unit == TimeUnit::Plain { "outer step" } else { "outer step (fs)" }
 }
 
-/// Levers that would let the step grow: a row each, the steps to take and those that are proven for the band.
+/// The step to take by a lever, and that below which it is proven for the band; 0 where there is none.
+fn reached(lever: &Lever) -> [f64; 2] {
+    [lever.step.as_ref().map_or(0.0, |(step, _)| to_f64(step)), lever.band_edge.map_or(0.0, |edge| edge.0)]
+}
+
+/// Whether friction hides what grows.
+fn is_masked(lever: &Lever) -> bool {
+    matches!(lever.step, Some((_, Bound::Friction)))
+}
+
+/// Levers that reach as far, within 2 %, together, in the order of the first of each.
+fn alike(levers: &Levers) -> Vec<Vec<&Lever>> {
+    let is_near = |a: f64, b: f64| a.min(b) >= AS_GOOD * a.max(b);
+    let mut groups: Vec<Vec<&Lever>> = Vec::new();
+    for lever in &levers.rows {
+        let is_alike = |group: &&mut Vec<&Lever>| {
+            let mut both = reached(group[0]).into_iter().zip(reached(lever));
+            is_masked(group[0]) == is_masked(lever) && both.all(|(a, b)| is_near(a, b))
+        };
+        match groups.iter_mut().find(is_alike) {
+            Some(group) => group.push(lever),
+            None => groups.push(vec![lever]),
+        }
+    }
+    groups
+}
+
+/// Levers that would let the step grow: the steps to take and those that are proven for the band. What
+/// reaches as far is a row, which shows the least of it.
 pub fn levers(levers: &Levers, title: &str, unit: TimeUnit) -> Figure {
-    let (rows, mut layers) = (levers.rows.len(), Layers::default());
+    let groups = alike(levers);
+    let (rows, mut layers) = (groups.len(), Layers::default());
     let ends = |lever: &Lever| {
         let step = lever.step.as_ref().map(|(step, _)| to_f64(step));
         [lever.first.map(|first| first.1), lever.band_edge.map(|edge| edge.1), step]
     };
     let right = 1.08 * levers.rows.iter().flat_map(ends).flatten().fold(0.0, f64::max);
+    let least = |values: &mut dyn Iterator<Item = f64>| values.fold(f64::INFINITY, f64::min);
     let mut ticks = Vec::new();
-    for (n, lever) in levers.rows.iter().enumerate() {
+    for (n, group) in groups.iter().enumerate() {
         let at = (rows - 1 - n) as f64;
-        let step = lever.step.as_ref().map_or(0.0, |(step, _)| to_f64(step));
-        let masked = matches!(lever.step, Some((_, Bound::Friction)));
+        let [step, band] = [0, 1].map(|i| least(&mut group.iter().map(|lever| reached(lever)[i])));
+        let first = least(&mut group.iter().filter_map(|lever| lever.first).map(|first| first.0));
+        let masked = is_masked(group[0]);
         let line = Line {
             published: if masked { 0.0 } else { step },
-            band: lever.band_edge.map_or(0.0, |edge| edge.0),
+            band,
             sampled: masked.then_some([0.0, step]).into_iter().collect(),
-            near: lever.first.map(|first| first.0),
+            near: Some(first),
             ..Line::default()
         };
         layers.add(&line, at, right);
-        let name = if lever.is_free { format!("{} (none)", lever.name) } else { lever.name.clone() };
-        let name = literal(&name);
-        ticks.push(Tick { at, label: Some(name) });
+        let names: Vec<&str> = group.iter().map(|lever| &*lever.name).collect();
+        let name = one_of(names[0], &names[1..]);
+        let name = if group.iter().all(|lever| lever.is_free) { format!("{name} (none)") } else { name };
+        ticks.push(Tick { at, label: Some(literal(&name)) });
     }
     layers.beyond.clear();
     let (low, high) = (-FOOT, rows as f64 - 1.0 + FOOT);

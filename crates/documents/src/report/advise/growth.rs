@@ -7,7 +7,7 @@ use plot::{Anchor, Axis, Figure, Layer, Note, Panel, Place, Shape, Stroke};
 use super::chart::within;
 use super::words::fs;
 use molecules::unit::TimeUnit;
-use molecules::{Adds, DirectFinding, DirectFindings, Rung};
+use molecules::{Adds, DirectFinding, DirectFindings, Rung, TIMES};
 use number::Rational;
 use number::rational::to_f64;
 use systems::middle;
@@ -32,12 +32,12 @@ pub(super) fn figure(findings: &DirectFindings, title: &str) -> Option<Figure> {
     let figure = Figure::double_column(HEIGHT * inner.len() as f64).columns(1).named(title);
     let panels = inner.iter().map(|(step, schemes)| panel(findings, step, schemes));
     let drawn = (!inner.is_empty()).then(|| panels.fold(figure, Figure::with))?;
-    Some(drawn.footed(&within(
-        plot::Foot::default(),
-        &findings.band,
-        findings.friction.as_ref(),
-        TimeUnit::Femtoseconds,
-    )))
+    let unit = TimeUnit::Femtoseconds;
+    let foot = within(plot::Foot::default(), &findings.band, findings.friction.as_ref(), unit);
+    let little = format!(
+        "little: at most {TIMES} times the growth of the forces by themselves, or tenfold after 1 µs at the earliest"
+    );
+    Some(drawn.footed(&foot.words(&little)))
 }
 
 /// Per ps, in the middle of its enclosure; no lower than what is known where it is not bounded.

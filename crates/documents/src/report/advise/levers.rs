@@ -135,7 +135,16 @@ pub(super) fn add(document: Document, levers: Option<&Levers>, unit: TimeUnit) -
 }
 
 /// Levers whose gains are within 2 % of each other are one.
-const AS_GOOD: f64 = 0.98;
+pub(super) const AS_GOOD: f64 = 0.98;
+
+/// One of several levers that are as good, and how many others there are: by name where it is one.
+pub(super) fn one_of(name: &str, others: &[&str]) -> String {
+    match others {
+        [] => name.into(),
+        [other] => format!("{name} or {other}"),
+        _ => format!("{name} or {} others", others.len()),
+    }
+}
 
 /// The three levers that let the outer step grow most, longer than kicks and drifts as they are.
 pub(super) fn longer(levers: &Levers, unit: TimeUnit) -> Option<String> {
@@ -153,13 +162,10 @@ pub(super) fn longer(levers: &Levers, unit: TimeUnit) -> Option<String> {
         // An engine has it, where one has.
         let (lever, step, gain) =
             group.iter().find(|one| !one.0.way.engines().is_empty()).unwrap_or(&group[0]);
-        let others: Vec<_> = group.iter().filter(|one| one.0.name != lever.name).collect();
-        let others = match others[..] {
-            [] => String::new(),
-            [(other, ..)] => format!(" or {}", other.name),
-            _ => format!(" or {} others", others.len()),
-        };
-        format!("{} by {}{others} ({} times)", unit.of(decimal(step)), lever.name, nearest((*gain, *gain), 3))
+        let others: Vec<&str> =
+            group.iter().map(|one| &*one.0.name).filter(|name| *name != lever.name).collect();
+        let name = one_of(&lever.name, &others);
+        format!("{} by {name} ({} times)", unit.of(decimal(step)), nearest((*gain, *gain), 3))
     };
     let shown: Vec<String> = groups.iter().take(3).map(shown).collect();
     if levers.rows.is_empty() {

@@ -2,7 +2,7 @@
 
 use crate::report::decimal::few;
 use molecules::unit::{TimeUnit, decimal};
-use molecules::{Bound, Caps, Mode, Origin, PRACTICE, Scheme};
+use molecules::{Bound, Caps, Mode, Origin, PRACTICE, Scheme, Status};
 use number::Rational;
 
 /// A number known to an enclosure, rounded to at most so many significant digits, fewer where the enclosure
@@ -26,6 +26,18 @@ pub(super) fn named(mode: &Mode, unit: TimeUnit) -> String {
     match mode.origin {
         Origin::Period => format!("{} (T = {period})", mode.name),
         origin => format!("{} (T = {period} from the {})", mode.name, origin.name()),
+    }
+}
+
+/// A judgement as a picture's key explains it; the band is named beside it.
+pub(super) fn meaning(status: Status) -> &'static str {
+    match status {
+        Status::Safe => "proven stable for all periods in the band, below what is published",
+        Status::Caution => "proven stable for all periods in the band, beyond a published limit",
+        Status::Near => "stable for the periods given, not for all in the band",
+        Status::Island => "stable for the periods given, but above an unstable interval",
+        Status::Undecided => "neither stable nor unstable is proven",
+        Status::Unstable => "grows without bound",
     }
 }
 

@@ -33,6 +33,7 @@ named! {
 }
 
 /// Where a table stands and in what size.
+#[derive(PartialEq)]
 pub enum Place {
     /// A float, `table` or `table*`.
     Float { name: &'static str, size: &'static str },
@@ -94,6 +95,11 @@ impl Body {
     fn width(&self, scale: f64, space: f64) -> f64 {
         let gaps = 2.0 * space * (self.columns.len() as f64 - 1.0);
         scale * self.columns.iter().map(Typeset::width).sum::<f64>() + gaps
+    }
+
+    /// How many columns it has.
+    pub fn count(&self) -> usize {
+        self.columns.len()
     }
 
     /// The argument of `tabular`.

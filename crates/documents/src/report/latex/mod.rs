@@ -19,11 +19,14 @@ pub use typeset::{enclosure, escaped, exact, float, shown};
 /// Rows beyond this number do not fit a page of an article.
 const ROWS_OF_A_PAGE: usize = 40;
 
-/// Significant digits where none are asked for, the first of them that fit the paper.
+/// Significant digits where none are asked for: the first of them that fit the paper choose the place, and as
+/// many more stand there as it has room for.
 const DIGITS: [u32; 4] = [10, 8, 6, 4];
+/// Every double reads back from so many digits.
+const MOST_DIGITS: u32 = 17;
 
 /// A table with its caption, its parameters behind it, and the label `tab:NAME-PARAMETERS-FORM`. Without
-/// `digits` as many are shown as fit, ten at most.
+/// `digits` as many are shown as there is room for in the place that ten have, or the most of fewer that fit.
 ///
 /// It fits an article of one column and one of two: in a column of two where it can, across both where it
 /// must, in smaller letters where that is not enough, unless `float` chooses; what is too wide even so goes
@@ -39,13 +42,7 @@ pub fn document(
     float: Option<Float>,
 ) -> Result<String> {
     let table = &table.keeping(|column| !column.aside);
-    let tries = digits.map_or(DIGITS.to_vec(), |digits| vec![digits]);
-    let is_long = table.rows().len() > ROWS_OF_A_PAGE;
-    let fitting = tries.iter().find_map(|&digits| Body::new(&table.shortened(digits)).placed(is_long, float));
-    let parts = match fitting {
-        Some(whole) => vec![whole],
-        None => split(&table.shortened(tries[0]), is_long, float)?,
-    };
+    let parts = parts(table, digits, float)?;
     let caption = table.typeset().map_or_else(|| escaped(table.caption()), Into::into);
     let parameters = parameters(input, table.columns());
     let label = format!("{}-{}", label(table.name(), input), form(table, digits));
@@ -59,6 +56,27 @@ pub fn document(
         }
     };
     Ok(parts.iter().enumerate().map(one).collect::<Vec<_>>().join("\n"))
+}
+
+/// The table where it fits, else its parts.
+fn parts(table: &Table, digits: Option<u32>, float: Option<Float>) -> Result<Vec<(Place, Body)>> {
+    let tries = digits.map_or(DIGITS.to_vec(), |digits| vec![digits]);
+    let is_long = table.rows().len() > ROWS_OF_A_PAGE;
+    let whole = |digits: u32| Body::new(&table.shortened(digits)).placed(is_long, float);
+    let parts = |digits: u32| split(&table.shortened(digits), is_long, float);
+    // More digits than were sure to fit, the most first.
+    let more = |fitting: u32| if digits.is_some() { fitting..fitting } else { fitting..MOST_DIGITS };
+    if let Some((fitting, first)) = tries.iter().find_map(|&digits| Some((digits, whole(digits)?))) {
+        let same = more(fitting).rev().filter_map(|n| whole(n + 1)).find(|(place, _)| *place == first.0);
+        return Ok(vec![same.unwrap_or(first)]);
+    }
+    let first = parts(tries[0])?;
+    let form = |parts: &[(Place, Body)]| parts.iter().map(|(_, body)| body.count()).collect::<Vec<_>>();
+    let same = |all: &Vec<(Place, Body)>| {
+        form(all) == form(&first) && all.iter().zip(&first).all(|(a, b)| a.0 == b.0)
+    };
+    let same = more(tries[0]).rev().filter_map(|n| parts(n + 1).ok()).find(same);
+    Ok(same.unwrap_or(first))
 }
 
 /// The first columns of integers, three at most, and as many others as fit, again and again.

@@ -66,7 +66,7 @@ impl Atlas<'_> {
         let (values, others) = ranks.split_at(ranks.len().min(FAMILIES));
         // Each curve in a pale shade of its family's hue: the pattern of the line names the family, too.
         let place = |a| values.iter().position(|&value| value == rank(a));
-        let mut panel = self.panel(|a| place(a).map_or(PALE, palette::behind));
+        let mut panel = self.panel(|a| place(a).map_or(PALE, palette::behind), "family ");
         for (n, &value) in values.iter().enumerate() {
             panel = entry(panel, palette::family(n), SHAPES[n], &family_name(value));
         }
@@ -92,7 +92,7 @@ impl Atlas<'_> {
     /// colour.
     pub fn by_growth(&self) -> Figure {
         let bar = self.bar();
-        let mut panel = self.panel(|_| PALE);
+        let mut panel = self.panel(|_| PALE, "curves ");
         for (class, colour) in (0..ColourBar::SHADES).zip(bar.steps(ColourBar::SHADES)) {
             let rate = |segment: &Segment| segment.rate.unwrap_or(f64::INFINITY);
             let of_class = |segment: &&Segment| bar.class(rate(segment), ColourBar::SHADES) == class;
@@ -114,11 +114,11 @@ impl Atlas<'_> {
         self.segments.iter().filter(|segment| !segment.closed)
     }
 
-    /// The curves, in the background.
-    fn panel(&self, colour: impl Fn(i64) -> Colour) -> Panel {
+    /// The curves, in the background. A family's curves and tongues share a name, and so an entry.
+    fn panel(&self, colour: impl Fn(i64) -> Colour, before: &str) -> Panel {
         let Window { h1, h2 } = self.window;
         let panel = Panel::new(axis("*h*_1", h1).of_time(), axis("*h*_2", h2).of_time()).titled(&self.title);
-        lines_in(colour, "curves ", panel, self.curves)
+        lines_in(colour, before, panel, self.curves)
     }
 
     fn put(&self, mut panel: Panel, segments: &[&Segment], colour: Colour) -> Panel {

@@ -21,7 +21,7 @@ pub fn lines_in(colour: impl Fn(i64) -> Colour, before: &str, mut panel: Panel, 
         let pieces = of_a.flat_map(|curve| &curve.pieces);
         let lines = pieces.map(|piece| piece.iter().map(|p| [p.h1, p.h2]).collect()).collect();
         let layer = Layer::lines(lines, stroke(a).in_colour(colour(a)));
-        panel = panel.with(layer.labelled(&format!("{before}*a* = {a}")));
+        panel = panel.with(layer.labelled(&format!("{before}*a* = {a}").replace('-', "−")));
     }
     panel.legend(Place::Above)
 }

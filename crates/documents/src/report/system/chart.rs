@@ -24,9 +24,10 @@ const LEAST_SIZE: f64 = 0.35;
 const EDGE_SIZE: f64 = 3.4;
 
 impl SystemMap {
-    /// The unstable points in colour, the edges marked; `numbers` are those along the axes.
-    pub fn figure(&self, colouring: Colouring, title: &str, numbers: &[(String, i8)]) -> Figure {
-        if self.names.len() == 1 {
+    /// The unstable points in colour, the edges marked.
+    pub fn figure(&self, colouring: Colouring, title: &str) -> Figure {
+        let numbers = &self.numbers;
+        if numbers.len() == 1 {
             return self.profile(title, &numbers[0]);
         }
         let unstable = self.count(Kind::Hyperbolic) + self.count(Kind::Parabolic);
@@ -174,15 +175,15 @@ mod tests {
                 growth_rate,
                 at_least,
             });
-            let (names, ys) = (vec!["potentials.1.step".into()], vec![Rational::default()]);
-            SystemMap { names, points: points.collect(), xs, ys, time_unit: None }
+            let (numbers, ys) = (vec![("step".into(), 1)], vec![Rational::default()]);
+            SystemMap { numbers, points: points.collect(), xs, ys, time_unit: None }
         };
         let [stable, grows] =
             [(Some(Kind::Elliptic), Some((0.0, 0.0)), 0.0), (Some(Kind::Hyperbolic), Some((2.0, 2.1)), 2.0)];
         let [open, above] = [(None, None, 0.0), (Some(Kind::Hyperbolic), Some((3.0, f64::INFINITY)), 3.0)];
         let names = ["not decided", "unstable: grows as fast or faster"];
         let said = |system_map: &SystemMap| {
-            let svg = system_map.figure(Colouring::Growth, "growth", &[("step".into(), 1)]).svg();
+            let svg = system_map.figure(Colouring::Growth, "growth").svg();
             names.map(|name| svg.contains(&format!("aria-label=\"{name}\"")))
         };
         for (points, keys, runs) in [

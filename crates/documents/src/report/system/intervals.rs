@@ -93,16 +93,15 @@ pub fn figure(intervals: &Intervals, rates: &[Option<f64>], title: &str, number:
     Figure::double_column(80.0).named(title).with(panel.with(line).legend(Place::Above))
 }
 
-/// The document `kickdrift/system-intervals/1`; the caller adds the input.
-pub fn document(intervals: &Intervals) -> Document {
+/// The document `kickdrift/system-intervals/1` of the number with this name; the caller adds the input.
+pub fn document(intervals: &Intervals, name: &str) -> Document {
     let [unstable, undecided] = [Holds::Unstable, Holds::Undecided].map(|verdict| number(intervals, verdict));
     let is_place =
         |stretch: &&Stretch| stretch.verdict == Holds::Undecided && stretch.lo.next_up() == stretch.hi;
     let places = intervals.stretches.iter().filter(is_place).count();
-    let name = if intervals.number == "outer" { "the outer step" } else { &intervals.number };
     let inner = |steps| format!(", with {} in each", counted(steps as usize, "inner step", "inner steps"));
     let mut lines = vec![format!(
-        "{} of {name}{}",
+        "{} of the {name}{}",
         counted(unstable, "unstable interval", "unstable intervals"),
         intervals.inner_steps.map(inner).unwrap_or_default()
     )];
@@ -128,9 +127,10 @@ pub fn document(intervals: &Intervals) -> Document {
     if let Some((lo, hi)) = intervals.first_unstable() {
         lines.push(format!("  the first begins at {}", decimal::enclosure(lo, hi)));
     }
+    let caption = format!("Verdicts on stretches of the {name}");
     head()
         .document(Document::new("system-intervals"), intervals)
-        .rows(record().table("stretches", "Verdicts on stretches of the number", &intervals.stretches))
+        .rows(record().table("stretches", &caption, &intervals.stretches))
         .summary(&lines)
 }
 
@@ -188,9 +188,9 @@ mod tests {
         ];
         let intervals =
             Intervals { number: "x".into(), is_discrete: false, inner_steps: None, stretches, open: None };
-        let text = document(&intervals).render(Format::Text).unwrap();
+        let text = document(&intervals, "x").render(Format::Text).unwrap();
         assert!(text.contains("  1 stretch where nothing is proven\n  1 isolated place between"), "{text}");
-        let text = document(&Intervals { open: Some(1), ..intervals }).render(Format::Text).unwrap();
+        let text = document(&Intervals { open: Some(1), ..intervals }, "x").render(Format::Text).unwrap();
         assert!(text.contains("  1 stretch that the accuracy of the data leaves open"), "{text}");
         assert!(!text.contains("where nothing is proven"), "{text}");
     }

@@ -17,8 +17,8 @@ use systems::scan::Point;
 /// The points of a scan, row by row of y.
 #[derive(Clone, Debug)]
 pub struct SystemMap {
-    /// The number varied along x and, if there are two, along y.
-    pub names: Vec<String>,
+    /// The number varied along x and, if there are two, along y: in words, with the power of time in its unit.
+    pub numbers: Vec<(String, i8)>,
     pub xs: Vec<Rational>,
     pub ys: Vec<Rational>,
     pub points: Vec<Point>,
@@ -57,13 +57,15 @@ impl SystemMap {
             ),
         ];
         if let Some(Point { at: (x, y), growth_rate, .. }) = self.fastest() {
-            let places = self.names.iter().zip([x, y]).map(|(name, value)| format!("{name} = {value}"));
+            let places =
+                self.numbers.iter().zip([x, y]).map(|((name, _), value)| format!("{name} = {value}"));
             let places = places.collect::<Vec<_>>().join(", ");
             let per = self.time_unit.as_deref().unwrap_or("unit time");
             lines.push(format!("  fastest growth {} at {places}", rate_per(*growth_rate, per)));
         }
-        let caption = ["Verdicts over a number of the system", "Verdicts over two numbers of the system"];
-        let rows = record(&self.names, true).table("verdicts", caption[self.names.len() - 1], &self.points);
+        let names = self.names();
+        let caption = format!("Verdicts over the {}", names.join(" and the "));
+        let rows = record(&names, true).table("verdicts", &caption, &self.points);
         head().document(Document::new("system-map"), self).rows(rows).summary(&lines)
     }
 
@@ -73,6 +75,10 @@ impl SystemMap {
         let keys = head().keys().key("verdicts", verdicts, "");
         Schema::new("A system's verdict over two of its numbers", keys)
             .about("Every pair of values of two numbers of a system file, row by row of y.")
+    }
+
+    fn names(&self) -> Vec<&str> {
+        self.numbers.iter().map(|(name, _)| &**name).collect()
     }
 
     fn unproven(&self) -> usize {
@@ -101,14 +107,14 @@ fn head() -> Record<'static, SystemMap> {
         .says(COUNT, "")
         .json("unproven", |map| map.unproven().into())
         .says(COUNT, "Points that are not decided.")
-        .value("fastest", |map| map.fastest().map(|point| record(&map.names, false).entries(point)).into())
+        .value("fastest", |map| map.fastest().map(|point| record(&map.names(), false).entries(point)).into())
         .says(Shape::OrNull(&Shape::Object(|| keys(false))), "null where no point is proven to grow.")
 }
 
 /// The record of a point at values of these numbers, with its kind or without.
-fn record(names: &[String], has_kind: bool) -> Record<'static, Point> {
+fn record(names: &[&str], has_kind: bool) -> Record<'static, Point> {
     const SAYS: &str = "An exact rational.";
-    let x = Column::new("x").in_words(&names[0]);
+    let x = Column::new("x").in_words(names[0]);
     let mut record = Record::new().field(x, |point: &Point| Cell::exact(&point.at.0)).says(RATIONAL, SAYS);
     if let Some(name) = names.get(1) {
         let y = Column::new("y").in_words(name);
@@ -127,6 +133,6 @@ fn record(names: &[String], has_kind: bool) -> Record<'static, Point> {
 
 /// The keys of a point, of one number or of two.
 fn keys(has_kind: bool) -> Keys {
-    let names = ["x", "y"].map(String::from);
+    let names = ["x", "y"];
     record(&names, has_kind).keys().or_only(&record(&names[..1], has_kind).keys())
 }

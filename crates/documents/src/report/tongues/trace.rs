@@ -17,11 +17,9 @@ pub fn figure(trace: &Trace) -> Figure {
     [whole(trace), excess(&trace.near), entries(&trace.near)].into_iter().fold(figure, Figure::with)
 }
 
-fn shade(panel: Panel, spans: impl Iterator<Item = [f64; 2]>, [low, high]: [f64; 2]) -> Panel {
+fn shade(spans: impl Iterator<Item = [f64; 2]>, [low, high]: [f64; 2]) -> Layer {
     let outline = |[a, b]: [f64; 2]| vec![[a, low], [b, low], [b, high], [a, high]];
-    panel.with(
-        Layer::areas(spans.map(outline).collect(), GREY, 0.35).labelled("tongue, between certified edges"),
-    )
+    Layer::areas(spans.map(outline).collect(), GREY, 0.35)
 }
 
 fn level(values: &[f64], [from, upto]: [f64; 2]) -> Layer {
@@ -38,7 +36,9 @@ fn whole(trace: &Trace) -> Panel {
         trace.ratio,
         typeset(&trace.rho)
     ));
-    let panel = shade(panel, trace.tongues.iter().map(|tongue| tongue.1), [-SHOWN, SHOWN]);
+    // The panels below have the same shade and level; the first one names them.
+    let tongues = shade(trace.tongues.iter().map(|tongue| tongue.1), [-SHOWN, SHOWN]);
+    let panel = panel.with(tongues.labelled("tongue, between certified edges"));
     let panel = panel.with(level(&[-2.0, 2.0], [0.0, end]).labelled("|Tr *Q*| = 2"));
     let panel =
         panel.with(Layer::lines(vec![trace.whole.clone()], Stroke::LINE.in_colour(INK)).labelled("Tr *Q*"));
@@ -68,24 +68,19 @@ fn excess(near: &Near) -> Panel {
     let (low, high) = (low.max(-3.0 * high) * 1.1, high * 1.25);
     let sign = if near.m.is_multiple_of(2) { "" } else { "−" };
     let panel = Panel::new(across(near), Axis::linear(&format!("{sign}Tr *Q* − 2"), low, high));
-    let panel = shade(
-        panel.titled(&format!("Tongue {}: the full period", near.m)),
-        [[0.0, 1.0]].into_iter(),
-        [low, high],
-    );
-    let panel = panel.with(level(&[0.0], [-1.0, 2.0]).labelled("|Tr *Q*| = 2"));
-    let line = Layer::lines(vec![near.excess.clone()], Stroke::LINE.in_colour(INK));
-    panel.with(line.labelled(&format!("{sign}Tr *Q* − 2"))).legend(Place::Above)
+    panel
+        .titled(&format!("Tongue {}: the full period", near.m))
+        .with(shade([[0.0, 1.0]].into_iter(), [low, high]))
+        .with(level(&[0.0], [-1.0, 2.0]))
+        .with(Layer::lines(vec![near.excess.clone()], Stroke::LINE.in_colour(INK)))
 }
 
 fn entries(near: &Near) -> Panel {
     let panel = Panel::new(across(near), Axis::linear("entry/largest", -1.1, 1.1));
-    let panel = shade(
-        panel.titled(&format!("Tongue {}: half a period", near.m)),
-        [[0.0, 1.0]].into_iter(),
-        [-1.1, 1.1],
-    );
-    let panel = panel.with(level(&[0.0], [-1.0, 2.0]));
+    let panel = panel
+        .titled(&format!("Tongue {}: half a period", near.m))
+        .with(shade([[0.0, 1.0]].into_iter(), [-1.1, 1.1]))
+        .with(level(&[0.0], [-1.0, 2.0]));
     let strokes = [
         Stroke::LINE.in_colour(family(0)),
         Stroke { dash: Dash::Dashed, ..Stroke::LINE.in_colour(family(1)) },

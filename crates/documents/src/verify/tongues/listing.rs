@@ -1,6 +1,6 @@
 //! Tongues as a list: none left out, and counted as they are.
 
-use crate::question::{StepRange, Tongues as Question};
+use crate::question::{Ratios, StepRange, Tongues as Question};
 use crate::verify::context::{Checked, Fault, holds};
 use crate::verify::exact::check_ratio;
 use clocks::resonance::dominant_family;
@@ -36,7 +36,8 @@ pub fn complete(question: &Question, tongues: &[Tongue], rho: &Rational, limits:
 fn labels(question: &Question, ratio: Ratio, rho: &Rational, limits: &Limits) -> Checked<Vec<u64>> {
     check_ratio(ratio.p(), ratio.q(), limits)?;
     let last = last(ratio, rho);
-    if let Some(list) = question.m.as_ref().filter(|_| question.ratio.is_some()) {
+    let is_alone = matches!(question.ratios()?, Ratios::One(_));
+    if let Some(list) = question.m.as_ref().filter(|_| is_alone) {
         let labels = list.0.iter().flat_map(|&(from, upto)| [from, upto]);
         holds(labels.into_iter().all(|m| (1..=last).contains(&m)), || {
             format!("{ratio} has the tongues 1 to {last}")
