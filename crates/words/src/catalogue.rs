@@ -68,11 +68,13 @@ const FORCE_GRADIENTS: &str = "Schaefers, Finkenrath, Guenther, Knechtli, arXiv:
 const LASKAR_ROBUTEL: &str = "Laskar, Robutel, Celest. Mech. Dyn. Astron. 80, 39 (2001)";
 // Their equation (53); digits as in MDevolve.
 const OMELYAN_GRADIENTS_2002: &str = "Omelyan, Mryglod, Folk, Phys. Rev. E 66, 026701 (2002)";
-const SANZ_SERNA_CALVO: &str = "Sanz-Serna, Calvo, Int. J. Mod. Phys. C 4, 385 (1993); digits as in OrdinaryDiffEq.jl";
+const SANZ_SERNA_CALVO: &str =
+    "Sanz-Serna, Calvo, Int. J. Mod. Phys. C 4, 385 (1993); digits as in OrdinaryDiffEq.jl";
 const KAHAN_LI: &str = "Kahan, Li, Math. Comput. 66, 1089 (1997)";
 // Their 40 digits, as REBOUND has them, cut to 20.
 const BLANES_2013: &str = "Blanes, Casas, Farres, Laskar, Makazaga, Murua, Appl. Numer. Math. 68, 58 (2013)";
-const FARRES_2013: &str = "Farres, Laskar, Blanes, Casas, Makazaga, Murua, Celest. Mech. Dyn. Astron. 116, 141 (2013)";
+const FARRES_2013: &str =
+    "Farres, Laskar, Blanes, Casas, Makazaga, Murua, Celest. Mech. Dyn. Astron. 116, 141 (2013)";
 const REIN: &str = "Rein, Tamayo, Brown, Mon. Not. R. Astron. Soc. 489, 4632 (2019)";
 const YOSHIDA: &str = "Yoshida, Phys. Lett. A 150, 262 (1990)";
 const CHIN: &str = "Chin, Phys. Lett. A 226, 344 (1997)";
