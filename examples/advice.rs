@@ -1,6 +1,6 @@
 //! Is 5 fs safe for flexible water? And which outer step is?
 //!
-//!     cargo run --release --example advice --no-default-features --features advise
+//!     cargo run --release --example advice
 
 use kickdrift::advise::{Mode, Question, Scheme, unit};
 use kickdrift::error::Result;

@@ -1,6 +1,6 @@
 //! A thousand verdicts, all tongues of a ratio, and a map as a vector.
 //!
-//! `cargo run --release --no-default-features --example first_steps`
+//! `cargo run --release --example first_steps`
 
 use kickdrift::error::Result;
 use kickdrift::map::{Grid, Map};

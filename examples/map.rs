@@ -1,6 +1,6 @@
 //! The stability of a grid of step pairs as a vector, and as a picture in letters.
 //!
-//!     cargo run --release --example map --no-default-features
+//!     cargo run --release --example map
 
 use kickdrift::error::Result;
 use kickdrift::map::{Grid, Map, Products};

@@ -1,6 +1,6 @@
 //! A system from nalgebra's matrices: is it stable, what grows, and a Hessian in doubles with its margin.
 //!
-//! `cargo run --release --no-default-features --features system --example system`
+//! `cargo run --release --example system`
 
 use kickdrift::error::Result;
 use kickdrift::number::rational::ratio;

@@ -1,6 +1,6 @@
 //! Every unstable interval of one ratio of steps, its fastest growth, and the widest tongue of many ratios.
 //!
-//! `cargo run --release --no-default-features --example tongues`
+//! `cargo run --release --example tongues`
 
 use kickdrift::error::Result;
 use kickdrift::number::Ratio;

@@ -1,6 +1,6 @@
 //! Is this pair of steps stable, and what is there to say beyond yes and no?
 //!
-//! `cargo run --release --no-default-features --example verdict`
+//! `cargo run --release --example verdict`
 
 use kickdrift::error::Result;
 use kickdrift::propagator::Oscillator;

@@ -42,13 +42,17 @@
 //! machine-checked proofs in `proofs/`.
 //!
 //! ```
-//! use kickdrift::{Kind, Limits, Oscillator, decide_steps, parse};
-//! let x = |text| parse("quantity", text).unwrap();
+//! use kickdrift::{Kind, Limits, Oscillator, decide_steps};
 //! // Just below h2 = T½ = 1: resonant.
-//! let oscillator = Oscillator::new(x("pi^2"), x("pi^2/25"), x("1/100"), x("0.98")).unwrap();
-//! let decision = decide_steps(&oscillator, &Limits::default()).unwrap();
-//! assert_eq!(decision.verdict.kind(), Kind::Hyperbolic);
+//! let pair = Oscillator::builder().lambda1("pi^2").lambda2("pi^2/25").h1("1/100").h2("0.98").build()?;
+//! assert_eq!(decide_steps(&pair, &Limits::default())?.verdict.kind(), Kind::Hyperbolic);
+//! # Ok::<(), kickdrift::Error>(())
 //! ```
+//!
+//! That is the first call: quantities as people write them, and a verdict on a period of any length.
+//! [`decide`] takes the [dimensionless pair](TwoClocks), in any ring, and its [answer](verdict::Answer) knows
+//! trace, growth and label; a [`question`] is asked in the words of the command line and answered by a
+//! document.
 //!
 //! # Glossary
 //!
