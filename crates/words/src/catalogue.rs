@@ -68,11 +68,13 @@ const FORCE_GRADIENTS: &str = "Schaefers, Finkenrath, Guenther, Knechtli, arXiv:
 const LASKAR_ROBUTEL: &str = "Laskar, Robutel, Celest. Mech. Dyn. Astron. 80, 39 (2001)";
 // Their equation (53); digits as in MDevolve.
 const OMELYAN_GRADIENTS_2002: &str = "Omelyan, Mryglod, Folk, Phys. Rev. E 66, 026701 (2002)";
-const SANZ_SERNA_CALVO: &str = "Sanz-Serna, Calvo, Int. J. Mod. Phys. C 4, 385 (1993); digits as in OrdinaryDiffEq.jl";
+const SANZ_SERNA_CALVO: &str =
+    "Sanz-Serna, Calvo, Int. J. Mod. Phys. C 4, 385 (1993); digits as in OrdinaryDiffEq.jl";
 const KAHAN_LI: &str = "Kahan, Li, Math. Comput. 66, 1089 (1997)";
 // Their 40 digits, as REBOUND has them, cut to 20.
 const BLANES_2013: &str = "Blanes, Casas, Farres, Laskar, Makazaga, Murua, Appl. Numer. Math. 68, 58 (2013)";
-const FARRES_2013: &str = "Farres, Laskar, Blanes, Casas, Makazaga, Murua, Celest. Mech. Dyn. Astron. 116, 141 (2013)";
+const FARRES_2013: &str =
+    "Farres, Laskar, Blanes, Casas, Makazaga, Murua, Celest. Mech. Dyn. Astron. 116, 141 (2013)";
 const REIN: &str = "Rein, Tamayo, Brown, Mon. Not. R. Astron. Soc. 489, 4632 (2019)";
 const YOSHIDA: &str = "Yoshida, Phys. Lett. A 150, 262 (1990)";
 const CHIN: &str = "Chin, Phys. Lett. A 226, 344 (1997)";
@@ -355,7 +357,7 @@ pub const METHODS: &[Method] = methods! {
     "molly-equilibrium" 0 "K2[0](1/2) R1(1) K2[0](1/2)", "Izaguirre, Reich, Skeel, J. Chem. Phys. 110, 9853 (1999)",
         "LAMMPS: fix filter/corotate", "NAMD: molly = on";
     "hairer-lubich" 2 "K2[sinc(x)](1/2) R1(1) K2[sinc(x)](1/2)", "Hairer, Lubich, SIAM J. Numer. Anal. 38, 414 (2000)";
-    "grimm-hochbruck" 2 "K2[sinc(x)^3](1/2) R1(1) K2[sinc(x)^3](1/2)", "Grimm, Hochbruck, J. Phys. A 39, 5495 (2006)";
+    "grimm-hochbruck" 2 "K2[sinc(x)^3](1/2) R1(1) K2[sinc(x)^3](1/2)", "Grimm, Hochbruck, Error analysis of exponential integrators for oscillatory second-order differential equations (2005)";
     "rpmd" 2 "K2(1/2) R1(1) K2(1/2)", "Ceriotti, Parrinello, Markland, Manolopoulos, J. Chem. Phys. 133, 124104 (2010)",
         "i-PI: normal_modes propagator = exact";
     "rpmd-cayley" 2 "K2(1/2) C1(1) K2(1/2)", "Korol, Bou-Rabee, Miller, J. Chem. Phys. 151, 124103 (2019)",

@@ -199,6 +199,20 @@ mod tests {
         assert!((to_f64(&found.member.values[0]) - 0.21178).abs() < 5e-6, "{}", found.member.values[0]);
     }
 
+    /// With this condition a zero of A and one of D coincide: the propagator is -I inside the stable steps.
+    #[test]
+    fn three_stages_whose_unstable_interval_has_closed_have_an_energy_error() {
+        let kick = "(1/2-2*a)/(1-6*a)";
+        let word = format!("K({kick}) D(a) K(1/2-{kick}) D(1-2*a) K(1/2-{kick}) D(a) K({kick})");
+        let found = best(&[("word", &word), ("parameter", "a=0.29..0.31:1/100"), ("minimize", "bias")]);
+        // The method of Blanes, Casas and Sanz-Serna, for steps up to 3.
+        assert!(
+            (to_f64(&found.member.values[0]) - 0.29619504261126).abs() < 5e-6,
+            "{}",
+            found.member.values[0]
+        );
+    }
+
     #[test]
     fn the_longest_step_of_two_stages_is_that_of_two_verlets_which_no_row_meets() {
         // 1/4 is no multiple of 1/70 beyond 1/5; beside it the trace passes below -2 at s = 8.
