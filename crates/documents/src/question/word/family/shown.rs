@@ -151,7 +151,7 @@ fn lines(family: &Family, members: &Members) -> Vec<String> {
             say(
                 "proven",
                 match best.proven {
-                    true => "no value of the range has a smaller error: the derivative's roots are isolated"
+                    true => "the least error of the whole range is here, to 2^-60 of it: the roots of its derivative are isolated"
                         .into(),
                     false => format!("{tried}, {} more tried than the rows", best.tried),
                 },
