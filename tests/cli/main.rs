@@ -1,5 +1,7 @@
 //! The program from outside: what a person or a script types, and what comes back.
 
+#[cfg(target_os = "linux")]
+mod action;
 mod advice_first;
 mod advise;
 mod answers;

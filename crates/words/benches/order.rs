@@ -2,9 +2,10 @@
 //!
 //!     cargo bench -p kickdrift-words --bench order
 //!
-//! `-- NAME` or `-- WORD` asks one. Series are followed to one degree more than the order. No method of ten letters
-//! has an order near 8, so two words are followed to the last degree, 9, because they are the exact flow: one undoes
-//! its kicks and drifts again, and one is ten flows, the dearest letter, for each has all monomials.
+//! `-- NAME` or `-- WORD` asks one. Series are followed to one degree more than the order. No method of ten
+//! letters has an order near 8, so two words are followed to the last degree, 9, because they are the exact
+//! flow: one undoes its kicks and drifts again, and one is ten flows, the dearest letter, for each has all
+//! monomials.
 
 use std::time::{Duration, Instant};
 

@@ -357,7 +357,7 @@ pub const METHODS: &[Method] = methods! {
     "molly-equilibrium" 0 "K2[0](1/2) R1(1) K2[0](1/2)", "Izaguirre, Reich, Skeel, J. Chem. Phys. 110, 9853 (1999)",
         "LAMMPS: fix filter/corotate", "NAMD: molly = on";
     "hairer-lubich" 2 "K2[sinc(x)](1/2) R1(1) K2[sinc(x)](1/2)", "Hairer, Lubich, SIAM J. Numer. Anal. 38, 414 (2000)";
-    "grimm-hochbruck" 2 "K2[sinc(x)^3](1/2) R1(1) K2[sinc(x)^3](1/2)", "Grimm, Hochbruck, J. Phys. A 39, 5495 (2006)";
+    "grimm-hochbruck" 2 "K2[sinc(x)^3](1/2) R1(1) K2[sinc(x)^3](1/2)", "Grimm, Hochbruck, Error analysis of exponential integrators for oscillatory second-order differential equations (2005)";
     "rpmd" 2 "K2(1/2) R1(1) K2(1/2)", "Ceriotti, Parrinello, Markland, Manolopoulos, J. Chem. Phys. 133, 124104 (2010)",
         "i-PI: normal_modes propagator = exact";
     "rpmd-cayley" 2 "K2(1/2) C1(1) K2(1/2)", "Korol, Bou-Rabee, Miller, J. Chem. Phys. 151, 124103 (2019)",

@@ -98,7 +98,7 @@ impl Letter {
     }
 
     /// A time, or the strengths of the force's powers.
-    pub(super) fn coefficients(&self) -> &[Radical] {
+    pub fn coefficients(&self) -> &[Radical] {
         match self {
             Letter::Drift(time)
             | Letter::Friction { time, .. }

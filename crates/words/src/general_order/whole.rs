@@ -1,5 +1,5 @@
-//! Whole combinations of the powers of one root: no fraction is reduced, which is most of the work with numbers
-//! of its field.
+//! Whole combinations of the powers of one root: no fraction is reduced, which is most of the work with
+//! numbers of its field.
 
 use std::ops::{AddAssign, MulAssign, Neg};
 use std::sync::Arc;

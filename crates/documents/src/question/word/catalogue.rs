@@ -55,7 +55,9 @@ impl Question for Methods {
                 h_range: Some(slow_range()),
                 ..none
             };
-            let two = if linted.word.names_forces() { Some(two().answer(work)?) } else { None };
+            // Long decimals make orders dear.
+            let orders = |_: &words::Word| (linted.order.clone(), linted.general.clone());
+            let two = if linted.word.names_forces() { Some(two().answer_with(work, orders)?) } else { None };
             Ok(Listed { method, linted, two })
         };
         let methods: Vec<&'static Method> = METHODS.iter().collect();

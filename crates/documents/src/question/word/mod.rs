@@ -51,6 +51,39 @@ impl Question for Word {
     }
 
     fn answer(&self, work: &Work) -> Result<Linted> {
+        self.answer_with(work, |word| (word.order(), word.general_order()))
+    }
+
+    fn show(&self, answer: &Linted) -> Document {
+        let rows = answer.rows(self.lambda1.as_ref());
+        let document = record(self).document(Document::new(Self::NAME), answer);
+        let mut columns = vec!["stable", "lower", "upper"];
+        columns.extend(self.lambda1.iter().flat_map(|_| ["h_lower", "h_upper"]));
+        let people = rows.only(&columns);
+        document.rows(rows).for_people(people).summary(&answer.lines(self))
+    }
+
+    fn figure(&self, answer: &Linted, _: &Work) -> Result<Option<plot::Figure>> {
+        chart::figure(self, answer).map(Some)
+    }
+
+    fn command(&self) -> String {
+        let words = self.word.iter().map(|word| format!(" \"{word}\""));
+        let rest = super::Fields::input(self).into_iter().filter(|(key, _)| *key != "word");
+        let flags = rest.map(|(key, value)| {
+            let value = value.as_str().unwrap_or_default().to_string();
+            format!(" --{} {}", key.replace('_', "-"), crate::report::text::quoted(&value))
+        });
+        format!("kickdrift word{}", words.chain(flags).collect::<String>())
+    }
+}
+
+/// The order on oscillators and those on all problems.
+type Orders = (words::Order, std::result::Result<words::GeneralOrder, words::NoGeneralOrder>);
+
+impl Word {
+    /// The answer, the word's orders being known or found by this.
+    fn answer_with(&self, work: &Work, orders: impl FnOnce(&words::Word) -> Orders) -> Result<Linted> {
         let word = self.word()?;
         affordable(&word, work)?;
         self.check(&word)?;
@@ -90,32 +123,9 @@ impl Question for Word {
         } else if s.is_some() || range.is_some() {
             return Err(Error::missing("lambda1", "the word names two forces: give both stiffnesses"));
         }
-        let (order, general) = (word.order(), word.general_order());
+        let (order, general) = orders(&word);
         let (sums, cost) = (word.sums(), word.cost());
         Ok(Linted { word, sums, order, general, cost, rho, stability, pieces, range, at: found })
-    }
-
-    fn show(&self, answer: &Linted) -> Document {
-        let rows = answer.rows(self.lambda1.as_ref());
-        let document = record(self).document(Document::new(Self::NAME), answer);
-        let mut columns = vec!["stable", "lower", "upper"];
-        columns.extend(self.lambda1.iter().flat_map(|_| ["h_lower", "h_upper"]));
-        let people = rows.only(&columns);
-        document.rows(rows).for_people(people).summary(&answer.lines(self))
-    }
-
-    fn figure(&self, answer: &Linted, _: &Work) -> Result<Option<plot::Figure>> {
-        chart::figure(self, answer).map(Some)
-    }
-
-    fn command(&self) -> String {
-        let words = self.word.iter().map(|word| format!(" \"{word}\""));
-        let rest = super::Fields::input(self).into_iter().filter(|(key, _)| *key != "word");
-        let flags = rest.map(|(key, value)| {
-            let value = value.as_str().unwrap_or_default().to_string();
-            format!(" --{} {}", key.replace('_', "-"), crate::report::text::quoted(&value))
-        });
-        format!("kickdrift word{}", words.chain(flags).collect::<String>())
     }
 }
 

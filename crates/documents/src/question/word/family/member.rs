@@ -107,7 +107,11 @@ fn worst_bias(linted: &Linted, up_to: &Rational) -> Option<Ball> {
         return None;
     }
     let c = Polynomial::new(c.coefficients().get(1..)?.to_vec());
-    let slope = &(&b.derivative() * &c) - &(b * &c.derivative());
+    // Both vanish where an unstable interval has closed, the propagator being ±I; R goes on there.
+    let common = b.gcd(&c);
+    let [b, c] = [b, &c].map(|f| f.div_rem(&common).map(|(quotient, _)| quotient));
+    let (b, c) = (b?, c?);
+    let slope = &(&b.derivative() * &c) - &(&b * &c.derivative());
     let mut places = vec![Ball::from_rational(&square, BITS)];
     if slope.degree().is_some_and(|degree| degree > 0) {
         let chain = Sturm::over_field(&slope.squarefree());
@@ -121,7 +125,7 @@ fn worst_bias(linted: &Linted, up_to: &Rational) -> Option<Ball> {
     }
     let factor = Ball::from_rational(&-(Rational::one() + rho), BITS);
     let worst = |s: &Ball| {
-        let bias = factor.mul(&value(b, s), BITS).div(&value(&c, s), BITS)?;
+        let bias = factor.mul(&value(&b, s), BITS).div(&value(&c, s), BITS)?;
         let sum = bias.add(&Ball::one().div(&bias, BITS)?, BITS);
         Some(sum.scale2(-1).sub(&Ball::one(), BITS))
     };

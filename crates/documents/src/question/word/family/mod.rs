@@ -2,6 +2,7 @@
 
 mod asked;
 mod chart;
+mod least;
 mod member;
 mod search;
 mod shown;

@@ -22,6 +22,8 @@ pub struct Best {
     pub closes: bool,
     /// The values tried beyond the rows.
     pub tried: u64,
+    /// Whether no value of the range is better but those between the two of the bracket.
+    pub proven: bool,
 }
 
 /// The members of a family.
@@ -71,9 +73,15 @@ impl Family {
         if score(&all[best]).is_none() {
             return Ok(None);
         }
-        let row = Best { goal, member: all[best].clone(), bracket: None, closes: false, tried: 0 };
+        let row =
+            Best { goal, member: all[best].clone(), bracket: None, closes: false, tried: 0, proven: false };
         let mut ranged = self.parameter.ranged();
         let (Some((at, _)), None) = (ranged.next(), ranged.next()) else { return Ok(Some(row)) };
+        let least = degree.filter(|_| goal == Goal::Error).and_then(|degree| self.least_error(at, degree));
+        if let Some(ends) = least {
+            let member = self.member(&replaced(&row.member, at, short(&ends.0, &ends.1)), work)?;
+            return Ok(Some(Best { member, bracket: Some(ends), tried: 1, proven: true, ..row }));
+        }
         let about = |n: usize| [n.saturating_sub(1), n, (n + 1).min(all.len() - 1)];
         // Edges as they are: an unstable interval that closes makes the nominal one jump.
         let strict = |member: &Member| member.strict_score(goal, degree);
@@ -136,7 +144,7 @@ impl Family {
                 _ => break,
             }
         }
-        Ok(Best { goal, member, bracket: Some((lo, hi)), closes: false, tried })
+        Ok(Best { goal, member, bracket: Some((lo, hi)), closes: false, tried, proven: false })
     }
 }
 
@@ -188,8 +196,42 @@ mod tests {
         let found = best(&[("word", TWO_STAGES), ("parameter", "b=0.15..0.25:1/100"), ("minimize", "error")]);
         // Omelyan, Mryglod and Folk (2002) give 16 digits.
         assert!((to_f64(&found.member.values[0]) - 0.193_183_327_503_783_6).abs() < 1e-14);
+        assert!(found.proven);
         let (lo, hi) = found.bracket.unwrap();
         assert!(hi - lo < scale2(&1.into(), -40));
+    }
+
+    #[test]
+    fn no_value_has_a_smaller_error_than_the_one_that_is_proven_best() {
+        let words = [
+            TWO_STAGES,
+            "D(b) K(1/2) D(1-2*b) K(1/2) D(b)",
+            // A gradient, of degree 2.
+            "K(b) D(1/2) K(1-2*b, b*b-1/12) D(1/2) K(b)",
+        ];
+        for word in words {
+            let fields = [("word", word), ("parameter", "b=0.05..0.45:1/500"), ("minimize", "error")];
+            let input = fields.iter().map(|(name, value)| (name.to_string(), (*value).into())).collect();
+            let members = Family::read(&input).unwrap().answer(&Work::default()).unwrap();
+            let best = members.best.unwrap();
+            assert!(best.proven, "{word}");
+            let square =
+                |member: &Member| member.square(members.degree.unwrap()).unwrap().as_rational().unwrap();
+            let least = members.all.iter().map(square).min().unwrap();
+            // The value that is shown is one of the bracket, where the error is as good as flat.
+            assert!(square(&best.member) <= least, "{word}");
+        }
+    }
+
+    #[test]
+    fn of_quotients_no_least_error_is_proven() {
+        let found = best(&[
+            ("word", "K(1/(2+b)) D(1/2) K(1-2/(2+b)) D(1/2) K(1/(2+b))"),
+            ("parameter", "b=2..5:1/10"),
+            ("minimize", "error"),
+        ]);
+        assert!(!found.proven);
+        assert!((to_f64(&found.member.values[0]) - (1.0 / 0.193_183_327_503_783_6 - 2.0)).abs() < 1e-9);
     }
 
     #[test]
@@ -197,6 +239,20 @@ mod tests {
         let found = best(&[("word", TWO_STAGES), ("parameter", "b=0.15..0.25:1/100"), ("minimize", "bias")]);
         // Their coefficient for steps up to 2, with five digits.
         assert!((to_f64(&found.member.values[0]) - 0.21178).abs() < 5e-6, "{}", found.member.values[0]);
+    }
+
+    /// With this condition a zero of A and one of D coincide: the propagator is -I inside the stable steps.
+    #[test]
+    fn three_stages_whose_unstable_interval_has_closed_have_an_energy_error() {
+        let kick = "(1/2-2*a)/(1-6*a)";
+        let word = format!("K({kick}) D(a) K(1/2-{kick}) D(1-2*a) K(1/2-{kick}) D(a) K({kick})");
+        let found = best(&[("word", &word), ("parameter", "a=0.29..0.31:1/100"), ("minimize", "bias")]);
+        // The method of Blanes, Casas and Sanz-Serna, for steps up to 3.
+        assert!(
+            (to_f64(&found.member.values[0]) - 0.29619504261126).abs() < 5e-6,
+            "{}",
+            found.member.values[0]
+        );
     }
 
     #[test]

@@ -96,6 +96,8 @@ fn best_record(places: [usize; 2]) -> Record<'static, Option<Best>> {
         .says(RATIONAL_OR_NULL, "The nearest greater one.")
         .json("best.closes", |best| best.as_ref().map(|best| best.closes).into())
         .says(FLAG, "Whether the first unstable interval closes there, so that the stable steps go on beyond it: between lower and upper.")
+        .json("best.proven", |best| best.as_ref().map(|best| best.proven).into())
+        .says(FLAG, "Whether no value of the range is better but such as lie between lower and upper, which hold the best one: of an error that is a polynomial in the parameter.")
         .json("best.tried", |best| best.as_ref().map(|best| best.tried).into())
         .says(COUNT, "Values that were tried beside those of the rows.")
         .json("best.word", |best| best.as_ref().map_or(Cell::Missing, |best| Cell::exact(&best.member.linted.word)))
@@ -145,8 +147,15 @@ fn lines(family: &Family, members: &Members) -> Vec<String> {
     match (&members.best, family.goal()) {
         (Some(best), _) => {
             say("best", best.text(family, members.degree));
-            let proven = "each value tried is exact; whether one between them is better is not proven";
-            say("proven", format!("{proven}, {} more tried than the rows", best.tried));
+            let tried = "each value tried is exact; whether one between them is better is not proven";
+            say(
+                "proven",
+                match best.proven {
+                    true => "the least error of the whole range is here, to 2^-60 of it: the roots of its derivative are isolated"
+                        .into(),
+                    false => format!("{tried}, {} more tried than the rows", best.tried),
+                },
+            );
         }
         (None, Some(goal)) => say("best", format!("no member has {} {}", article(goal), goal.name())),
         (None, None) => (),
@@ -185,6 +194,7 @@ impl Best {
         let between = self
             .bracket
             .as_ref()
+            .filter(|_| !self.proven)
             .map_or(String::new(), |(lo, hi)| format!(", not better at {} and {}", exact(lo), exact(hi)));
         format!("{}: {} {size}{between}", values.join(", "), self.goal.name())
     }
