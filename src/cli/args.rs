@@ -4,6 +4,7 @@ use std::fmt::Display;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
+use super::progress::make_room;
 use super::screen::{self, Colour};
 use clocks::map::Products;
 use documents::format::Format;
@@ -83,11 +84,13 @@ impl Common {
 
     /// Writes a text to standard output, fitted to a terminal and coloured as the flags say.
     pub fn write_to_person(&self, text: &str) -> Result<()> {
+        make_room();
         write_output(None, screen::shown(text, self.color).as_bytes())
     }
 
     /// Writes a text where the flags say.
     pub fn write_text(&self, text: &str) -> Result<()> {
+        make_room();
         write_output(self.output.as_deref(), text.as_bytes())?;
         self.wrote_output();
         Ok(())
@@ -95,6 +98,7 @@ impl Common {
 
     /// Says on standard error that a file, or a number of them in a folder, is written.
     pub fn wrote(&self, what: impl Display) {
+        make_room();
         if !self.quiet {
             // Where standard error is closed, nobody wants to know.
             let _ = writeln!(
