@@ -394,8 +394,16 @@ class SystemVerdict(DecidedSystem):
         told = f"; warnings: {len(self.warnings)}" if self.warnings else ""
         return f"SystemVerdict({words}, {self.kind}{told})"
 
+    @property
+    def details(self) -> str:
+        """All that there is to say: the lines of ``str(verdict)``, and what stands behind them."""
+        return self._said("details")
+
     def __str__(self) -> str:
+        return self._said("text")
+
+    def _said(self, form: str) -> str:
         sentence, notes = "", self.system.notes
         if self._is_respa:
             sentence, notes = self.system._orbit_sentence(), self.system._new_warnings(notes)
-        return sentence + _lines(notes) + self._asked.render("text").rstrip()
+        return sentence + _lines(notes) + self._asked.render(form).rstrip()

@@ -170,7 +170,10 @@ def test_verdicts_on_systems_are_those_of_the_program(program: Callable[..., str
     path = REPOSITORY / "data" / "scenes" / f"{name}.json"
     verdict = kd.System.read(path).decide()
     assert verdict.to_json() == program("system", str(path), "--format", "json")
-    assert f"{verdict}\n" == program("system", str(path), "--format", "text")
+    # The last line says where the rest is: in the other's own word.
+    few = program("system", str(path), "--format", "text").replace("with --details", "in .details")
+    assert f"{verdict}\n" == few
+    assert f"{verdict.details}\n" == program("system", str(path), "--details", "--format", "text")
     assert verdict.data["stable"] == verdict.stable == bool(verdict) and verdict.kind == verdict.data["kind"]
     assert float(verdict.period) > 0 and verdict.proven in (True, False) and "SystemVerdict(" in repr(verdict)
     assert kd.recheck(verdict).holds

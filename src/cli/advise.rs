@@ -2,16 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use super::args::{Common, unused};
+use super::args::{Common, Details};
 use super::paper::Paper;
 use super::system::{arrays, source};
 use documents::format::Format;
 use documents::question::{Advise, Question, Safe, Work};
 use number::error::{Error, Result};
 use number::file;
-
-/// Below an answer in a few lines.
-const MORE: &str = "more: the reasons, every lever and the tables with --details";
 
 /// Flags of `advise`.
 ///
@@ -36,9 +33,8 @@ pub struct Args {
     /// Exit with 1 if a step asked about is advised against or not proven stable for all periods in the band.
     #[arg(long)]
     exit_code: bool,
-    /// Also the reasons, every lever and the tables, in text; other forms have them.
-    #[arg(long)]
-    details: bool,
+    #[command(flatten)]
+    details: Details,
     #[command(flatten)]
     paper: Paper,
 }
@@ -47,15 +43,11 @@ impl Args {
     pub fn run(&self, common: &Common) -> Result<u8> {
         let format = common.format(&Format::DOCUMENT_OR_FIGURE, Format::Text)?;
         self.paper.check(format.is_figure() || self.levers.is_some())?;
-        if format != Format::Text && common.output.is_none() {
-            unused(&[("--details", self.details)], "is for text: other forms have all")?;
-        }
         let (asked, arrays) = (self.asked()?, self.path.as_ref().map(|path| arrays(path)));
         let work = Work { arrays: arrays.as_ref(), ..common.work() };
         let answer = asked.answer(&work)?;
         let code = if self.exit_code { Self::code(&answer.safe)? } else { 0 };
-        let document = asked.document(&answer);
-        let document = if self.details { document.detailed() } else { document.below_answer(MORE) };
+        let document = self.details.of(asked.document(&answer), format, common)?;
         let drawn = common.output.as_deref().filter(|_| format.is_figure());
         match drawn.zip(drawn.map_or(Ok(None), |_| asked.figure(&answer, &work))?) {
             Some((path, figure)) => self.paper.draw("output", path, figure, common)?,

@@ -4,6 +4,7 @@ use std::fmt::Display;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
+use super::progress::make_room;
 use super::screen::{self, Colour};
 use clocks::map::Products;
 use documents::format::Format;
@@ -83,11 +84,13 @@ impl Common {
 
     /// Writes a text to standard output, fitted to a terminal and coloured as the flags say.
     pub fn write_to_person(&self, text: &str) -> Result<()> {
+        make_room();
         write_output(None, screen::shown(text, self.color).as_bytes())
     }
 
     /// Writes a text where the flags say.
     pub fn write_text(&self, text: &str) -> Result<()> {
+        make_room();
         write_output(self.output.as_deref(), text.as_bytes())?;
         self.wrote_output();
         Ok(())
@@ -95,6 +98,7 @@ impl Common {
 
     /// Says on standard error that a file, or a number of them in a folder, is written.
     pub fn wrote(&self, what: impl Display) {
+        make_room();
         if !self.quiet {
             // Where standard error is closed, nobody wants to know.
             let _ = writeln!(
@@ -207,11 +211,37 @@ impl Columns {
         Layout { columns: self.columns.clone(), digits: self.digits }
     }
 
+    /// With so many digits where none are asked for.
+    pub fn in_digits(&self, digits: u32) -> Columns {
+        Columns { digits: self.digits.or(Some(digits)), ..self.clone() }
+    }
+
     /// The document, laid out.
     pub fn of(&self, document: Document) -> Result<Document> {
         document.laid_out(&self.layout())
     }
 }
+
+/// Whether an answer comes alone.
+#[derive(Debug, clap::Args)]
+pub struct Details {
+    /// Also what stands behind the answer, with its tables, in text; other forms have all.
+    #[arg(long)]
+    details: bool,
+}
+
+impl Details {
+    /// The document with its details, or with a line that says how to see them.
+    pub fn of(&self, document: Document, format: Format, common: &Common) -> Result<Document> {
+        if format != Format::Text && common.output.is_none() {
+            unused(&[("--details", self.details)], "is for text: other forms have all")?;
+        }
+        Ok(if self.details { document.detailed() } else { document.below_answer(MORE) })
+    }
+}
+
+/// Below an answer in a few lines.
+const MORE: &str = "more: what stands behind it, and the tables, with --details";
 
 /// The spacing of a grid, which stands for those of both steps.
 #[derive(Debug, clap::Args)]

@@ -1,6 +1,6 @@
 //! `kickdrift compare`: the trace against the predictions, over a grid or over ratios.
 
-use super::args::{Columns, Common, Spacing};
+use super::args::{Columns, Common, Details, Spacing};
 use super::asked::Flags;
 use super::paper::Paper;
 use documents::format::Format;
@@ -20,6 +20,8 @@ pub struct Args {
     #[command(flatten)]
     columns: Columns,
     #[command(flatten)]
+    details: Details,
+    #[command(flatten)]
     paper: Paper,
 }
 
@@ -29,8 +31,9 @@ impl Args {
             return self.side_by_side(&self.methods.question()?, common);
         }
         self.paper.check(false)?;
-        let document = self.asked.question()?.ask(&common.work())?;
-        common.write(&self.columns.of(document)?, Format::Text)
+        let format = common.format(&Format::DOCUMENT, Format::Text)?;
+        let document = self.columns.of(self.asked.question()?.ask(&common.work())?)?;
+        common.write(&self.details.of(document, format, common)?, format)
     }
 
     /// The table, or the maps drawn.
@@ -39,7 +42,7 @@ impl Args {
         self.paper.check(format.is_figure())?;
         let work = common.work();
         let answer = asked.answer(&work)?;
-        let document = self.columns.of(asked.document(&answer))?;
+        let document = self.details.of(self.columns.of(asked.document(&answer))?, format, common)?;
         let drawn = common.output.as_deref().filter(|_| format.is_figure());
         match drawn.zip(drawn.map_or(Ok(None), |_| asked.figure(&answer, &work))?) {
             Some((path, figure)) => self.paper.draw("output", path, figure, common)?,

@@ -4,6 +4,8 @@ use std::fmt::Write;
 use std::io::{IsTerminal, stderr};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
+use std::sync::{Mutex, PoisonError};
+use std::thread::JoinHandle;
 use std::time::Duration;
 
 use clocks::tongue::Progress;
@@ -39,9 +41,9 @@ static EXPECTED_SECONDS: AtomicU64 = AtomicU64::new(0);
 /// Whether a bar has counted something.
 static COUNTED: AtomicBool = AtomicBool::new(false);
 
-/// Says on a terminal that work which no bar counts goes on: after two seconds, and after twice as long each
-/// time. Until it is dropped.
-pub struct Patience(#[expect(dead_code, reason = "dropping it ends the thread")] Option<Sender<()>>);
+/// Shows on a terminal that work which no other bar counts goes on: seconds over those that were announced, or
+/// a line after two seconds and after twice as long each time. Until it is dropped.
+pub struct Patience(Option<(Sender<()>, JoinHandle<()>)>);
 
 impl Patience {
     pub fn new(quiet: bool) -> Patience {
@@ -49,19 +51,60 @@ impl Patience {
             return Patience(None);
         }
         let (work, ended) = channel::<()>();
-        std::thread::spawn(move || {
+        let thread = std::thread::spawn(move || {
             let (mut passed, mut next) = (0, 2);
-            while ended.recv_timeout(Duration::from_secs(next - passed)) == Err(RecvTimeoutError::Timeout) {
-                if !COUNTED.load(Ordering::Relaxed) {
-                    match EXPECTED_SECONDS.load(Ordering::Relaxed) {
-                        0 => eprintln!("kickdrift: {next} s so far"),
-                        expected => eprintln!("kickdrift: {next} s so far, of some {expected} s of one core"),
-                    }
+            while ended.recv_timeout(Duration::from_secs(1)) == Err(RecvTimeoutError::Timeout) {
+                passed += 1;
+                let is_due = passed == next;
+                next = if is_due { 2 * next } else { next };
+                match EXPECTED_SECONDS.load(Ordering::Relaxed) {
+                    _ if passed < 2 || COUNTED.load(Ordering::Relaxed) => {}
+                    0 if is_due => eprintln!("kickdrift: {passed} s so far"),
+                    0 => {}
+                    expected => show_rest(passed, expected),
                 }
-                (passed, next) = (next, 2 * next);
             }
         });
-        Patience(Some(work))
+        Patience(Some((work, thread)))
+    }
+}
+
+impl Drop for Patience {
+    fn drop(&mut self) {
+        let Some((work, thread)) = self.0.take() else { return };
+        drop(work);
+        // It has nothing to tell.
+        let _ = thread.join();
+        make_room();
+    }
+}
+
+/// The bar over announced work, while it is on the screen.
+static WAITING: Mutex<Option<ProgressBar>> = Mutex::new(None);
+
+fn show_rest(passed: u64, expected: u64) {
+    let mut waiting = WAITING.lock().unwrap_or_else(PoisonError::into_inner);
+    let bar = waiting.get_or_insert_with(|| {
+        let style = ProgressStyle::with_template("{bar:30} {msg}").expect("the template is sound");
+        ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr()).with_style(style)
+    });
+    bar.set_length(expected);
+    bar.set_position(passed.min(expected));
+    bar.set_message(rest(passed, expected));
+}
+
+/// How long announced work has taken, and how long it may take.
+fn rest(passed: u64, expected: u64) -> String {
+    match expected.checked_sub(passed) {
+        Some(left) if left > 0 => format!("{passed} s of some {expected} s of one core, some {left} s left"),
+        _ => format!("{passed} s, longer than the {expected} s expected"),
+    }
+}
+
+/// Takes the bar over announced work off the screen, before something else is written there.
+pub fn make_room() {
+    if let Some(bar) = WAITING.lock().unwrap_or_else(PoisonError::into_inner).take() {
+        bar.finish_and_clear();
     }
 }
 
@@ -81,5 +124,19 @@ impl Progress for Shown {
 
     fn advance(&self, more: u64) {
         self.0.inc(more);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn announced_work_has_a_rest_time_until_it_takes_longer() {
+        assert_eq!(rest(12, 40), "12 s of some 40 s of one core, some 28 s left");
+        assert_eq!(
+            [rest(40, 40), rest(44, 40)],
+            [40, 44].map(|n| format!("{n} s, longer than the 40 s expected"))
+        );
     }
 }

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::args::{Columns, Common};
+use super::args::{Columns, Common, Details};
 use super::paper::Paper;
 use documents::format::Format;
 use documents::input::{Arrays, Axis, SystemFile};
@@ -37,6 +37,8 @@ pub struct Args {
     #[command(flatten)]
     columns: Columns,
     #[command(flatten)]
+    details: Details,
+    #[command(flatten)]
     paper: Paper,
 }
 
@@ -64,7 +66,7 @@ impl Args {
         match drawing {
             None if Format::MODES.contains(&form) => {
                 common.write_text(&asked.in_space(&answer, form)?)?;
-                common.tell_beside_output(&asked.document(&answer))?;
+                common.tell_beside_output(&self.details.of(asked.document(&answer), form, common)?)?;
             }
             Some(path) => {
                 let figure = asked.drawn(&answer, self.colour.unwrap_or_default(), &work)?;
@@ -75,7 +77,9 @@ impl Args {
                     SystemFound::Map(_) => common.format_of_table(&Format::DOCUMENT)?,
                     _ => Format::Text,
                 };
-                common.write(&self.columns.of(asked.document(&answer))?, format)?;
+                let format = common.format(&Format::DOCUMENT, format)?;
+                let document = self.columns.of(asked.document(&answer))?;
+                common.write(&self.details.of(document, format, common)?, format)?;
             }
         }
         match &answer.found {

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use num_traits::Zero;
 
-use super::args::{Columns, Common, unused};
+use super::args::{Columns, Common, Details, unused};
 use super::asked::Flags;
 use super::paper::Paper;
 use super::verdict::within;
@@ -45,8 +45,13 @@ pub struct Args {
     #[command(flatten)]
     columns: Columns,
     #[command(flatten)]
+    details: Details,
+    #[command(flatten)]
     paper: Paper,
 }
+
+/// Significant digits of the catalogue in text, where none are asked for.
+const LISTED: u32 = 6;
 
 /// Coq multiplies 400 letters of small fractions in some 10 s, and twice as many in four times that.
 const WORTH_CERTIFYING: u64 = 400;
@@ -81,7 +86,9 @@ impl Args {
         self.paper.check(format.is_figure())?;
         let work = common.work();
         if self.list {
-            return common.write(&self.columns.of(Methods {}.ask(&work)?)?, Format::Text);
+            let columns =
+                if format == Format::Text { self.columns.in_digits(LISTED) } else { self.columns.clone() };
+            return common.write(&columns.of(Methods {}.ask(&work)?)?, Format::Text);
         }
         if self.family.has("parameter") {
             let of_one =
@@ -110,7 +117,7 @@ impl Args {
         format: Format,
         common: &Common,
     ) -> Result<()> {
-        let document = self.columns.of(question.document(answer))?;
+        let document = self.details.of(self.columns.of(question.document(answer))?, format, common)?;
         let figure = if format.is_figure() { question.figure(answer, &common.work())? } else { None };
         match figure {
             None => common.write(&document, Format::Text),

@@ -1,4 +1,4 @@
-//! `advise` answers first, and says the rest where it is asked for.
+//! Answers come first, and the rest where it is asked for.
 
 use super::support::{run, stdout, words};
 
@@ -35,4 +35,32 @@ fn levers_that_gain_the_same_within_two_hundredths_are_one() {
         longer,
         "longer: 6.36 fs by MOLLY, equilibrium or implicit-explicit (1.91 times); 4.74 fs by MOLLY, long average or MOLLY, linear average (1.42 times); 4.62 fs by MOLLY, short average (1.39 times)"
     );
+}
+
+/// A verdict stood below nine lines on a word, its steps below its error; a table of forty rows below counts.
+#[test]
+fn a_verdict_comes_first_and_what_stands_behind_it_with_details() {
+    let scenes = concat!(env!("CARGO_MANIFEST_DIR"), "/data/scenes");
+    for (line, second, hidden) in [
+        (
+            "word --method respa-4 --lambda1 pi^2 --lambda2 pi^2/25 --h 1".to_string(),
+            "  verdict      stable at h = 1",
+            "  error",
+        ),
+        ("word --method mclachlan-atela-4".into(), "  stable       0 < omega h", "  frequency"),
+        (format!("system {scenes}/bar-resonant.json"), "  24 degrees of freedom", "-0.950498"),
+        (format!("system {scenes}/water4.json"), "  36 degrees of freedom", "rigid motions projected out"),
+        ("compare --max-sum 8 --rho 1/25 --samples 20".into(), "tan criterion: agrees everywhere", "44/21"),
+    ] {
+        let (few, all) = (stdout(&words(&line, &[])), stdout(&words(&line, &["--details"])));
+        let lines: Vec<&str> = few.lines().collect();
+        assert!(lines.len() <= 12 && lines[1].starts_with(second), "{few}");
+        assert!(lines.last().unwrap().ends_with("--details") && !few.contains(hidden), "{few}");
+        assert!(all.contains(hidden) && !all.contains("--details"), "{all}");
+        let ended = run(&words(&line, &["--details", "--format", "json"]));
+        assert!(ended.code == Some(2) && ended.stderr.contains("other forms have all"), "{}", ended.stderr);
+    }
+    // What is asked for by name is shown.
+    let columns = stdout(&words("compare --max-sum 4 --rho 1/25 --samples 9 --columns p,q,offence", &[]));
+    assert!(columns.contains("\np  q  offence\n"), "{columns}");
 }

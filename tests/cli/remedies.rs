@@ -122,7 +122,6 @@ const REMEDIES: &[(&str, &str, &str)] = &[
         "lambda1 missing",
         "tongues --max-sum 5 --rho 1 --figure atlas --output a.svg --lambda1 pi^2 --h1-range 0..2/pi --h2-range 0..7/2",
     ),
-    ("tongues --ratio 3/2,2/1 --rho 1", "all by --max-sum", "tongues --max-sum 5 --rho 1"),
     (
         "tongues --ratio 5/3 --rho 1 --certificate t.v",
         "add --m",

@@ -15,7 +15,7 @@ fn no_line_is_wider_than_the_terminal_and_no_word_is_broken() {
         format!("system {scene}"),
         "verdict --lambda1 pi^2 --lambda2 pi^2/25 --h1 1/100 --h2 0.98".into(),
         "word --method respa-4 --lambda1 pi^2 --lambda2 pi^2/25 --h 1 --h-range 0..3".into(),
-        "compare --max-sum 8 --rho 1/25 --samples 20".into(),
+        "compare --max-sum 8 --rho 1/25 --samples 20 --details".into(),
         "tongues --ratio 3/2 --rho 1/25".into(),
         "tongues --help".into(),
     ] {
@@ -34,6 +34,15 @@ fn no_line_is_wider_than_the_terminal_and_no_word_is_broken() {
             assert!(broken.iter().all(|word| is_mark(word)), "{columns} {line}: {broken:#?}");
         }
     }
+}
+
+/// Its last columns were left out, its edges among them.
+#[test]
+fn the_catalogue_keeps_order_cost_and_edges_at_a_narrow_terminal() {
+    let shown = at_a_terminal("word --list --quiet", Some(80), &[("NO_COLOR", "1")]).replace('\r', "");
+    let row = shown.lines().find(|line| line.starts_with("bcss-3 ")).unwrap();
+    let cells: Vec<&str> = row.split_whitespace().collect();
+    assert_eq!(cells[..5], ["bcss-3", "2", "3", "4.66200(1)", "1.55400(1)"], "{shown}");
 }
 
 #[test]

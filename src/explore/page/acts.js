@@ -66,7 +66,7 @@ export function onMap(explorer) {
       const now = performance.now();
       if (now - clicked.at > DOUBLE) clicked.before = pairs.pin;
       clicked.at = now;
-      pairs.take(found.pair, found.within);
+      pairs.take(found.pair, found.within, new Promise((resolve) => setTimeout(resolve, DOUBLE)));
       explorer.change();
     },
     // A double click zooms: what it pinned on the way is taken back.
@@ -154,7 +154,7 @@ export function onPanels(explorer) {
       const pair = typed(first, second);
       if (!pair) return false;
       explorer.map.view.centreOn(pair, DEEPER);
-      explorer.pairs.take(pair);
+      explorer.pairs.take(pair, null, Promise.resolve());
       explorer.change();
       return true;
     },

@@ -19,7 +19,7 @@ import { mathematics, number } from "./writing.js";
 /**
  * Puts the page into an element. `ask(path, params, signal)` reaches the program and resolves to {status, type, bytes};
  * `own`: the page is ours, with its address and history; `begun`: the answer to `start`, where the host has it. Returns the explorer,
- * with `ready` (a promise) and `remove()`.
+ * with `ready` and `whole` (promises: all is there; the first picture has all its cells and letters) and `remove()`.
  */
 export function mount(element, { ask = fetched, own = ask === fetched, begun = null } = {}) {
   return new Explorer(element, ask, own, begun);
@@ -38,6 +38,7 @@ class Explorer {
       page: this.page, questions: this.questions, springs: this.springs, settings: () => this.settings(), redraw: () => this.map.redraw(),
       record: () => this.record(), cardActs: (pin) => onCard(this, pin),
     });
+    this.whole = new Promise((resolve) => (this.drawn = resolve));
     this.ready = this.#start().catch((error) => this.page.said.append(error.message));
   }
 
@@ -170,10 +171,12 @@ class Explorer {
     const { clientWidth, clientHeight } = this.page.frame;
     if (!clientWidth || !clientHeight) return;
     const whole = this.fitted === this.map.view.save();
-    this.map.resize(clientWidth, clientHeight);
-    if (!whole) return;
-    this.#fit();
-    this.past.rewrite(this.saved());
+    const lost = this.map.resize(clientWidth, clientHeight);
+    if (whole) {
+      this.#fit();
+      this.past.rewrite(this.saved());
+    }
+    if (lost) this.map.repaint();
   }
 
   #told(status) {
@@ -184,6 +187,7 @@ class Explorer {
     page.where(`zoom ${status.level}`.replace("-", "−"));
     page.offsets(status.offsets);
     page.busy(Boolean(status.waiting));
+    if (status.whole) this.drawn();
   }
 
   /** Takes new springs once the program has read them. */

@@ -40,10 +40,13 @@ export class StabilityMap {
   /** Draws before the next frame is shown. */
   redraw() {
     if (this.due || this.idle) return;
-    this.due = requestAnimationFrame(() => {
-      this.due = null;
-      this.paint();
-    });
+    this.due = requestAnimationFrame(() => this.#now());
+  }
+
+  #now() {
+    cancelAnimationFrame(this.due);
+    this.due = null;
+    this.paint();
   }
 
   /** Asks for the tiles that the screen shows, before there is a picture. */
@@ -51,16 +54,23 @@ export class StabilityMap {
     this.tiles.want(this.settings().layer, this.view.tiles(this.view.level));
   }
 
-  /** The plot's box within an element of this size. */
+  /** The plot's box within an element of this size. Is the picture lost? Another size makes a canvas black. */
   resize(width, height) {
     const [left, bottom, top, right] = this.narrow ? [56, 48, 10, 12] : [74, 58, 12, 16];
     const ratio = window.devicePixelRatio || 1;
     const [w, h] = [Math.round(width * ratio), Math.round(height * ratio)];
-    if (this.canvas.width !== w || this.canvas.height !== h) Object.assign(this.canvas, { width: w, height: h });
+    const lost = this.canvas.width !== w || this.canvas.height !== h;
+    if (lost) Object.assign(this.canvas, { width: w, height: h });
     this.ratio = ratio;
     this.box = [left, top, Math.max(20, Math.round(width) - left - right), Math.max(20, Math.round(height) - top - bottom)];
     this.view.resize(this.box[2], this.box[3]);
     this.redraw();
+    return lost;
+  }
+
+  /** Draws in the frame that is under way, where there was a picture: nobody sees it black. */
+  repaint() {
+    if (this.frames && !this.idle) this.#now();
   }
 
   get narrow() {
@@ -114,7 +124,9 @@ export class StabilityMap {
     const costly = costs.find(Boolean) ?? null;
     const key = layerKey(now.layer);
     here.forEach((tile, k) => tile || this.#pending(view.tileBox(shown[k]), now.palette));
-    if (lacking && this.stale && this.stale.key !== key) this.#under(this.stale.layer, now.palette, false);
+    // Tiles of another step have other places.
+    const { stale } = this;
+    if (lacking && stale && stale.key !== key && stale.layer.step === now.layer.step) this.#under(stale.layer, now.palette, false);
     else if (!lacking) this.stale = { key, layer: now.layer };
     // Where cells would cost too much, coarser ones would be taken for them: they stay, but pale.
     if (lacking) this.#under(now.layer, now.palette, costly !== null);
@@ -122,10 +134,12 @@ export class StabilityMap {
     const coarser = costly ? this.#affordable(now.layer) : [];
     const ring = lacking === 0 && !this.moving && tiles.quick ? view.tiles(level, 1) : [];
     tiles.want(now.layer, lacking ? [...shown, ...coarser] : ring);
+    // The first picture; where tiles come quickly, with room for a frame that grows a little.
+    this.whole ||= Boolean(this.lettered) && lacking === 0 && (tiles.idle || !tiles.quick);
     this.bare = here.map((tile, k) => (tile ? null : view.tileBox(shown[k]))).filter(Boolean);
     // Of so many cells along an axis, as a power of two, one is decided.
     const thin = Math.max(0, ...here.map((tile) => (tile ? Math.log2(SIZE / tile.size) : 0)));
-    return { costly, thin, cells: lacking < shown.length, waiting: lacking > costs.filter(Boolean).length, fault: lacking ? this.fault : null };
+    return { costly, thin, whole: this.whole, cells: lacking < shown.length, waiting: lacking > costs.filter(Boolean).length, fault: lacking ? this.fault : null };
   }
 
   /** The tiles of the finest level at most four above that no refusal is known of: pale, they show where one is. */
@@ -154,15 +168,10 @@ export class StabilityMap {
   #under(layer, palette, pale) {
     const { context, view, tiles } = this;
     context.globalAlpha = pale ? 0.3 : 1;
-    const around = tiles.around(layer, view, view.level, pale ? 4 : 6);
+    const isOther = layerKey(layer) !== layerKey(this.settings().layer);
+    const around = tiles.around(layer, view, view.level, pale ? 4 : 6, isOther);
     for (const tile of around) this.#tile(tile, layer, palette);
     if (pale) this.pale = around.length ? around.at(-1).place.level : null;
-    if (layerKey(layer) !== layerKey(this.settings().layer)) {
-      for (const place of view.tiles(view.level)) {
-        const tile = tiles.get(layer, place);
-        if (tile) this.#tile(tile, layer, palette);
-      }
-    }
     context.globalAlpha = 1;
   }
 
@@ -170,7 +179,7 @@ export class StabilityMap {
     const { context, ratio, box } = this;
     const picture = this.tiles.picture(tile, layer, palette);
     // Edges on whole pixels of the screen: neighbours meet without a seam.
-    const [l, t, r, b] = this.view.tileBox(tile.place).map((px, k) => {
+    const [l, t, r, b] = this.view.tileBox(tile.place, layer.stretch).map((px, k) => {
       const origin = box[k % 2];
       return Math.round((px + origin) * ratio) / ratio - origin;
     });

@@ -54,14 +54,16 @@ export class Pairs {
     this.show();
     this.host.redraw();
     this.host.record();
+    await pin.settled;
+    if (pin.settled && this.pin === pin) this.host.page.card.querySelector(".answer, [role=status]")?.scrollIntoView({ block: "nearest" });
   }
 
-  /** Pins a pair of exact rationals, or none. */
-  take(pair, within = null) {
+  /** Pins a pair of exact rationals, or none; once `settled`, a promise, holds its answer comes into view. */
+  take(pair, within = null, settled = null) {
     const springs = Object.values(this.host.springs()).join("|");
     if (pair && this.pin?.springs === springs && pinned(pair).text.join() === this.pin.text.join()) return;
     this.askPin.stop();
-    this.pin = pair ? { ...pinned(pair), springs, within, told: null } : null;
+    this.pin = pair ? { ...pinned(pair), springs, within, settled, told: null } : null;
     if (this.pin) this.askPin(this.pin);
     this.show();
   }

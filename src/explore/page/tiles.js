@@ -68,6 +68,11 @@ export class Tiles {
     return this.pace < 60;
   }
 
+  /** Nothing is wanted that is not here. */
+  get idle() {
+    return this.under.size + this.wanted.length === 0;
+  }
+
   #next() {
     while (this.under.size < AT_ONCE && this.wanted.length) {
       const { id, layer, place } = this.wanted.shift();
@@ -159,11 +164,11 @@ export class Tiles {
     return tile.picture;
   }
 
-  /** Tiles here that the screen shows, of the levels around `level`, coarse ones first. */
-  around(layer, view, level, coarser = 6, finer = 2) {
+  /** Tiles here that the screen shows, of the levels around `level`, with its own or without, coarse ones first. */
+  around(layer, view, level, coarser, own, finer = 2) {
     const here = [...this.#layer(layer).tiles.values()].filter(({ place }) => {
-      if (place.level < level - coarser || place.level > level + finer || place.level === level) return false;
-      const [l, t, r, b] = view.tileBox(place);
+      if (place.level < level - coarser || place.level > level + finer || (place.level === level && !own)) return false;
+      const [l, t, r, b] = view.tileBox(place, layer.stretch);
       return r > 0 && l < view.width && b > 0 && t < view.height;
     });
     return here.sort((a, b) => a.place.level - b.place.level);

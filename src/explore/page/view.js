@@ -127,9 +127,9 @@ export class View {
     return axis ? this.height / 2 - pixels : this.width / 2 + pixels;
   }
 
-  /** The pixel rectangle of a tile: [left, top, right, bottom]. */
-  tileBox({ level, x, y }) {
-    const edge = (axis, tile) => this.pixel(axis, tile * BigInt(2 * SIZE) + 1n, level + 1);
+  /** The pixel rectangle of a tile, of this or another stretch: [left, top, right, bottom]. */
+  tileBox({ level, x, y }, stretch = this.stretch) {
+    const edge = (axis, tile) => this.pixel(axis, tile * BigInt(2 * SIZE) + 1n, level + 1 + (axis ? this.stretch - stretch : 0));
     return [edge(0, x), edge(1, y + 1n), edge(0, x + 1n), edge(1, y)];
   }
 

@@ -154,14 +154,10 @@ impl Question for Compare {
     fn show(&self, answer: &Comparisons) -> Document {
         let places = if self.max_sum.is_some() { ["s", "rho"] } else { ["h1", "h2"] };
         let Comparisons { tally, offenders } = answer;
-        counts()
-            .document(Document::new(Self::NAME), tally)
-            .rows(
-                record(places)
-                    .table("offenders", "Pairs at which a prediction is wrong", offenders)
-                    .captioned(CAPTION),
-            )
-            .summary(&lines(tally, &self.tolerance))
+        let table = record(places).table("offenders", "Pairs at which a prediction is wrong", offenders);
+        let lines = lines(tally, &self.tolerance);
+        let document = counts().document(Document::new(Self::NAME), tally);
+        document.rows(table.captioned(CAPTION)).summary(&lines).answer(lines)
     }
 
     /// With the number of samples that was taken.

@@ -159,6 +159,8 @@ impl Document {
         if let (Some(keys), Some(table)) = (&layout.columns, &self.table) {
             self.table = Some(table.choose(keys)?);
             self.for_people = None;
+            // Whoever names columns wants to see them.
+            self.is_detailed = true;
         }
         Ok(self)
     }
@@ -278,7 +280,8 @@ impl Document {
 
     fn text(&self, to_see: &str) -> String {
         if let Some(lines) = self.answer.as_ref().filter(|_| !self.is_detailed) {
-            return visible(&format!("{}\n", lines.join("\n")));
+            let lines = lines.join("\n");
+            return visible(&(self.digits.map_or_else(|| lines.clone(), |n| in_digits(&lines, n)) + "\n"));
         }
         let mut out = self.digits.map_or_else(|| self.summary.clone(), |n| in_digits(&self.summary, n));
         out.push('\n');

@@ -281,14 +281,24 @@ impl Table {
         Table { rows, ..self.clone() }
     }
 
-    /// The table with decimals in place of fractions that have finitely many.
+    /// The table with decimals in place of fractions, column by column: one notation in each. A column of exact
+    /// numbers keeps its fractions where one of them has no finite decimals.
     #[must_use]
     pub fn in_decimals(&self) -> Table {
-        let plain = |cell: &Cell| match cell {
-            Cell::Exact(text) => Cell::Exact(text.parse().map_or_else(|_| text.clone(), |x| decimal_of(&x))),
+        let decimal =
+            |text: &str| text.parse().ok().map(|x| decimal_of(&x)).filter(|text| !text.contains('/'));
+        let is_kept = |i: usize| {
+            let is_exact = |row: &Vec<Cell>| matches!(row[i], Cell::Exact(_) | Cell::Missing);
+            let is_fraction =
+                |row: &Vec<Cell>| matches!(&row[i], Cell::Exact(text) if decimal(text).is_none());
+            self.rows.iter().all(is_exact) && self.rows.iter().any(is_fraction)
+        };
+        let kept: Vec<bool> = (0..self.columns.len()).map(is_kept).collect();
+        let plain = |(cell, is_kept): (&Cell, &bool)| match cell {
+            Cell::Exact(text) if !is_kept => Cell::Exact(decimal(text).unwrap_or_else(|| text.clone())),
             other => other.clone(),
         };
-        let rows = self.rows.iter().map(|row| row.iter().map(plain).collect()).collect();
+        let rows = self.rows.iter().map(|row| row.iter().zip(&kept).map(plain).collect()).collect();
         Table { rows, ..self.clone() }
     }
 

@@ -60,7 +60,9 @@ impl Question for Word {
         let mut columns = vec!["stable", "lower", "upper"];
         columns.extend(self.lambda1.iter().flat_map(|_| ["h_lower", "h_upper"]));
         let people = rows.only(&columns);
-        document.rows(rows).for_people(people).summary(&answer.lines(self))
+        let document = document.rows(rows).for_people(people).summary(&answer.lines(self));
+        // Whoever gives a range asks for the intervals in it.
+        if self.h_range.is_some() { document } else { document.answer(answer.answer(self)) }
     }
 
     fn figure(&self, answer: &Linted, _: &Work) -> Result<Option<plot::Figure>> {

@@ -28,6 +28,20 @@ impl Linted {
         std::iter::once(self.word.to_string()).chain(lines).collect()
     }
 
+    /// What a person wants first: the verdict at the step, which steps are stable, order and cost; beyond that
+    /// what is wrong with it.
+    pub(super) fn answer(&self, question: &Word) -> Vec<String> {
+        let is_first = |(name, text): &Line| match *name {
+            "consistent" | "palindrome" => text.starts_with("no"),
+            "frequency" | "impedance" | "error" => false,
+            _ => true,
+        };
+        let named = self.at_step(question).into_iter().chain(self.steps(question)).chain(self.identity());
+        let lines = named.chain(self.costs()).filter(is_first);
+        let lines = lines.map(|(name, text)| format!("  {name:<12} {text}"));
+        std::iter::once(self.word.to_string()).chain(lines).collect()
+    }
+
     /// The name of a sum: friction is O unless it has other letters.
     fn named(&self, sum: &'static str) -> &'static str {
         let is_other = |letter: &&Letter| matches!(letter, Letter::Friction { damping, .. } if *damping != Damping::Exact);

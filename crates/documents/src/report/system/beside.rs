@@ -195,10 +195,10 @@ pub(super) fn local_lines(scheme_summary: &SchemeSummary, unit: &str) -> Vec<Str
 }
 
 /// The entries as lines of text.
-pub(super) fn lines(beside: &Beside, analysis: &Analysis) -> Vec<String> {
+pub(super) fn lines(beside: &Beside, growing: &[(usize, &Instability)], analysis: &Analysis) -> Vec<String> {
     let mut lines = Vec::new();
     if let Some(labels) = beside.labels {
-        for (n, mode) in fastest(analysis).0 {
+        for (n, mode) in growing {
             let named: Vec<_> =
                 named(mode, labels).iter().map(|(_, name, x)| format!("{name} {x:.3}")).collect();
             lines.push(format!("  growing mode {n} moves most: {}", named.join(", ")));
@@ -214,15 +214,15 @@ pub(super) fn lines(beside: &Beside, analysis: &Analysis) -> Vec<String> {
 }
 
 /// The growing modes that a person is shown.
-const SHOWN_MODES: usize = 12;
+pub(super) const SHOWN_MODES: usize = 12;
 
-/// The fastest growing modes, each with its number in the document, in the document's order; and how many are
-/// left out.
-pub(super) fn fastest(analysis: &Analysis) -> (Vec<(usize, &Instability)>, usize) {
+/// The fastest growing modes up to a number, each with its number in the document, in the document's order;
+/// and how many are left out.
+pub(super) fn fastest(analysis: &Analysis, most: usize) -> (Vec<(usize, &Instability)>, usize) {
     let mut modes: Vec<_> = (1..).zip(analysis.parts.iter().flat_map(|part| &part.instabilities)).collect();
     modes.sort_by(|a, b| b.1.multiplier.size().total_cmp(&a.1.multiplier.size()));
-    let left_out = modes.len().saturating_sub(SHOWN_MODES);
-    modes.truncate(SHOWN_MODES);
+    let left_out = modes.len().saturating_sub(most);
+    modes.truncate(most);
     modes.sort_by_key(|(n, _)| *n);
     (modes, left_out)
 }

@@ -37,7 +37,7 @@ fn record() -> Record<'static, BiasedMode> {
 }
 
 /// The entry in words, the modes that are most off first; `unit` is that of times, after a space.
-pub(super) fn lines(bias: &Biases, unit: &str) -> Vec<String> {
+pub(super) fn lines(bias: &Biases, unit: &str, is_whole: bool) -> Vec<String> {
     let modes = match bias {
         Ok(modes) => modes,
         Err(reason) => return vec![format!("  bias: not told: {}", reason.name())],
@@ -45,8 +45,9 @@ pub(super) fn lines(bias: &Biases, unit: &str) -> Vec<String> {
     let off = |mode: &&BiasedMode| mode.bias.at_kicks.ln().abs();
     let mut most: Vec<&BiasedMode> = modes.iter().collect();
     most.sort_by(|a, b| off(b).total_cmp(&off(a)));
-    let left_out = most.len().saturating_sub(SHOWN);
-    most.truncate(SHOWN);
+    let shown = if is_whole { SHOWN } else { 1 };
+    let left_out = most.len().saturating_sub(shown);
+    most.truncate(shown);
     let list = |shown: &dyn Fn(&BiasedMode) -> String| {
         most.iter().map(|mode| shown(mode)).collect::<Vec<_>>().join(", ")
     };
@@ -57,12 +58,14 @@ pub(super) fn lines(bias: &Biases, unit: &str) -> Vec<String> {
     let in_drifts = list(&|mode| few(mode.bias.in_drifts, 4));
     let others = match left_out {
         0 => String::new(),
-        n => format!("; {} nearer to 1, all in JSON", counted(n, "mode is", "modes are")),
+        n if is_whole => format!("; {} nearer to 1, all in JSON", counted(n, "mode is", "modes are")),
+        n => format!("; {} nearer to 1", counted(n, "mode is", "modes are")),
     };
-    vec![
-        format!("  bias: potential energy over kT/2 at constant energy (rounded): {at_kicks}{others}"),
-        format!(
-            "        with a weak thermostat in every drift (BAOAB) these modes have {in_drifts}; 1 is right"
-        ),
-    ]
+    let right = if is_whole { "" } else { "; 1 is right" };
+    let first =
+        format!("  bias: potential energy over kT/2 at constant energy (rounded): {at_kicks}{others}{right}");
+    let second = format!(
+        "        with a weak thermostat in every drift (BAOAB) these modes have {in_drifts}; 1 is right"
+    );
+    if is_whole { vec![first, second] } else { vec![first] }
 }

@@ -56,12 +56,17 @@ pub(in crate::report) fn of_each(held: &[f64]) -> String {
 }
 
 /// The entries as lines of text; `unit` is that of times, after a space.
-pub(super) fn lines(measured: &Measured, (clocks, is_stable): (usize, bool), unit: &str) -> Vec<String> {
+pub(super) fn lines(
+    measured: &Measured,
+    (clocks, is_stable): (usize, bool),
+    unit: &str,
+    is_whole: bool,
+) -> Vec<String> {
     let mut lines = Vec::new();
     if has_other_method(measured) {
         lines.push(format!("  by {}: the fast force in one go over the outer step", measured.method));
     }
-    if let Some(r) = &measured.removed {
+    if let Some(r) = measured.removed.as_ref().filter(|_| is_whole) {
         lines.push(format!("  {} rigid motions projected out ({}){}", r.count, r.found_by, of_each(&r.held)));
     }
     let accuracy = measured.accuracy;

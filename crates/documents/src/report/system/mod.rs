@@ -46,7 +46,10 @@ pub fn document(analysis: &Analysis, beside: &Beside) -> Document {
     let table =
         record().table("multipliers", "Multipliers over one synchronization period", &all).captioned(CAPTION);
     let document = head().document(Document::new("system-verdict"), &(analysis, beside));
-    document.long_rows(table).summary_alone(&lines(analysis, beside))
+    let [first, all] = [false, true].map(|is_whole| lines(analysis, beside, is_whole));
+    let is_short = first.len() < all.len();
+    let document = document.long_rows(table).summary_alone(&all);
+    if is_short { document.answer(first) } else { document }
 }
 
 /// Its schema.
@@ -185,7 +188,9 @@ fn resonant() -> Record<'static, Resonance> {
         .says(ROUNDED, "(w_i +- w_j) T/(2 pi) - m.")
 }
 
-fn lines(analysis: &Analysis, beside: &Beside) -> Vec<String> {
+/// The answer in words, whole, or what a person wants first: of what grows the fastest, of the biases the one
+/// that is most off, and nothing on how it was read.
+fn lines(analysis: &Analysis, beside: &Beside, is_whole: bool) -> Vec<String> {
     let suffix = beside.unit.map_or(String::new(), |unit| format!(" {unit}"));
     let headline = match analysis.holds() {
         Holds::Stable => format!("stable: {} (proven)", analysis.kind_name()),
@@ -202,10 +207,10 @@ fn lines(analysis: &Analysis, beside: &Beside) -> Vec<String> {
         ),
     ];
     let (rigid, parts) = (analysis.rigid_modes.len(), analysis.parts.len());
-    if rigid > 0 {
+    if rigid > 0 && is_whole {
         lines.push(format!("  {} set apart", counted(rigid, "rigid mode", "rigid modes")));
     }
-    if parts > 1 {
+    if parts > 1 && is_whole {
         lines.push(format!("  {parts} independent parts"));
     }
     if !analysis.is_stable() {
@@ -214,13 +219,14 @@ fn lines(analysis: &Analysis, beside: &Beside) -> Vec<String> {
     }
     lines
         .extend(analysis.parts.iter().filter_map(|part| part.oscillator.as_ref()).flat_map(oscillator_lines));
-    let (growing, left_out) = beside::fastest(analysis);
+    let (growing, left_out) = beside::fastest(analysis, if is_whole { beside::SHOWN_MODES } else { 1 });
     lines.extend(growing.iter().map(|(_, unstable)| format!("  {}", described(unstable))));
     if left_out > 0 {
         let modes = counted(left_out, "mode grows", "modes grow");
-        lines.push(format!("  {modes} more slowly: as JSON or CSV all are shown"));
+        let rest = if is_whole { ": as JSON or CSV all are shown" } else { "" };
+        lines.push(format!("  {modes} more slowly{rest}"));
     }
-    lines.extend(beside.bias.iter().flat_map(|bias| bias::lines(bias, &suffix)));
+    lines.extend(beside.bias.iter().flat_map(|bias| bias::lines(bias, &suffix, is_whole)));
     let per = beside.unit.unwrap_or("unit time");
     lines.extend(
         beside
@@ -232,13 +238,10 @@ fn lines(analysis: &Analysis, beside: &Beside) -> Vec<String> {
         beside.local.into_iter().flat_map(|scheme_summary| beside::local_lines(scheme_summary, &suffix)),
     );
     lines.extend(beside.remark.map(|remark| format!("  {remark}")));
-    lines.extend(beside::lines(beside, analysis));
-    lines.extend(
-        analysis
-            .measured
-            .iter()
-            .flat_map(|measured| measured::lines(measured, (analysis.clocks, analysis.is_stable()), &suffix)),
-    );
+    lines.extend(beside::lines(beside, &growing, analysis));
+    let measured =
+        |measured| measured::lines(measured, (analysis.clocks, analysis.is_stable()), &suffix, is_whole);
+    lines.extend(analysis.measured.iter().flat_map(measured));
     lines.extend(beside.nearest.iter().flat_map(|nearest| nearest::lines(nearest, &suffix)));
     lines.extend(analysis.warnings.iter().map(|warning| format!("  warning: {warning}")));
     lines

@@ -2,13 +2,13 @@
 
 use std::fmt::Write;
 
-use super::beside::fastest;
+use super::beside::{SHOWN_MODES, fastest};
 use number::error::{Error, Result};
 use systems::{Analysis, Geometry, Instability};
 
 /// The fastest modes, each with its number in documents.
 fn modes<'a>(analysis: &'a Analysis, geometry: &Geometry) -> Result<Vec<(usize, &'a Instability)>> {
-    let (modes, _) = fastest(analysis);
+    let (modes, _) = fastest(analysis, SHOWN_MODES);
     if modes.is_empty() {
         let found = format!("the modes that grow, of a system that is {}", analysis.kind_name());
         return Err(Error::input("output", found, "none is known: choose an unstable step, or another form"));
