@@ -1,7 +1,5 @@
 //! The (a, b) families of resonance curves.
 
-use serde_json::{Value, json};
-
 use super::asking::{Question, Work, question};
 use super::field::StepRange;
 use super::field::flag;
@@ -51,7 +49,7 @@ impl Question for Curves {
 
     fn schema() -> Option<Schema> {
         let says = "The curves that pass through the window, by a, then b.";
-        let body = Keys::new().key("curves", Shape::List(&Shape::Object(curve_keys)), says);
+        let body = Keys::new().key("curves", Shape::List(&Shape::Object(|| curve_record().keys())), says);
         let title = "The (a, b) families of resonance curves 1/T_half = a/h1 + b/h2, sampled";
         Some(Schema::new(title, body))
     }
@@ -73,7 +71,7 @@ impl Question for Curves {
         let points: Vec<Point> = curves.iter().flat_map(|curve| points(curve)).collect();
         let summary =
             format!("{} curves 1/T½ = a/h1 + b/h2 in the window, {} points", curves.len(), points.len());
-        let values: Vec<Value> = curves.iter().map(|curve| value(curve)).collect();
+        let values = curve_record().all(curves);
         Document::new(Self::NAME).entry("curves", values).rows(table(&points)).summary(&[summary])
     }
 }
@@ -110,20 +108,17 @@ fn point_record<'a>() -> Record<'a, Point<'a>> {
     )
 }
 
-fn curve_keys() -> Keys {
+/// The entries of a curve.
+fn curve_record() -> Record<'static, Curve> {
     const POINTS: Shape =
         Shape::With(&Shape::List(&Shape::Object(|| point_record().keys())), r#"{"minItems": 1}"#);
-    Keys::new().key("a", INTEGER, "a of the curve.").key("b", INTEGER, "b of the curve.").key(
-        "points",
-        POINTS,
-        "Points in the window, in their order along the curve.",
-    )
-}
-
-fn value(curve: &Curve) -> Value {
-    let record = point_record();
-    let points: Vec<Value> = points(curve).map(|point| record.entries(&point)).collect();
-    json!({"a": curve.a, "b": curve.b, "points": points})
+    Record::new()
+        .json("a", |curve: &Curve| curve.a.into())
+        .says(INTEGER, "a of the curve.")
+        .json("b", |curve| curve.b.into())
+        .says(INTEGER, "b of the curve.")
+        .value("points", |curve| point_record().all(&points(curve).collect::<Vec<_>>()).into())
+        .says(POINTS, "Points in the window, in their order along the curve.")
 }
 
 fn table(points: &[Point]) -> Table {

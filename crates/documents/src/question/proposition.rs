@@ -4,7 +4,7 @@ use super::asking::{Question, Work, question};
 use super::field::flag;
 use crate::report::document::Document;
 use crate::report::record::Record;
-use crate::report::shape::{COUNT, FLAG, INTEGER, Keys, POSITIVE, Schema, Shape};
+use crate::report::shape::{COUNT, FLAG, INTEGER, POSITIVE, Schema, Shape};
 use crate::report::table::Column;
 use clocks::resonance::proposition::{Check, Witness, check};
 use number::error::{Error, Result};
@@ -36,19 +36,8 @@ impl Question for Proposition {
     type Answer = (Check, Vec<Witness>);
 
     fn schema() -> Option<Schema> {
-        const WITNESSES: Shape = Shape::List(&Shape::Object(|| record().keys()));
-        let body = Keys::new()
-            .key("holds", FLAG, "Whether there is no failure.")
-            .key(
-                "resonant_points",
-                COUNT,
-                "Points (p, q, m) of eq. (9), each found on a curve (a, b) with b != 0.",
-            )
-            .key("curves", COUNT, "Curves (a, b) at a ratio p/q, each found resonant with m = a p + b q.")
-            .key("failures", WITNESSES, "Points and curves for which it fails.")
-            .key("witnesses", WITNESSES, "One for each resonant point.");
         let title = "The Proposition (eqs. 9 and 10) checked exactly for all coprime p, q up to a bound";
-        Some(Schema::new(title, body))
+        Some(Schema::new(title, head().keys()))
     }
 
     fn answer(&self, work: &Work) -> Result<Self::Answer> {
@@ -68,7 +57,8 @@ impl Question for Proposition {
         Ok((check, witnesses))
     }
 
-    fn show(&self, (check, witnesses): &Self::Answer) -> Document {
+    fn show(&self, answer: &Self::Answer) -> Document {
+        let (check, witnesses) = answer;
         let (max, Check { forward, backward, failures }) = (self.max, check);
         let verdict = if failures.is_empty() { "holds" } else { "FAILS" };
         let lines = [
@@ -80,14 +70,25 @@ impl Question for Proposition {
                 failures.len()
             ),
         ];
-        Document::new(Self::NAME)
-            .entry("holds", failures.is_empty())
-            .entry("resonant_points", *forward)
-            .entry("curves", *backward)
-            .entry("failures", record().all(failures))
-            .rows(record().table("witnesses", CAPTION, witnesses).captioned(CAPTION_LATEX))
-            .summary(&lines)
+        let witnesses = record().table("witnesses", CAPTION, witnesses).captioned(CAPTION_LATEX);
+        head().document(Document::new(Self::NAME), answer).rows(witnesses).summary(&lines)
     }
+}
+
+/// The record of the whole.
+fn head() -> Record<'static, (Check, Vec<Witness>)> {
+    const WITNESSES: Shape = Shape::List(&Shape::Object(|| record().keys()));
+    Record::new()
+        .json("holds", |(check, _): &(Check, Vec<Witness>)| check.failures.is_empty().into())
+        .says(FLAG, "Whether there is no failure.")
+        .json("resonant_points", |(check, _)| check.forward.into())
+        .says(COUNT, "Points (p, q, m) of eq. (9), each found on a curve (a, b) with b != 0.")
+        .json("curves", |(check, _)| check.backward.into())
+        .says(COUNT, "Curves (a, b) at a ratio p/q, each found resonant with m = a p + b q.")
+        .value("failures", |(check, _)| record().all(&check.failures).into())
+        .says(WITNESSES, "Points and curves for which it fails.")
+        .value("witnesses", |(_, witnesses)| record().all(witnesses).into())
+        .says(WITNESSES, "One for each resonant point.")
 }
 
 /// The row of a resonant point.

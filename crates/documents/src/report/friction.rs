@@ -1,10 +1,11 @@
 //! Friction in JSON and in words.
 
-use serde_json::{Value, json};
+use serde_json::Value;
 
 use super::decimal;
-use super::document::enclosure;
-use super::shape::{ENCLOSURE, FLAG, Keys, ROUNDED, Shape, TEXT};
+use super::record::Record;
+use super::shape::{ENCLOSURE, FLAG, ROUNDED, ROUNDED_OR_NULL, Shape, TEXT};
+use super::table::Cell;
 use systems::friction::{Damping, Friction, Mask, Masked};
 
 /// The sentence on the entry `friction` of a document.
@@ -12,64 +13,60 @@ pub const SAYS: &str =
     "O-steps, v to exp(-rate t) v in the middle of every drift; only where a rate was given.";
 
 /// What it is.
-pub const SHAPE: Shape = Shape::Object(|| {
+pub const SHAPE: Shape = Shape::Object(|| record().keys());
+
+/// The entry `friction` of a document.
+pub fn value(friction: &Friction) -> Value {
+    record().entries(friction)
+}
+
+fn record() -> Record<'static, Friction> {
     const DAMPING: Shape = Shape::OneOf(&["damped", "marginal", "growing", "not told"]);
     const MASKING: Shape =
-        Shape::Any(&[Shape::OneOf(&["nothing grows", "not told"]), Shape::Object(masking_keys)]);
-    Keys::new()
-        .key("rate", TEXT, "Exact, per unit time.")
-        .key("damping", DAMPING, "The spectral radius of the period: proven below, at or above 1.")
-        .key(
-            "growth_rate",
+        Shape::Any(&[Shape::OneOf(&["nothing grows", "not told"]), Shape::Object(|| masked().keys())]);
+    Record::new()
+        .json("rate", |friction: &Friction| Cell::exact(&friction.rate))
+        .says(TEXT, "Exact, per unit time.")
+        .json("damping", |friction| friction.damping.map_or("not told", Damping::name).into())
+        .says(DAMPING, "The spectral radius of the period: proven below, at or above 1.")
+        .json("growth_rate", |friction| friction.growth.into())
+        .says(
             Shape::OrNull(&ENCLOSURE),
             "ln(spectral radius)/T, per unit time, of the part where it is largest.",
         )
-        .key(
-            "masking",
+        .value("masking", |friction| match &friction.masking {
+            Mask::At(mask) => masked().entries(mask),
+            Mask::NotNeeded => "nothing grows".into(),
+            Mask::Undecided => "not told".into(),
+        })
+        .says(
             MASKING,
             "The frictions that mask every resonance: at lo something is proven to grow, at hi nothing does.",
         )
-});
+}
 
-fn masking_keys() -> Keys {
-    const RANGES: Shape = Shape::With(&Shape::List(&Shape::Object(range_keys)), r#"{"minItems": 1}"#);
-    Keys::new()
-        .key("lo", ROUNDED, "A double; a lower bound.")
-        .key("hi", ROUNDED, "A double; an upper bound.")
-        .key("stays", FLAG, "Whether every friction above hi is proven to mask, too.")
-        .key(
-            "ranges",
+fn masked() -> Record<'static, Masked> {
+    const RANGES: Shape = Shape::With(&Shape::List(&Shape::Object(|| range().keys())), r#"{"minItems": 1}"#);
+    Record::new()
+        .json("lo", |mask: &Masked| mask.grows.into())
+        .says(ROUNDED, "A double; a lower bound.")
+        .json("hi", |mask| mask.least().into())
+        .says(ROUNDED, "A double; an upper bound.")
+        .json("stays", |mask| mask.stays().into())
+        .says(FLAG, "Whether every friction above hi is proven to mask, too.")
+        .value("ranges", |mask| range().all(&mask.ranges).into())
+        .says(
             RANGES,
             "Frictions that are proven to mask, from lo to hi; hi null where all larger ones are proven to.",
         )
 }
 
-fn range_keys() -> Keys {
-    Keys::new().key("lo", ROUNDED, "A double, proven to mask.").key(
-        "hi",
-        Shape::OrNull(&ROUNDED),
-        "A double, proven to mask.",
-    )
-}
-
-/// The entry `friction` of a document.
-pub fn value(own: &Friction) -> Value {
-    let masking = match &own.masking {
-        Mask::At(mask) => {
-            let end = |hi: f64| hi.is_finite().then_some(hi);
-            let ranges: Vec<Value> =
-                mask.ranges.iter().map(|(lo, hi)| json!({"lo": lo, "hi": end(*hi)})).collect();
-            json!({"lo": mask.grows, "hi": mask.least(), "stays": mask.stays(), "ranges": ranges})
-        }
-        Mask::NotNeeded => json!("nothing grows"),
-        Mask::Undecided => json!("not told"),
-    };
-    json!({
-        "rate": own.rate.to_string(),
-        "damping": own.damping.map_or("not told", Damping::name),
-        "growth_rate": own.growth.map(enclosure),
-        "masking": masking,
-    })
+fn range() -> Record<'static, (f64, f64)> {
+    Record::new()
+        .json("lo", |&(lo, _): &(f64, f64)| lo.into())
+        .says(ROUNDED, "A double, proven to mask.")
+        .json("hi", |&(_, hi)| hi.is_finite().then_some(hi).into())
+        .says(ROUNDED_OR_NULL, "A double, proven to mask.")
 }
 
 /// Lines for people.

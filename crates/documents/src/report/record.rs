@@ -155,6 +155,11 @@ impl<'a, T> Record<'a, T> {
 
     /// The entries of one thing, as in JSON.
     pub fn entries(&self, number: &T) -> Value {
+        self.object(number).into()
+    }
+
+    /// The same by their keys.
+    pub fn object(&self, number: &T) -> Map<String, Value> {
         let mut entries = Map::new();
         for field in &self.fields {
             let Some(path) = &field.path else { continue };
@@ -167,7 +172,7 @@ impl<'a, T> Record<'a, T> {
                 put(&mut entries, path, value);
             }
         }
-        entries.into()
+        entries
     }
 
     /// The entries of many things.
@@ -180,7 +185,6 @@ impl<'a, T> Record<'a, T> {
 
     /// Adds the entries of one thing to a document.
     pub fn document(&self, document: Document, number: &T) -> Document {
-        let Value::Object(entries) = self.entries(number) else { unreachable!("entries are an object") };
-        entries.into_iter().fold(document, |document, (key, value)| document.entry(&key, value))
+        self.object(number).into_iter().fold(document, |document, (key, value)| document.entry(&key, value))
     }
 }

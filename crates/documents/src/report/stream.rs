@@ -4,7 +4,7 @@
 use std::fmt::Display;
 use std::io::Write;
 
-use serde_json::Value;
+use serde_json::{Map, Value};
 
 use super::document::Document;
 use number::error::{Error, Result};
@@ -45,10 +45,10 @@ impl<'a> JsonRows<'a> {
     ///
     /// # Errors
     /// Those of the sink.
-    pub fn end(mut self, entries: &[(&str, Value)]) -> Result<()> {
+    pub fn end(mut self, entries: &Map<String, Value>) -> Result<()> {
         self.put(if self.empty { "]" } else { "\n  ]" })?;
         for (name, value) in entries {
-            self.put(format_args!(",\n  {}: {value}", Value::from(*name)))?;
+            self.put(format_args!(",\n  {}: {value}", Value::from(name.as_str())))?;
         }
         self.put("\n}\n")
     }

@@ -82,14 +82,10 @@ impl<'a> Keys<'a> {
 
 pub(super) fn read(text: &str) -> Result<Reading> {
     let keys = Keys::of(text);
-    for line in keys.lines.iter().filter(|line| line.depth > 0) {
-        if STEPS.iter().any(|key| is_key(line.key(), key)) {
-            return Err(Error::input(
-                line.key(),
-                line.shown(),
-                format!("stands in a condition, a loop or a procedure: {BETTER}"),
-            ));
-        }
+    let is_step = |line: &&Line| line.depth > 0 && STEPS.iter().any(|key| is_key(line.key(), key));
+    if let Some(line) = keys.lines.iter().find(is_step) {
+        let remedy = format!("stands in a condition, a loop or a procedure: {BETTER}");
+        return Err(Error::input(line.key(), line.shown(), remedy));
     }
     let algorithm = keys.word("MTSAlgorithm")?;
     refuse_naive(algorithm.as_ref().map_or("impulse", |word| word.0))?;
@@ -137,29 +133,7 @@ pub(super) fn read(text: &str) -> Result<Reading> {
     reading.forces = forces(n, m, is_full);
     let full = full.filter(|_| is_full);
     if reading.scheme.steps().len() > 1 {
-        // Both where they are equal: the one is to stay a multiple of the other.
-        let outermost = full.filter(|_| m >= n).into_iter().chain(nonbonded.filter(|_| n >= m));
-        reading.places = outermost.map(|(_, range)| (range, Place::OuterOverInner)).collect();
-        let intervals = multiples(&keys);
-        let cycle = |(_, place): &&(_, Place)| matches!(place, Place::Interval(interval) if interval.name == "stepspercycle");
-        let cycles: Vec<_> = intervals.iter().filter(cycle).cloned().collect();
-        for outer in [n, m].iter().take(if n == m { 1 } else { 2 }) {
-            reading.note_intervals("NAMD", &cycles, *outer);
-        }
-        if is_full {
-            let energies: Vec<_> = intervals
-                .iter()
-                .filter(|(_, place)| matches!(place, Place::Interval(interval) if interval.or_part))
-                .cloned()
-                .collect();
-            reading.note_intervals("NAMD", &energies, m);
-        }
-        reading.places.extend(intervals);
-        if is_full && m < n {
-            let why = "NAMD refuses this text: fullElectFrequency has to be a multiple of nonbondedFreq";
-            reading.remarks.push(why.into());
-            reading.stays = Some(why.into());
-        }
+        place_intervals(&mut reading, &keys, is_full, (n, nonbonded), (m, full));
     } else {
         if step.is_none() {
             let why = "the text has no timestep, and NAMD takes 1 fs: write timestep and the step in fs";
@@ -170,6 +144,40 @@ pub(super) fn read(text: &str) -> Result<Reading> {
     bonds(&keys, &mut reading)?;
     notes(&keys, &mut reading);
     Ok(reading)
+}
+
+/// Notes where the steps of several clocks stand in the text, and its intervals that are multiples of them;
+/// nonbonded and full forces each with their multiple and where that is written.
+fn place_intervals(
+    reading: &mut Reading,
+    keys: &Keys,
+    is_full: bool,
+    (n, nonbonded): (u64, Option<Word>),
+    (m, full): (u64, Option<Word>),
+) {
+    // Both where they are equal: the one is to stay a multiple of the other.
+    let outermost = full.filter(|_| m >= n).into_iter().chain(nonbonded.filter(|_| n >= m));
+    reading.places = outermost.map(|(_, range)| (range, Place::OuterOverInner)).collect();
+    let intervals = multiples(keys);
+    let cycle = |(_, place): &&(_, Place)| matches!(place, Place::Interval(interval) if interval.name == "stepspercycle");
+    let cycles: Vec<_> = intervals.iter().filter(cycle).cloned().collect();
+    for outer in [n, m].iter().take(if n == m { 1 } else { 2 }) {
+        reading.note_intervals("NAMD", &cycles, *outer);
+    }
+    if is_full {
+        let energies: Vec<_> = intervals
+            .iter()
+            .filter(|(_, place)| matches!(place, Place::Interval(interval) if interval.or_part))
+            .cloned()
+            .collect();
+        reading.note_intervals("NAMD", &energies, m);
+    }
+    reading.places.extend(intervals);
+    if is_full && m < n {
+        let why = "NAMD refuses this text: fullElectFrequency has to be a multiple of nonbondedFreq";
+        reading.remarks.push(why.into());
+        reading.stays = Some(why.into());
+    }
 }
 
 fn better(error: Error, given: &str) -> Error {

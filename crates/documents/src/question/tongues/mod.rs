@@ -290,7 +290,7 @@ impl Question for Tongues {
     fn schema() -> Option<Schema> {
         let body = Keys::new()
             .key("tongues", Shape::List(&Shape::Object(keys)), "The tongues, one a row.")
-            .and(TongueTally::keys());
+            .and(TongueTally::record().keys());
         let says = "By p + q, then p, or in the order in which ratios are named; then by m. What was not asked for (--columns, --digits, lambda1) is absent; null says that a tongue has none of it.";
         // Ratios by name or all up to a sum, at a rho that is not below 0.
         let rules = r#"{"allOf": [{"properties": {"input": {
@@ -311,7 +311,8 @@ impl Question for Tongues {
         // A table for paper has edges alone unless it is asked for more.
         let wanted = self.columns.as_ref().map_or_else(Wanted::default, |_| answer.request.wanted);
         let seen = Request { wanted, ..answer.request.clone() };
-        self.tables(answer, &answer.tongues, &seen).entry("tongues", rows).entries(answer.tally.entries())
+        let document = self.tables(answer, &answer.tongues, &seen).entry("tongues", rows);
+        TongueTally::record().document(document, &answer.tally)
     }
 
     fn document(&self, answer: &FoundTongues) -> Document {

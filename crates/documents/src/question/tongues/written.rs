@@ -84,7 +84,7 @@ impl Tongues {
         let record = record(&listing.request, false);
         let row = |tongue: &Tongue| record.entries(tongue).to_string();
         let tally = self.each_row(&listing, source, row, |row| out.row(row))?;
-        out.end(&tally.entries())?;
+        out.end(&TongueTally::record().object(&tally))?;
         Ok(tally)
     }
 

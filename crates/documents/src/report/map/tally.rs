@@ -2,12 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use serde_json::{Value, json};
+use serde_json::Value;
 
 use super::rows::{Found, marked};
 use crate::report::decimal::enclosure;
 use crate::report::record::Record;
-use crate::report::shape::{EXACT, INTEGER, Keys, POSITIVE, POSITIVE_ENCLOSURE, Shape};
+use crate::report::shape::{EXACT, INTEGER, POSITIVE, POSITIVE_ENCLOSURE, Shape};
 use crate::report::table::Cell;
 use clocks::map::{Band, Counters, Enclosure, Grid};
 use clocks::verdict::{Kind, Verdict};
@@ -70,14 +70,17 @@ pub struct Fastest {
     pub tenfold: Enclosure,
 }
 
-pub(super) const FAMILIES: Shape = Shape::List(&Shape::Object(|| {
-    Keys::new().key("a", INTEGER, "a of the dominant family.").key(
-        "pairs",
-        POSITIVE,
-        "So many pairs grow with it.",
-    )
-}));
+pub(super) const FAMILIES: Shape = Shape::List(&Shape::Object(|| family_record().keys()));
 pub(super) const FASTEST: Shape = Shape::Object(|| fastest_record().keys());
+
+/// The record of a family: its a, and how many pairs grow with it.
+fn family_record() -> Record<'static, (i64, u64)> {
+    Record::new()
+        .json("a", |&(a, _): &(i64, u64)| a.into())
+        .says(INTEGER, "a of the dominant family.")
+        .json("pairs", |&(_, pairs)| pairs.into())
+        .says(POSITIVE, "So many pairs grow with it.")
+}
 
 /// The entries of the pair that grows fastest.
 fn fastest_record() -> Record<'static, Fastest> {
@@ -116,8 +119,8 @@ impl MapTally {
 
     /// The entry `families`, where labels were asked for and some pair grows.
     pub(super) fn families(&self) -> Option<Value> {
-        let count = |(a, pairs): (&i64, &u64)| json!({"a": a, "pairs": pairs});
-        (!self.families.is_empty()).then(|| self.families.iter().map(count).collect())
+        let families = || self.families.iter().map(|(&a, &pairs)| family_record().entries(&(a, pairs)));
+        (!self.families.is_empty()).then(|| families().collect())
     }
 
     /// The entry `fastest`, where growth was asked for and some pair grows.

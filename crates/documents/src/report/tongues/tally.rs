@@ -1,10 +1,9 @@
 //! Counts and extremes of many tongues.
 
-use serde_json::{Value, json};
-
 use super::rows::side;
 use crate::report::decimal::{self, few};
-use crate::report::shape::{COUNT, Keys, Shape};
+use crate::report::record::Record;
+use crate::report::shape::{COUNT, Shape};
 use clocks::tongue::Tongue;
 
 /// Counts and extremes, in the order in which the tongues come.
@@ -44,35 +43,20 @@ impl TongueTally {
         }
     }
 
-    /// The entries behind the rows in JSON.
-    pub fn entries(&self) -> Vec<(&'static str, Value)> {
-        let mut entries = vec![
-            ("count", self.count.into()),
-            ("open", (self.count - self.closed).into()),
-            ("closed", self.closed.into()),
-        ];
-        let [inside, on_edge, outside] = self.predicted;
-        if self.predicted != [0; 3] {
-            entries.push((
-                "predicted_points",
-                json!({"inside": inside, "on_edge": on_edge, "outside": outside}),
-            ));
-        }
-        entries
-    }
-
-    /// What they are.
-    pub fn keys() -> Keys {
-        Keys::new()
-            .key("count", COUNT, "The rows above.")
-            .key("open", COUNT, "Tongues whose two edges are proven different.")
-            .key("closed", COUNT, "Tongues whose two edges are proven equal: Q = I or -I there.")
-            .optional(
-                "predicted_points",
-                Shape::Object(|| {
-                    let keys = ["inside", "on_edge", "outside"].into_iter();
-                    keys.fold(Keys::new(), |keys, place| keys.key(place, COUNT, ""))
-                }),
+    /// The record of the entries behind the rows in JSON.
+    pub fn record() -> Record<'static, TongueTally> {
+        Record::new()
+            .json("count", |tally: &TongueTally| tally.count.into())
+            .says(COUNT, "The rows above.")
+            .json("open", |tally| (tally.count - tally.closed).into())
+            .says(COUNT, "Tongues whose two edges are proven different.")
+            .json("closed", |tally| tally.closed.into())
+            .says(COUNT, "Tongues whose two edges are proven equal: Q = I or -I there.")
+            .optional("predicted_points", |tally| {
+                (tally.predicted != [0; 3]).then(|| places().entries(&tally.predicted))
+            })
+            .says(
+                Shape::Object(|| places().keys()),
                 "The points p theta = m pi among the rows, by where they lie.",
             )
     }
@@ -112,6 +96,13 @@ impl TongueTally {
         }
         lines
     }
+}
+
+fn places() -> Record<'static, [u64; 3]> {
+    let places = ["inside", "on_edge", "outside"].into_iter().enumerate();
+    places.fold(Record::new(), |record, (n, place)| {
+        record.json(place, move |counts: &[u64; 3]| counts[n].into()).says(COUNT, "")
+    })
 }
 
 fn place(tongue: &Tongue) -> String {

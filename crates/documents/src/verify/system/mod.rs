@@ -23,7 +23,7 @@ use number::error::{Kind as Reason, Result};
 use number::rational::to_f64;
 use systems::avi::Ends;
 use systems::levels::Method;
-use systems::{Analysis, Limits, SchemeSummary, SparseSteps};
+use systems::{Analysis, Limits, Measured, SchemeSummary, SparseSteps};
 
 /// Points of a map whose kind is decided by the other route (where it costs no more than is allowed), unless
 /// all are.
@@ -67,22 +67,7 @@ fn verdict(
     let of_many = scene.model().measured().is_ok() && scene.model().inner_steps().is_none();
     let of_any = analysis.measured.as_ref().filter(|_| of_many);
     if let Some(measured) = analysis.measured.as_ref().filter(|_| !of_many) {
-        let (limits, route) = (context.work().products(), dense::Stands::of(scene, measured)?);
-        let checked = dense::growth(scene, analysis, &limits).and_then(|()| route.check(&limits));
-        return match checked {
-            Err(Fault::Error(error)) if error.kind() == Reason::Budget => {
-                let mut found = Outcome::whole(ALONE, Ok(()))?;
-                found
-                    .not_rechecked
-                    .push(too_costly("the growth rate and how far the verdict stands", &error));
-                Ok(found)
-            }
-            checked => {
-                let mut found = Outcome::whole(route.name(), checked)?;
-                found.not_rechecked.extend(route.unseen());
-                Ok(found)
-            }
-        };
+        return stands(scene, analysis, measured, context);
     }
     let traces = || {
         apart::exactly(scene, analysis)?;
@@ -95,18 +80,7 @@ fn verdict(
     };
     let mut outcome = match exact_kind(scene, analysis.kind, &context.work().products())? {
         Some(truth) => {
-            let route = match scene.model().local_steps() {
-                Some(_) => {
-                    "the scheme substep by substep, the kind in exact arithmetic, multipliers by the traces of the full period"
-                }
-                None if of_any.is_some() => {
-                    "the kind in exact arithmetic, multipliers by the traces of the dense full period and of its square, both sides of the \
-                     first unstable step by half periods of a rational system of the doubles given"
-                }
-                _ => {
-                    "the kind in exact arithmetic, multipliers by the traces of the dense full period and of its square"
-                }
-            };
+            let route = exact_route(scene.model().local_steps().is_some(), of_any.is_some());
             Outcome::whole(route, same_kind(analysis.kind, truth).and_then(|()| traces()))
         }
         None => {
@@ -122,6 +96,45 @@ fn verdict(
     }?;
     outcome.not_rechecked.extend(of_any.map(|_| dense::SAME_ROUTE.into()));
     Ok(outcome)
+}
+
+/// How far a verdict on measured stiffnesses stands, and how fast it grows.
+fn stands(
+    scene: &SystemScene,
+    analysis: &Analysis,
+    measured: &Measured,
+    context: &Context,
+) -> Result<Outcome> {
+    let (limits, route) = (context.work().products(), dense::Stands::of(scene, measured)?);
+    let checked = dense::growth(scene, analysis, &limits).and_then(|()| route.check(&limits));
+    match checked {
+        Err(Fault::Error(error)) if error.kind() == Reason::Budget => {
+            let mut found = Outcome::whole(ALONE, Ok(()))?;
+            found.not_rechecked.push(too_costly("the growth rate and how far the verdict stands", &error));
+            Ok(found)
+        }
+        checked => {
+            let mut found = Outcome::whole(route.name(), checked)?;
+            found.not_rechecked.extend(route.unseen());
+            Ok(found)
+        }
+    }
+}
+
+/// The words for a kind in exact arithmetic, of a scheme of local steps, and of measured stiffnesses.
+fn exact_route(has_local_steps: bool, is_measured: bool) -> &'static str {
+    match (has_local_steps, is_measured) {
+        (true, _) => {
+            "the scheme substep by substep, the kind in exact arithmetic, multipliers by the traces of the full period"
+        }
+        (_, true) => {
+            "the kind in exact arithmetic, multipliers by the traces of the dense full period and of its square, both sides of the \
+             first unstable step by half periods of a rational system of the doubles given"
+        }
+        _ => {
+            "the kind in exact arithmetic, multipliers by the traces of the dense full period and of its square"
+        }
+    }
 }
 
 /// The scheme run, of large ones.
