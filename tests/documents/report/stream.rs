@@ -12,7 +12,7 @@ fn the_bytes_are_those_of_a_document() {
         let mut streamed = Vec::new();
         let mut out = JsonRows::begin(&mut streamed, &head(), "tongues").unwrap();
         rows.iter().for_each(|row| out.row(&row.to_string()).unwrap());
-        out.end(&[("count", rows.len().into())]).unwrap();
+        out.end(json!({"count": rows.len()}).as_object().unwrap()).unwrap();
         let whole = head().entry("tongues", rows.clone()).entry("count", rows.len());
         assert_eq!(String::from_utf8(streamed).unwrap(), whole.render(Format::Json).unwrap());
     }
