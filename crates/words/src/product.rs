@@ -242,8 +242,8 @@ impl Word {
         self.product(forces)
     }
 
-    /// Kicks and midpoints when nothing is abbreviated, each counted by its powers of the force, and the terms
-    /// of flows: the degree of the entries in s.
+    /// Kicks and midpoints when nothing is abbreviated, each counted by its powers of the force, and the
+    /// terms of flows: the degree of the entries in s.
     pub fn degree(&self) -> u64 {
         force_powers(self.items(), TERMS as u64)
     }

@@ -24,8 +24,8 @@ fn terms(order: &kickdrift_words::FormalOrder) -> Vec<String> {
 /// order 6 whose constant is 1e-6.
 const STEP_LOG2: u32 = 5;
 
-/// For words whose leading term is small beside the next ones, as those for planets are: the coefficients of these
-/// are long.
+/// For words whose leading term is small beside the next ones, as those for planets are: the coefficients of
+/// these are long.
 const SHORT_STEP_LOG2: u32 = 7;
 
 /// That the error halves as the order says; the next term changes it by about a step's length, 3 %.

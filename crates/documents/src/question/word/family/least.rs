@@ -1,9 +1,9 @@
 //! The least error of a family of one parameter, proven.
 //!
-//! A coefficient of the error of degree d is a sum of products of d coefficients of the word, a gradient's standing
-//! for three. Where these are polynomials of degree G in the parameter, the sum E of the squares of the error's
-//! coefficients is one of degree 2 d G: its values at so many places and one more tell it exactly, and the roots of
-//! its derivative are isolated.
+//! A coefficient of the error of degree d is a sum of products of d coefficients of the word, a gradient's
+//! standing for three. Where these are polynomials of degree G in the parameter, the sum E of the squares of
+//! the error's coefficients is one of degree 2 d G: its values at so many places and one more tell it
+//! exactly, and the roots of its derivative are isolated.
 
 use super::asked::Family;
 use num_traits::{One, Zero};
@@ -15,7 +15,8 @@ use words::{Item, Letter};
 /// Roots are known to this part of the range.
 const PLACE_LOG2: i64 = -60;
 
-/// Bits of the error at them, which differs from that at another place by as little as the square of their width.
+/// Bits of the error at them, which differs from that at another place by as little as the square of their
+/// width.
 const BITS: u32 = 512;
 
 /// The largest 2 d G.
@@ -25,9 +26,9 @@ const MOST_DEGREE: usize = 60;
 const ROOT: u32 = 64;
 
 impl Family {
-    /// The least of the errors of a degree over the whole range of the parameter `at`: two values with the place
-    /// between them, or twice an end of the range. `None` where the word is no polynomial in it, has a number that is
-    /// not rational, or has two places that are equally good.
+    /// The least of the errors of a degree over the whole range of the parameter `at`: two values with the
+    /// place between them, or twice an end of the range. `None` where the word is no polynomial in it, has a
+    /// number that is not rational, or has two places that are equally good.
     pub(super) fn least_error(&self, at: usize, degree: u64) -> Option<(Rational, Rational)> {
         let (lo, hi) = &self.parameter.0[at].range;
         let bound = 2 * degree as usize * self.degree_in(at)?;
@@ -64,8 +65,8 @@ impl Family {
         (0..sizes.len()).find(is_least).map(|n| candidates.swap_remove(n))
     }
 
-    /// The sum of the squares of the error's coefficients at one value of a parameter; `None` also where an error of
-    /// a lower degree is left.
+    /// The sum of the squares of the error's coefficients at one value of a parameter; `None` also where an
+    /// error of a lower degree is left.
     fn square_at(&self, at: usize, x: &Rational, degree: u64) -> Option<Rational> {
         let mut values = self.values(|parameter| Radical::from_rational(&parameter.range.0));
         values[at] = Radical::from_rational(x);
@@ -92,9 +93,9 @@ impl Family {
 
     /// The degree of the word's coefficients as polynomials in a parameter; `None` where one is a quotient.
     ///
-    /// With r = c^(1/64) for the parameter a coefficient is a polynomial p in r below r^64. If it is a quotient f/g of
-    /// polynomials below this degree, f - p g is 0 modulo r^64 - c; with the same p for c = 2 and 3 modulo both, whose
-    /// product has the degree 128: so f = p g.
+    /// With r = c^(1/64) for the parameter a coefficient is a polynomial p in r below r^64. If it is a
+    /// quotient f/g of polynomials below this degree, f - p g is 0 modulo r^64 - c; with the same p for c = 2
+    /// and 3 modulo both, whose product has the degree 128: so f = p g.
     fn degree_in(&self, at: usize) -> Option<usize> {
         let name = &self.parameter.0[at].name;
         if self.word.contains('^') || self.word.matches(name.as_str()).count() >= ROOT as usize {
