@@ -47,6 +47,7 @@ mod quantity;
 pub mod radical;
 mod ratio;
 pub mod rational;
+mod reduced;
 mod ring;
 mod sign;
 mod twofold;

@@ -10,7 +10,7 @@ use std::ops::{AddAssign, MulAssign, Neg, SubAssign};
 use num_bigint::BigInt;
 use num_traits::{One, Signed, ToPrimitive, Zero};
 
-use super::{Ball, Rational, Sign, Twofold, rational};
+use super::{Ball, Rational, Sign, Twofold, rational, reduced};
 
 /// A commutative ring that contains the rationals (for `f64`: their nearest doubles).
 ///
@@ -75,15 +75,15 @@ impl Ring for Rational {
     }
 
     fn add_product(&mut self, a: &Self, b: &Self) {
-        *self += a * b;
+        *self = reduced::sum(self, &reduced::product(a, b));
     }
 
     fn sub_product(&mut self, a: &Self, b: &Self) {
-        *self -= a * b;
+        *self = reduced::sum(self, &-reduced::product(a, b));
     }
 
     fn product(a: &Self, b: &Self) -> Self {
-        a * b
+        reduced::product(a, b)
     }
 }
 
