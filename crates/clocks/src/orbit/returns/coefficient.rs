@@ -1,8 +1,7 @@
 //! The numbers that coefficients are made of: doubles, two doubles, long numbers.
 
-use super::enclosure::quotient;
+use num_traits::Float;
 
-pub use super::enclosure::exact;
 use super::lanes::Lanes;
 use super::long;
 pub use super::long::Long;
@@ -282,6 +281,23 @@ impl Coefficient for Long {
     fn near_twofold(x: Twofold) -> (Self, f64) {
         near_ball(&Coefficient::ball(&x))
     }
+}
+
+/// n/d within 3 2^-101 relatively, |n| and d below 2^127.
+pub fn quotient(n: i128, d: u128) -> Twofold {
+    // Each within 2^-105, and 2^-100 of the quotient.
+    let two = |n: u128| {
+        let hi = n as f64;
+        Twofold::sum(hi, n.wrapping_sub(hi as u128) as i128 as f64)
+    };
+    let size = two(n.unsigned_abs()).divided_by(two(d));
+    if n < 0 { size.negative() } else { size }
+}
+
+/// A double, exactly.
+pub fn exact(x: f64) -> Ball {
+    let (mantissa, exponent, sign) = Float::integer_decode(x);
+    Ball::from_integer(&(i64::from(sign) * mantissa as i64).into()).scale2(exponent.into())
 }
 
 /// A number near the ball, and how far from what it holds at most.

@@ -2,9 +2,8 @@
 //! fast, where their digits suffice.
 
 use num_bigint::BigUint;
-use num_traits::Float;
 
-use super::coefficient::{Coefficient, near_ball};
+use super::coefficient::{Coefficient, exact, near_ball, quotient};
 use number::{Ball, Rational, Real, Sign, Twofold};
 
 /// A real number, enclosed. Numbers of one pair have the same bits.
@@ -242,23 +241,6 @@ impl Enclosure for Close {
     fn within<T: Coefficient>(middle: &T, error: f64, _: u32) -> Self {
         Close::new(middle.to(), error)
     }
-}
-
-/// n/d within 3 2^-101 relatively, |n| and d below 2^127.
-pub fn quotient(n: i128, d: u128) -> Twofold {
-    // Each within 2^-105, and 2^-100 of the quotient.
-    let two = |n: u128| {
-        let hi = n as f64;
-        Twofold::sum(hi, n.wrapping_sub(hi as u128) as i128 as f64)
-    };
-    let size = two(n.unsigned_abs()).divided_by(two(d));
-    if n < 0 { size.negative() } else { size }
-}
-
-/// A double, exactly.
-pub fn exact(x: f64) -> Ball {
-    let (mantissa, exponent, sign) = Float::integer_decode(x);
-    Ball::from_integer(&(i64::from(sign) * mantissa as i64).into()).scale2(exponent.into())
 }
 
 /// Entries farther from 1 than 2^±this are scaled.
