@@ -119,7 +119,7 @@ fn windows_of_any_size_and_unit() {
     }
 }
 
-// Ledger: bands; all pairs of a grid, sectors of 40_000 trials; the verdict on each pair
+// Ledger: bands; all pairs of a grid, sectors of figure 1; the verdict on each pair
 #[test]
 fn no_stable_pair_lies_in_a_sector() {
     let (window, bands) = of_figure1();
