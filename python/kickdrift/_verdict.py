@@ -417,7 +417,7 @@ def _placed(error: KickdriftError, arrays: Mapping[str, npt.NDArray[Any]]) -> Ki
 
 
 def _of_pair(error: BudgetError, shape: tuple[int, ...]) -> BudgetError:
-    """An error about the n-th pair, ``pair 5: …``, as one about its place in the broadcast shape, ``pair [1, 2]: …``."""
+    """An error about the n-th pair, ``pair 5: …``, as one about its place, ``pair [1, 2]: …``."""
     name, colon, work = error.field.partition(": ")
     number = name.removeprefix("pair ")
     if not (colon and name.startswith("pair ") and number.isdigit()):
