@@ -341,11 +341,16 @@ fn work_ends_with_the_client() {
 
 #[cfg(unix)]
 #[test]
-fn an_interrupt_ends_it_at_once() {
+fn an_interrupt_ends_it_before_the_answer() {
     let mut page = Page::start("--threads 1");
     let mut stream = page.connect();
     stream.write_all(page.request(LARGE).as_bytes()).unwrap();
     assert!(is_worked_on(&mut stream));
     let sent = std::process::Command::new("kill").args(["-INT", &page.id().to_string()]).status().unwrap();
-    assert!(sent.success() && page.ends_within(Duration::from_secs(2)));
+    // Far longer than even a busy machine takes for the picture.
+    assert!(sent.success() && page.ends_within(Duration::from_secs(120)));
+    let mut answer = Vec::new();
+    // The connection may be reset.
+    let _ = stream.read_to_end(&mut answer);
+    assert_eq!(String::from_utf8_lossy(&answer), "");
 }
