@@ -43,11 +43,11 @@ fi
 awk '
     /^#/ { if (NR == FNR) compiler = $0; else if ($0 != compiler) { other = 1; print "kept with", compiler }; next }
     NR == FNR { before[$1] = $2; next }
-    !($1 in before) { printf "%-20s %14s %14d  new: --keep it\n", $1, "", $2; worse++; next }
+    !($1 in before) { printf "%-20s %14s %14.0f  new: --keep it\n", $1, "", $2; worse++; next }
     {
         change = 100 * ($2 / before[$1] - 1)
         slower = (change > 2)
-        printf "%-20s %14d %14d %+8.2f %%%s\n", $1, before[$1], $2, change, slower ? "  slower" : ""
+        printf "%-20s %14.0f %14.0f %+8.2f %%%s\n", $1, before[$1], $2, change, slower ? "  slower" : ""
         worse += slower
     }
     END {
