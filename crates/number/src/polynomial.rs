@@ -156,6 +156,33 @@ impl<R: Ring> Polynomial<R> {
     }
 }
 
+impl Polynomial<Rational> {
+    /// The polynomial of least degree through the points (x, f(x)), by Newton's divided differences.
+    ///
+    /// ```
+    /// use kickdrift_number::{Polynomial, rational::ratio};
+    /// let f = Polynomial::through(&[(0, 1), (1, 3), (3, 13)].map(|(x, y)| (ratio(x, 1), ratio(y, 1))));
+    /// assert_eq!(f.text(&["x"]), "x^2 + x + 1");
+    /// ```
+    ///
+    /// # Panics
+    /// Two points with one x.
+    pub fn through(points: &[(Rational, Rational)]) -> Self {
+        let mut differences: Vec<Rational> = points.iter().map(|(_, y)| y.clone()).collect();
+        for order in 1..points.len() {
+            for n in (order..points.len()).rev() {
+                let apart = &points[n].0 - &points[n - order].0;
+                differences[n] = (&differences[n] - &differences[n - 1]) / apart;
+            }
+        }
+        let step = |sum: Self, ((x, _), difference): (&(Rational, Rational), &Rational)| {
+            let factor = Polynomial::new(vec![-x.clone(), Rational::one()]);
+            &(&sum * &factor) + &Polynomial::constant(difference.clone())
+        };
+        points.iter().zip(&differences).rev().fold(Polynomial::zero(), step)
+    }
+}
+
 ring_operators!([R: Ring] Polynomial<R>, |x| Polynomial::constant(R::from_rational(x)));
 
 impl<R: Ring> Zero for Polynomial<R> {

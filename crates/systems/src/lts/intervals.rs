@@ -101,12 +101,14 @@ impl LocalSteps {
         let values = |k: &usize| {
             let x = Rational::from_integer((*k).into());
             let effective = self.effective(&x);
-            let mut other = effective.scaled(&-x);
+            let mut other = effective.scaled(&-&x);
             other.add_all(&mass);
-            Ok([effective, other].map(|symmetric| determinant(&symmetric.congruent(&complement))))
+            Ok([effective, other].map(|matrix| (x.clone(), determinant(&matrix.congruent(&complement)))))
         };
-        let values: Vec<[Rational; 2]> = try_map(&(1..=self.degree() + 1).collect::<Vec<_>>(), values)?;
-        Ok([0, 1].map(|k| interpolated(values.iter().map(|values| values[k].clone()).collect())))
+        let values: Vec<[(Rational, Rational); 2]> =
+            try_map(&(1..=self.degree() + 1).collect::<Vec<_>>(), values)?;
+        let points = |k: usize| values.iter().map(|values| values[k].clone()).collect::<Vec<_>>();
+        Ok([0, 1].map(|k| Polynomial::through(&points(k))))
     }
 }
 
@@ -132,20 +134,6 @@ fn determinant(matrix: &Symmetric) -> Rational {
         determinant *= pivot;
     }
     if rows.is_empty() { determinant } else { Rational::zero() }
-}
-
-/// The polynomial with these values at 1, 2, ... (Newton).
-fn interpolated(mut values: Vec<Rational>) -> Polynomial<Rational> {
-    let n = values.len();
-    for k in 1..n {
-        for i in (k..n).rev() {
-            values[i] = (&values[i] - &values[i - 1]) / Rational::from_integer(k.into());
-        }
-    }
-    (0..n).rev().fold(Polynomial::new(Vec::new()), |sum, i| {
-        let factor = Polynomial::new(vec![ratio(-(i as i64) - 1, 1), Rational::one()]);
-        &(&sum * &factor) + &Polynomial::constant(values[i].clone())
-    })
 }
 
 /// An integer multiple of f(B s).

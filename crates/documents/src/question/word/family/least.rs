@@ -6,10 +6,10 @@
 //! exactly, and the roots of its derivative are isolated.
 
 use super::asked::Family;
-use num_traits::{One, Zero};
+use num_traits::Zero;
 use number::polynomial::Sturm;
 use number::rational::scale2;
-use number::{Ball, Polynomial, Radical, Rational, Ring};
+use number::{Ball, Enclosed, Polynomial, Radical, Rational, Ring};
 use words::{Item, Letter};
 
 /// Roots are known to this part of the range.
@@ -38,7 +38,7 @@ impl Family {
         let step = (hi - lo) / Rational::from_integer((bound as i64).into());
         let places = (0..=bound).map(|n| lo + &step * Rational::from_integer((n as i64).into()));
         let known = places.map(|x| self.square_at(at, &x, degree).map(|value| (x, value)));
-        let error = interpolated(&known.collect::<Option<Vec<_>>>()?);
+        let error = Polynomial::through(&known.collect::<Option<Vec<_>>>()?);
         let mut candidates = vec![(lo.clone(), lo.clone()), (hi.clone(), hi.clone())];
         if error.degree().is_some_and(|degree| degree > 1) {
             let chain = Sturm::new(&error.derivative());
@@ -50,18 +50,15 @@ impl Family {
             }
             candidates.extend(refined.into_iter().filter(|(a, b)| a > lo && b < hi));
         }
+        let enclosed = error.map(Enclosed::<BITS>::from_rational);
         let size = |(lo, hi): &(Rational, Rational)| {
             let x = Ball::from_rational(lo, BITS).union(&Ball::from_rational(hi, BITS), BITS);
-            let horner = |sum: Ball, c: &Rational| sum.mul(&x, BITS).add(&Ball::from_rational(c, BITS), BITS);
-            error.coefficients().iter().rev().fold(Ball::zero(), horner)
+            enclosed.eval(&Enclosed(x)).0
         };
         let sizes: Vec<Ball> = candidates.iter().map(size).collect();
-        let is_least = |n: &usize| {
-            let others = (0..sizes.len()).filter(|other| other != n);
-            others
-                .into_iter()
-                .all(|other| sizes[*n].compare(&sizes[other]).is_some_and(|order| order.is_lt()))
-        };
+        let is_less =
+            |n: usize, other: usize| sizes[n].compare(&sizes[other]).is_some_and(|order| order.is_lt());
+        let is_least = |&n: &usize| (0..sizes.len()).all(|other| other == n || is_less(n, other));
         (0..sizes.len()).find(is_least).map(|n| candidates.swap_remove(n))
     }
 
@@ -125,20 +122,4 @@ fn listed(items: &[Item], found: &mut Vec<Polynomial<Rational>>) {
             Item::Repeat(_, inside) => listed(inside, found),
         }
     }
-}
-
-/// The polynomial of least degree through these points, by Newton's divided differences.
-fn interpolated(points: &[(Rational, Rational)]) -> Polynomial<Rational> {
-    let mut differences: Vec<Rational> = points.iter().map(|(_, y)| y.clone()).collect();
-    for order in 1..points.len() {
-        for n in (order..points.len()).rev() {
-            let over = &points[n].0 - &points[n - order].0;
-            differences[n] = (&differences[n] - &differences[n - 1]) / over;
-        }
-    }
-    let step = |sum: Polynomial<Rational>, n: usize| {
-        let factor = Polynomial::new(vec![-points[n].0.clone(), Rational::one()]);
-        &(&sum * &factor) + &Polynomial::constant(differences[n].clone())
-    };
-    (0..points.len()).rev().fold(Polynomial::zero(), step)
 }

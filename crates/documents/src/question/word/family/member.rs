@@ -6,7 +6,7 @@ use crate::question::asking::{Question, Work};
 use num_traits::{One, Zero};
 use number::error::Result;
 use number::polynomial::Sturm;
-use number::{Ball, Polynomial, Radical, Rational, Real, Sign, rational};
+use number::{Ball, Enclosed, Polynomial, Radical, Rational, Real, Sign, rational};
 use words::{ErrorTerm, Forces};
 
 /// A word of a family.
@@ -89,8 +89,7 @@ impl Member {
 
 /// f(x).
 fn value(f: &Polynomial<Radical>, x: &Ball) -> Ball {
-    let horner = |sum: Ball, c: &Radical| sum.mul(x, BITS).add(&c.enclosure(BITS), BITS);
-    f.coefficients().iter().rev().fold(Ball::zero(), horner)
+    f.map(|c| Enclosed::<BITS>(c.enclosure(BITS))).eval(&Enclosed(x.clone())).0
 }
 
 /// The largest (R + 1/R)/2 − 1 over all steps up to √Λ1 h = `up_to`: R = −(1 + ρ) s B/C is a rational
