@@ -67,8 +67,9 @@ fn by_tiers<S: Decidable>(
         if let Some((verdict, bits)) = by_returns(clocks, least..=256, runs)? {
             return Ok((verdict, if bits == 53 { Tier::Filter } else { Tier::Refine }));
         }
-        // No tier follows the kicks of such a period.
-        if Schedule::two_clocks(clocks.ratio()).is_err() {
+        // No tier follows the kicks of such a period, but where one clock strikes seldom.
+        let updates = clocks.p().min(clocks.q()) / 2;
+        if Schedule::two_clocks(clocks.ratio()).is_err() && limits.allow(updates, Tier::Filter).is_err() {
             return Err(undecided(&(BigInt::from(clocks.p()) + clocks.q())));
         }
     }

@@ -56,9 +56,9 @@ pub fn is_worth(ratio: Ratio, bits: u32) -> bool {
     ratio.p().min(ratio.q()) >= if bits > 53 { LONG_FOR_BITS } else { LONG }
 }
 
-/// A step of the base to so high a power, 2^8, costs its constants in two doubles 12 bits: they know a step of a period
-/// of 2^70 kicks well enough after it.
-const ALIKE: u64 = 8;
+/// log₂ of the ratio of the steps, at most, where two doubles know the constants: a step of the base to the power 2^8
+/// costs them 12 bits, and a period of 2^70 kicks is known well enough with the others.
+const MOST_LOG2_RATIO: u64 = 8;
 
 /// The results that a run is asked for.
 #[derive(Clone, Copy, PartialEq)]
@@ -104,7 +104,7 @@ fn better<S: Real>(clocks: &LongClocks<S>, bits: u32, wanted: Wanted) -> Option<
 fn over<S: Real>(clocks: &LongClocks<S>, fast: bool, bits: u32, wanted: Wanted) -> Option<Found> {
     let over = match (bits, clocks.shorter_bits()) {
         (0..=53, 0..=38) => over_in::<S, f64, Close>,
-        (0..=53, 39..=70) if clocks.log2_ratio() <= ALIKE => over_in::<S, Twofold, Close>,
+        (0..=53, 39..=70) if clocks.log2_ratio() <= MOST_LOG2_RATIO => over_in::<S, Twofold, Close>,
         (0..=53, 39..=86) | (54..=106, 0..=62) => over_in::<S, Twofold, Wide>,
         (0..=256, _) => over_in::<S, Long, Wide>,
         _ => return None,
