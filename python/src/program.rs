@@ -31,7 +31,7 @@ pub fn main(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
 pub struct Answer(Document);
 
 /// Below an answer in a few lines.
-const MORE: &str = "more: what stands behind it, and the tables, in .details";
+const MORE: &str = "more: the whole answer and its tables in .details";
 
 #[pymethods]
 impl Answer {

@@ -18,7 +18,7 @@ import kickdrift as kd
 
 TWO = {"OH": "10fs", "slow": "40fs"}
 STEPS = [("0.5fs", "4fs"), ("0.5fs", 5)]
-MORE = "more: what stands behind it, and the tables,"
+MORE = "more: the whole answer and its tables"
 FLAGS = ["--period=OH=10fs", "--period=slow=40fs", "--steps=0.5fs,4fs", "--steps=0.5fs,5fs"]
 GROMACS = "dt = 0.0005 ; ps\nmts = yes\nmts-level2-factor = 8\n"
 

@@ -225,7 +225,7 @@ impl Columns {
 /// Whether an answer comes alone.
 #[derive(Debug, clap::Args)]
 pub struct Details {
-    /// Also what stands behind the answer, with its tables, in text; other forms have all.
+    /// The whole answer with its tables in text; other forms always have it.
     #[arg(long)]
     details: bool,
 }
@@ -234,14 +234,14 @@ impl Details {
     /// The document with its details, or with a line that says how to see them.
     pub fn of(&self, document: Document, format: Format, common: &Common) -> Result<Document> {
         if format != Format::Text && common.output.is_none() {
-            unused(&[("--details", self.details)], "is for text: other forms have all")?;
+            unused(&[("--details", self.details)], "is for text: other forms always have the whole answer")?;
         }
         Ok(if self.details { document.detailed() } else { document.below_answer(MORE) })
     }
 }
 
 /// Below an answer in a few lines.
-const MORE: &str = "more: what stands behind it, and the tables, with --details";
+const MORE: &str = "more: the whole answer and its tables with --details";
 
 /// The spacing of a grid, which stands for those of both steps.
 #[derive(Debug, clap::Args)]

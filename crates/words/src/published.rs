@@ -30,7 +30,7 @@ const BOOK: &str = "Hairer, Lubich, Wanner, Geometric Numerical Integration, I.5
 const BLACKJAX: &str = "BlackJAX, blackjax.mcmc.integrators, to about three digits";
 const LATTICE: &str = "Schaefers, Finkenrath, Guenther, Knechtli, arXiv:2506.08813 (2025)";
 
-/// All that are known here. Of the others no limit is printed where we could look.
+/// All that are known here: no source that could be opened prints one of another method.
 pub const LIMITS: &[Limit] = &[
     limit("symplectic-euler", "2", BOOK),
     limit("velocity-verlet", "2", BOOK),

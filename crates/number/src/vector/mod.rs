@@ -1,4 +1,4 @@
-//! FloatRing side by side in the processor's registers.
+//! Doubles side by side in the processor's registers.
 //!
 //! A compiler makes vector instructions of most plain loops over lanes, but not of every one where it must
 //! not fail: the few kernels that everything waits for are written for a [`Vector`] instead, and compiled for
