@@ -82,6 +82,11 @@ const REMEDIES: &[(&str, &str, &str)] = &[
         "verdict --lambda1 8 --lambda2 1 --h1 1 --h2 1.001 --exact",
     ),
     (
+        "word \"K(a)D(1/2)K(1-2*a)D(1/2)K(a)\" --parameter a=0.1..0.3",
+        "as a=0.1..0.3:1/100",
+        "word \"K(a)D(1/2)K(1-2*a)D(1/2)K(a)\" --parameter a=0.1..0.3:1/100",
+    ),
+    (
         "tongues --ratio 5/3 --rho -1/25",
         "use `map` or `verdict`",
         "verdict --lambda1 10 --lambda2 -2/5 --h1 1 --h2 5/3",

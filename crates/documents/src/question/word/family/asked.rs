@@ -103,7 +103,9 @@ impl FromStr for Parameters {
                 let value = parse_rational("parameter", values)?;
                 return Ok(Parameter { name, range: (value.clone(), value), step: None });
             }
-            let (range, step) = values.split_once(':').ok_or_else(|| wrong(AS))?;
+            let (range, step) = values.split_once(':').ok_or_else(|| {
+                wrong(&format!("add how far its values are apart, as {name}={values}:1/100"))
+            })?;
             let range = parse_rational_range("parameter", range)?;
             let step = parse_rational("parameter", step)?;
             match step.sign() {
