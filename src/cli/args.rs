@@ -234,7 +234,7 @@ impl Details {
     /// The document with its details, or with a line that says how to see them.
     pub fn of(&self, document: Document, format: Format, common: &Common) -> Result<Document> {
         if format != Format::Text && common.output.is_none() {
-            unused(&[("--details", self.details)], "is for text: other forms always have the whole answer")?;
+            unused(&[("--details", self.details)], "is for text: other forms have all")?;
         }
         Ok(if self.details { document.detailed() } else { document.below_answer(MORE) })
     }
