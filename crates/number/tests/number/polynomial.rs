@@ -1,9 +1,9 @@
 use num_traits::{One, Signed, Zero};
 use proptest::prelude::*;
 
-use kickdrift::number::Rational;
-use kickdrift::number::polynomial::*;
-use kickdrift::number::rational::ratio;
+use kickdrift_number::Rational;
+use kickdrift_number::polynomial::*;
+use kickdrift_number::rational::ratio;
 
 type Q = Polynomial<Rational>;
 

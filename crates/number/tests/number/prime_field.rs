@@ -1,6 +1,6 @@
 //! Prime fields.
 
-use kickdrift::number::*;
+use kickdrift_number::*;
 use num_bigint::BigInt;
 use num_traits::One;
 

@@ -1,6 +1,6 @@
 //! Quantities from doubles and texts.
 
-use kickdrift::number::*;
+use kickdrift_number::*;
 
 #[test]
 fn doubles_are_taken_to_their_last_bit_or_refused() {

@@ -1,7 +1,7 @@
 //! Rationals: rounding to doubles and back.
 
-use kickdrift::number::Rational;
-use kickdrift::number::rational::*;
+use kickdrift_number::Rational;
+use kickdrift_number::rational::*;
 use num_bigint::BigInt;
 use num_traits::{Signed, Zero};
 use proptest::prelude::*;

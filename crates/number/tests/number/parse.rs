@@ -3,8 +3,8 @@ use std::time::{Duration, Instant};
 use proptest::prelude::*;
 
 use crate::laurent::any_laurent;
-use kickdrift::number::Rational;
-use kickdrift::number::parse::*;
+use kickdrift_number::Rational;
+use kickdrift_number::parse::*;
 
 fn shown(text: &str) -> String {
     parse("x", text).map_or_else(|error| error.to_string(), |value| value.to_string())

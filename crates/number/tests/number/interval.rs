@@ -1,8 +1,8 @@
 //! What went wrong elsewhere with intervals and balls: radii that are no numbers, ends rounded to the nearest
 //! double, a tangent across its pole, intervals of no width.
 
-use kickdrift::number::rational::{from_f64_exact, ratio};
-use kickdrift::number::{Ball, Interval, Rational};
+use kickdrift_number::rational::{from_f64_exact, ratio};
+use kickdrift_number::{Ball, Interval, Rational};
 use proptest::prelude::*;
 
 fn exact(x: f64) -> Rational {

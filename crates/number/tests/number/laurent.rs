@@ -1,7 +1,7 @@
 use proptest::prelude::*;
 
-use kickdrift::number::rational::ratio;
-use kickdrift::number::{ExactSign, Laurent, Rational, Real, Sign};
+use kickdrift_number::rational::ratio;
+use kickdrift_number::{ExactSign, Laurent, Rational, Real, Sign};
 use num_traits::{One, Zero};
 
 pub fn any_laurent() -> impl Strategy<Value = Laurent> {

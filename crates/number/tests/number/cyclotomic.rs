@@ -1,7 +1,7 @@
 use proptest::prelude::*;
 
-use kickdrift::number::rational::{ratio, to_f64};
-use kickdrift::number::{
+use kickdrift_number::rational::{ratio, to_f64};
+use kickdrift_number::{
     Ball, Cyclotomic, CyclotomicField, ExactSign, NumberField, Polynomial, Rational, Real, Ring, Sign,
 };
 use num_traits::{One, Zero};
