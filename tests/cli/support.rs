@@ -40,9 +40,23 @@ impl Desk {
     }
 
     pub fn run(&self, args: &[&str]) -> Ended {
-        let output = self.command(args).output().unwrap();
-        let text = |bytes| String::from_utf8(bytes).unwrap();
-        Ended { code: output.status.code(), stdout: text(output.stdout), stderr: text(output.stderr) }
+        ended(self.command(args))
+    }
+
+    /// Ends without a code where it takes more processor time than so many seconds; a busy machine makes no
+    /// difference.
+    #[cfg(unix)]
+    pub fn run_within(&self, seconds: u32, args: &[&str]) -> Ended {
+        let program = self.command(args);
+        let mut shell = Command::new("sh");
+        shell.args(["-c", &format!("ulimit -t {seconds}; exec \"$0\" \"$@\"")]);
+        shell.arg(program.get_program()).args(args).current_dir(self.path()).stdin(Stdio::null());
+        ended(shell)
+    }
+
+    #[cfg(not(unix))]
+    pub fn run_within(&self, _seconds: u32, args: &[&str]) -> Ended {
+        self.run(args)
     }
 
     /// All files below the folder, sorted, their paths relative to it.
@@ -65,6 +79,12 @@ impl Desk {
     pub fn read(&self, name: &str) -> Vec<u8> {
         std::fs::read(self.path().join(name)).unwrap()
     }
+}
+
+fn ended(mut command: Command) -> Ended {
+    let output = command.output().unwrap();
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    Ended { code: output.status.code(), stdout: text(output.stdout), stderr: text(output.stderr) }
 }
 
 fn list(root: &Path, folder: &Path, files: &mut Vec<String>) {

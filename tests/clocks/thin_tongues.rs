@@ -159,10 +159,7 @@ fn twenty_five_digits_by_counts_hold_sixty_by_signs() {
 }
 
 #[test]
-fn weak_coupling_and_dense_clusters_are_as_quick_as_any() {
-    // A second in all, tests running side by side; by long digits of both edges each took the better part of
-    // a minute.
-    let at = std::time::Instant::now();
+fn the_tongues_of_weak_coupling_and_of_dense_clusters_are_enclosed() {
     for (p, q, rho) in
         [(40, 39, power_of_ten(12)), (43, 55, ratio(13, 10) * power_of_ten(-12)), (1389, 1450, ratio(7, 1))]
     {
@@ -172,5 +169,4 @@ fn weak_coupling_and_dense_clusters_are_as_quick_as_any() {
         };
         assert!(gaps.iter().filter(|gap| gap.upper.is_some()).all(narrow), "{p}/{q}, rho = {rho}");
     }
-    assert!(at.elapsed().as_secs() < 20, "{:?}", at.elapsed());
 }

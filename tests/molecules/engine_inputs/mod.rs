@@ -11,6 +11,8 @@ mod openmm;
 mod serialized;
 mod tinker;
 
+use std::time::Duration;
+
 use kickdrift::advise::engine::{Engine, Reading, read};
 use kickdrift::advise::unit::decimal;
 use kickdrift::error::Error;
@@ -55,4 +57,16 @@ fn all_are_refused(texts: &[(&str, &str, &str)]) {
             "{text}: {message}"
         );
     }
+}
+
+/// The processor time of this thread so far, which a busy machine leaves as it is.
+#[cfg(unix)]
+fn thread_time() -> Duration {
+    let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
+    time.try_into().unwrap()
+}
+
+#[cfg(not(unix))]
+fn thread_time() -> Duration {
+    std::time::SystemTime::UNIX_EPOCH.elapsed().unwrap()
 }
