@@ -39,6 +39,8 @@ SHOWN = {".svg", ".png", ".pdf", ".html"}
 STYLE = {"figure.dpi": 96, "savefig.bbox": "tight", "svg.hashsalt": "kickdrift", "figure.figsize": (7, 4)}
 
 replaced: dict[str, list[str]] = {}
+# What the cells of each notebook gave: one that stands on two pages runs once.
+notebooks: dict[Path, list[str]] = {}
 
 
 def on_files(files, config):
@@ -134,6 +136,13 @@ class Session:
 
     def notebook(self, path, last):
         """A notebook written as Python: cells begin at ``# %%``, and those of text are comments."""
+        if "/" in self.page:
+            raise PluginError(f"{self.page}: figures of notebooks are found from pages without a folder alone")
+        if path not in notebooks:
+            notebooks[path] = Session(f"notebook-{path.name}", self.folder).cells_of(path)
+        return notebooks[path][-1].split("```\n\n", 1)[-1] if last else "\n\n".join(notebooks[path])
+
+    def cells_of(self, path):
         text = []
         for cell in re.split(r"^# %%", path.read_text(encoding="utf-8"), flags=re.MULTILINE)[1:]:
             kind, _, body = cell.partition("\n")
@@ -142,7 +151,7 @@ class Session:
                 text.append(re.sub(r"^# ", "## ", prose, flags=re.MULTILINE))
             else:
                 text.append(self.python(body.strip() + "\n"))
-        return text[-1].split("```\n\n", 1)[-1] if last else "\n\n".join(text)
+        return text
 
     def python(self, body):
         code = f"```python\n{body}```"

@@ -1,4 +1,4 @@
-"""The notebooks run."""
+"""The notebooks run as notebooks. Their cells run with the documentation, too, on every change."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from nbclient import NotebookClient
 EXAMPLES = sorted((Path(__file__).parents[1] / "examples").glob("*.py"))
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
 def test_the_notebook_runs(path: Path, tmp_path: Path) -> None:
     notebook = jupytext.read(path)
