@@ -121,7 +121,7 @@ fn what_is_missing_is_named_with_a_remedy() {
         ),
         ("advise data/scenes/bar-avi.json", "scheme = avi: advice has no place in a scheme of local steps"),
         ("advise data/scenes/water4.json --steps 0.7fs,4fs", "a multiple of the inner one"),
-        ("advise data/scenes/water4.json --period 10fs", "cannot be used with"),
+        ("advise data/scenes/water4.json --period 10fs", "stands for Hessians in place of periods"),
         (
             "advise data/scenes/water4.json --constraints h-bonds",
             "potentials[0].force missing: give the force of each potential",
