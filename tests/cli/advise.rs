@@ -525,7 +525,7 @@ fn what_has_no_name_is_called_by_its_period() {
         "T/6.28 of the period of 10 fs, that is h w <= 1: beyond it bonds",
         "limit: the period of 10 fs: T/6.28",
         "1.65 at 2 fs, 1.33 at the advised 1.59 fs for the period of 10 fs",
-        "in 0.377 steps = ",
+        "tenfold in 1.64 steps = 6.56 fs",
         "longer: nothing that was looked at lets the step grow; forces that are slow may have",
     ] {
         assert!(text.contains(said), "{said}: {text}");
