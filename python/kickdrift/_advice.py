@@ -82,7 +82,7 @@ class Advised(Document):
         >>> import kickdrift as kd
         >>> advice = kd.advise(["10fs", "40fs"], steps=["0.5fs", "4fs"])
         >>> [(row["lever"], row["step"]) for row in advice.levers[:2]], advice.levers[5]["first_exact"]
-        ([('as given', '3'), ('MOLLY, short average', '231/50')], '40/pi')
+        ([('as given', '3'), ('short-average MOLLY', '231/50')], '40/pi')
         """
         return self._table("levers") if "levers" in self.data else ()
 

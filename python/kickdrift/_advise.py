@@ -10,7 +10,7 @@ from typing import Any, Protocol, overload, runtime_checkable
 from kickdrift._advice import Advice, Engine, SystemAdvice, Time
 from kickdrift._errors import KickdriftError, known
 from kickdrift._numbers import Exact
-from kickdrift._periods import advise_periods, listed
+from kickdrift._periods import advise_archive, advise_periods, listed
 from kickdrift._system import System
 
 
@@ -96,7 +96,8 @@ def advise(
         ones are on the slower clocks. A typical ``"fast"`` one has a name, as ``"protein,h-bonds"`` or
         ``"water,rigid"``. Without the fastest period nothing is called safe. Texts without a unit are plain numbers,
         where all times are. Or a molecule: a :class:`System`, the path of a system file, OpenMM's ``Simulation`` or
-        ``System``, ASE's ``Atoms``, an instance of LAMMPS, which is asked for :meth:`System.advise`.
+        ``System``, ASE's ``Atoms``, an instance of LAMMPS, which is asked for :meth:`System.advise`; or the path of an archive
+        ``FILE.npz`` with ``fast``, ``slow`` (mass-weighted, 1/ps²), ``masses`` and ``positions``.
     steps : sequence of Time, or a sequence of such
         A scheme, from the innermost to the outermost step, fs; or several schemes. For OpenMM's ``System`` also
         a mapping of force groups to steps.
@@ -147,6 +148,10 @@ def advise(
     >>> kd.advise(["10fs", "40fs"], engine=gromacs).engine["rewritten"]
     ['mts-level2-factor = 6', 'nstlog = 1020', 'nstenergy = 1020', 'nstcalcenergy = 102']
     """
+    if is_path(periods, ".npz"):
+        known(made, advise, elsewhere=_OF_ENGINES)
+        scales = (band, length, friction, constraints, hmr)
+        return advise_archive(periods, listed(steps), engine, scales, levers=levers, harmonic=harmonic)
     found, rest = molecule(periods, steps, made)
     if found is not None:
         for field, value in {"bonds": bonds, "on": on, "all_modes": all_modes or None}.items():
@@ -181,14 +186,19 @@ def advise(
 #: Whose objects are systems, each read by the module of this name; and what keywords are that :func:`advise` does not
 #: name.
 _ENGINES = ("ase", "lammps", "openmm")
-_OF_ENGINES = "is for a system of OpenMM, ASE or LAMMPS"
+_OF_ENGINES = "is for a system of OpenMM, ASE or LAMMPS; periods are a mapping, as {'OH': '10fs', 'slow': '40fs'}"
+
+
+def is_path(given: Any, ending: str) -> bool:
+    """Whether this is the path of a file with such an ending."""
+    return isinstance(given, str | PathLike) and fspath(given).endswith(ending)
 
 
 def molecule(
     given: Any, steps: str | Sequence[Any] | Mapping[int, Any], made: Mapping[str, Any]
 ) -> tuple[Advisable | None, str | Sequence[Any]]:
     """The system that this is or makes, None where it is periods; and the schemes asked about beside its own."""
-    is_file = isinstance(given, str | PathLike) and fspath(given).endswith((".json", ".npz"))
+    is_file = is_path(given, ".json")
     if is_file or isinstance(given, Advisable):
         known(made, advise, elsewhere=_OF_ENGINES)
         return System.read(given) if is_file else given, listed(steps)

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from os import PathLike, fspath
+from os.path import isfile
+from pathlib import Path
 from typing import Any, TypeAlias
 
-from kickdrift._advice import Advice, Engine, Time
+from kickdrift._advice import Advice, Engine, SystemAdvice, Time
 from kickdrift._document import Asked
 from kickdrift._errors import KickdriftError, shown
 from kickdrift._files import text_of
@@ -37,6 +39,8 @@ def advise_periods(
     named = periods.items() if isinstance(periods, Mapping) else ((None, value) for value in alone)
     given: dict[str, list[str]] = {"period": [], "bond": [], "on": []}
     for name, value in named:
+        if isinstance(value, PathLike) or (name is None and isinstance(value, str) and isfile(value)):
+            raise KickdriftError("periods", shown(value), "is a file: give an engine's input as engine=, beside periods")
         length = str(_time("periods", value))
         given["period"].append(length if name is None else f"{_name('periods', name)}={length}")
     bonded, clocks = mapping_of("bonds", bonds or {}, _BONDS), mapping_of("on", on or {}, _CLOCKS)
@@ -46,9 +50,26 @@ def advise_periods(
     return Advice(question.render("json"), question.render("text"), question.render("details"), question)
 
 
+def advise_archive(
+    path: str | PathLike[str],
+    steps: str | Sequence[Any],
+    engine: Engine | None,
+    scales: Scales,
+    *,
+    levers: bool = True,
+    harmonic: bool = False,
+) -> SystemAdvice:
+    """Advice on the Hessians of an archive, whose first scheme is the system's own."""
+    place = Path(path)
+    given: Mapping[str, str | list[str]] = {"file": place.name}
+    question = asked(given, steps, engine, scales, place=str(place.parent), levers=levers, harmonic=harmonic)
+    return SystemAdvice(question.render("json"), question.render("text"), question.render("details"), ())
+
+
 #: What to give in place of what is none.
 _BONDS = "give a mapping of names to bonds, as {'OH': 'k=1106kcal/mol/A^2,15.999,1.008'}"
 _CLOCKS = "give a mapping of names to clocks, as {'OH': 1}"
+_STEPS = "give the steps of a scheme, the inner one first, as '0.5fs,4fs' or [0.5, 4]; of one clock '2fs' or [2]"
 _INPUTS = "give the path of an input or its text, or several"
 
 
@@ -123,7 +144,7 @@ def _schemes(steps: str | Sequence[Any]) -> list[str]:
     """Schemes as the program reads them; one scheme may stand alone."""
     if isinstance(steps, str):
         return [written("steps", steps)]
-    parts = items("steps", steps, "give the steps of a scheme, the inner one first, as '0.5fs,4fs' or [0.5, 4]")
+    parts = items("steps", steps, _STEPS)
     several = bool(parts) and isinstance(parts[0], list | tuple)
     schemes = parts if several else [parts] if parts else []
     return [",".join(str(_time("steps", step)) for step in scheme) for scheme in schemes]

@@ -38,13 +38,29 @@ impl Answer {
     /// The document as json, csv, latex or text, or a text with all "details".
     fn render(&self, form: &str) -> PyResult<String> {
         if form == "details" {
-            return self.0.clone().detailed().render(Format::Text).map_err(|error| raised(&error));
+            let text = self.0.clone().detailed().render(Format::Text);
+            return text.map(|text| in_python(&text)).map_err(|error| raised(&error));
         }
         let format = Format::DOCUMENT.into_iter().find(|format| format.name() == form);
         let format =
             format.ok_or_else(|| raised(&Error::input("form", form, "is json, csv, latex or text")))?;
-        self.0.clone().below_answer(MORE).render(format).map_err(|error| raised(&error))
+        let text = self.0.clone().below_answer(MORE).render(format).map_err(|error| raised(&error))?;
+        Ok(if format == Format::Text { in_python(&text) } else { text })
     }
+}
+
+/// Flags that a text names, and the keywords that stand for them.
+const KEYWORDS: [(&str, &str); 5] = [
+    ("--harmonic", "harmonic=True"),
+    ("--constraints h-bonds", "constraints=\"h-bonds\""),
+    ("--constraints OH", "constraints=\"OH\""),
+    ("--on angle=1", "on={\"angle\": 1}"),
+    ("add --hmr", "give hmr"),
+];
+
+/// A text that tells a shell what to type, for Python.
+fn in_python(text: &str) -> String {
+    KEYWORDS.iter().fold(text.to_string(), |text, (flag, keyword)| text.replace(flag, keyword))
 }
 
 /// A field of a question: its text, or the texts of its parts.

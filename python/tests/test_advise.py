@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import signal
 import subprocess
 import sys
@@ -166,3 +167,31 @@ made.save(sys.argv[1])
     assert kd.System.read(tmp_path / "system.json").decide().to_json() == before
     assert run("whole") == 0
     assert kd.System.read(tmp_path / "system.json").decide().to_json() == before
+
+
+def test_slips_are_told_what_to_give(tmp_path: Path) -> None:
+    """A file of an engine in place of periods was an unknown period, a step alone was told of two."""
+    path = tmp_path / "md.mdp"
+    path.write_text(GROMACS)
+    for given, steps, remedy in [
+        (str(path), "2fs", "give an engine's input as engine="),
+        (path, "2fs", "give an engine's input as engine="),
+        (TWO, 2, "of one clock '2fs' or [2]"),
+    ]:
+        with pytest.raises(kd.KickdriftError, match=re.escape(remedy)):
+            kd.advise(given, steps=steps)
+    with pytest.raises(kd.KickdriftError, match="periods are a mapping, as"):
+        kd.advise(OH="10fs", steps="2fs")
+
+
+def test_an_archive_is_advised_about_as_the_program_does(program: Callable[..., str]) -> None:
+    path = REPOSITORY / "data" / "hessians" / "water4.npz"
+    advice = kd.advise(path, steps="0.5fs,4fs", levers=False)
+    flags = [str(path), "--steps=0.5fs,4fs", "--no-levers", "--format", "json"]
+    assert advice.to_json() == program("advise", *flags)
+    assert advice.safe is not None and advice.safe < 4
+
+
+def test_keywords_stand_where_the_program_names_flags() -> None:
+    text = str(kd.advise(["10fs"], steps="2fs"))
+    assert "say harmonic=True" in text and "--harmonic" not in text

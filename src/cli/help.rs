@@ -66,6 +66,11 @@ pub fn explained(program: Command) -> Command {
     })
 }
 
+/// The examples of a command.
+pub fn examples(name: &str) -> &'static [&'static str] {
+    PAGES.iter().find(|(known, ..)| *known == name).map_or(&[], |(_, examples, _)| examples)
+}
+
 fn negative_numbers(command: Command) -> Command {
     command
         .mut_args(|own| if own.get_action().takes_values() { own.allow_negative_numbers(true) } else { own })

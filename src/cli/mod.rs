@@ -164,14 +164,15 @@ pub fn main(is_stdout_closed: bool) -> ExitCode {
 pub fn program(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     // Without it the next run in the same folder tidies up.
     let _ = tidy_up_when_stopped();
-    let cli = match parsed(arguments) {
+    let arguments: Vec<OsString> = arguments.into_iter().collect();
+    let cli = match parsed(arguments.iter().cloned()) {
         Ok(cli) => cli,
         Err(error) if matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) => {
             let text = format!("{}\n", error.to_string().trim_end());
             return write_output(None, screen::shown(&text, screen::Colour::Never).as_bytes())
                 .map_or_else(|error| failure(&error.to_string()), |()| 0);
         }
-        Err(error) => return failure(&usage::explained(&error, &whole()).to_string()),
+        Err(error) => return failure(&usage::explained(&error, &whole(), &arguments).to_string()),
     };
     match run(&cli) {
         Ok(code) => code,

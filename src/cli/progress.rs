@@ -31,7 +31,7 @@ pub fn announce(quiet: bool, work: &str, seconds: f64) {
     if seconds > 1.0 && !quiet && stderr().is_terminal() {
         let work = visible(work).replace('\n', " ");
         eprintln!("kickdrift: {work}: some {seconds:.0} s of one core");
-        EXPECTED_SECONDS.fetch_add(seconds as u64, Ordering::Relaxed);
+        EXPECTED_SECONDS.fetch_add(seconds.round() as u64, Ordering::Relaxed);
     }
 }
 

@@ -30,6 +30,14 @@ impl Args {
         }
         let scene = Scene::from_json(&self.text()?)?;
         self.paper.check(scene.want.iter().any(|want| want.product.is_figure()))?;
+        let extension = common.output.as_ref().and_then(|path| path.extension()?.to_str());
+        if let (Some(path), Some(_)) = (&common.output, extension.and_then(Format::of_extension)) {
+            let remedy = format!(
+                "a scene makes several files: name a folder for them, as {}",
+                path.with_extension("").display()
+            );
+            return Err(Error::input("output", path.display(), remedy));
+        }
         let folder = Folder::make(&common.output.clone().unwrap_or_else(|| self.default_folder()))?;
         let mut products = scene.products(Some(folder.path()), &common.work())?;
         // All products before the first file: an error leaves nothing behind.

@@ -35,7 +35,7 @@ impl Args {
         let text = file::text(&self.file, file::LONGEST).map_err(|cause| {
             Error::io(&file, format!("cannot read it ({cause}): name a JSON document that kickdrift wrote"))
         })?;
-        let checked = CheckedDocument::read(&text)?;
+        let checked = CheckedDocument::read(&text).map_err(|error| self.no_document(error))?;
         let options = Options { budget: common.budget, all: self.all, folder: self.folder() };
         let work = checked.work(&options).map_err(|error| self.elsewhere(error))?;
         announce(common.quiet, &format!("{file}, about {work} kicks"), work as f64 / KICKS_A_SECOND);
@@ -51,6 +51,22 @@ impl Args {
             return Err(failed(first, &outcome, name, &file.to_string()));
         }
         common.write(&outcome.document(&file.to_string(), name), Format::Text)
+    }
+
+    /// Another form of an answer, and a proof, have no document that could be read.
+    fn no_document(&self, error: Error) -> Error {
+        let extension = self.file.extension().and_then(std::ffi::OsStr::to_str);
+        let remedy = match extension {
+            Some("v") => "is a proof for Coq: proofs/tools/certificate.sh checks it".into(),
+            Some(extension) if Format::of_extension(extension).is_some_and(|form| form != Format::Json) => {
+                format!(
+                    "has no document in it: let the command that made it write {} too, and verify that",
+                    self.file.with_extension("json").display()
+                )
+            }
+            _ => return error,
+        };
+        Error::io(self.file.display(), remedy)
     }
 
     /// A file that is not beside the document may be elsewhere.

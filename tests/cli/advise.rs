@@ -121,7 +121,7 @@ fn what_is_missing_is_named_with_a_remedy() {
         ),
         ("advise data/scenes/bar-avi.json", "scheme = avi: advice has no place in a scheme of local steps"),
         ("advise data/scenes/water4.json --steps 0.7fs,4fs", "a multiple of the inner one"),
-        ("advise data/scenes/water4.json --period 10fs", "cannot be used with"),
+        ("advise data/scenes/water4.json --period 10fs", "stands for Hessians in place of periods"),
         (
             "advise data/scenes/water4.json --constraints h-bonds",
             "potentials[0].force missing: give the force of each potential",
@@ -150,9 +150,10 @@ fn what_is_missing_is_named_with_a_remedy() {
 #[test]
 fn an_outer_step_that_is_no_multiple_is_named_with_those_that_are() {
     let text = stdout(&words("advise --period OH=10fs --period 40fs --steps 0.5fs,4.2fs", &[]));
-    let said = "4.2 fs is no multiple of 0.5 fs, so no engine runs it; 4 fs (8) and 4.5 fs (9) are";
-    assert!(text.starts_with("4.2 fs") && text.lines().next().unwrap().contains(said), "{text}");
-    assert!(text.contains(&format!("advice: {said}")) && !text.contains("do not use"), "{text}");
+    let said =
+        "no multiple of 0.5 fs, so no engine runs it: ask for 4 fs (8 of 0.5 fs) or 4.5 fs (9 of 0.5 fs)";
+    assert!(text.starts_with(&format!("4.2 fs  {said}; asynchronous, as it stands, it is stable")), "{text}");
+    assert!(text.contains(&format!("advice: 4.2 fs is {said}")) && !text.contains("do not use"), "{text}");
 }
 
 #[test]
@@ -342,10 +343,8 @@ fn without_a_fast_period_the_answer_asks_for_one_and_offers_typical_ones() {
         "advise --period OH=10fs --period angle=19.45fs --constraints OH --on angle=1 --steps 2fs,4fs",
         &[],
     ));
-    assert!(
-        text.starts_with("4 fs    safe where the forces of the clock without a period have periods above 25"),
-        "{text}"
-    );
+    assert!(text.starts_with("4 fs    safe if no period of the forces every 4 fs is below 25"), "{text}");
+    assert!(text.contains("give the shortest period of the forces every 4 fs, which has none yet"), "{text}");
 }
 
 #[test]
@@ -356,7 +355,7 @@ fn a_single_clock_is_advised_below_its_own_turn_unless_its_bonds_are_harmonic() 
         "1 fs    safe",
         "2 fs    stable; unstable from 2.7322 fs on, margin 0.732 fs; caution: not below T/6.28 = 1.36 fs",
         "advice: keep the step below 1.36 fs = T/6.28 of OH (T = 8.584 fs), that is h w <= 1",
-        "1 fs with flexible O-H, 2 fs with them held, 4 fs with heavy hydrogens besides",
+        "1 fs with flexible O-H, 2 fs with O-H held, 4 fs with heavy hydrogens too",
         "T/3.63 = 2.366 fs, T/4.44 = 1.932 fs, T/5.34 = 1.606 fs, T/6.28 = 1.366 fs",
     ] {
         assert!(text.contains(said), "{said}: {text}");
@@ -516,6 +515,43 @@ fn ring_modes_are_named_and_nothing_is_called_safe_of_ring_polymers() {
         desk.run(&words("advise --engine input.xml --period OH=10fs --output d.json", &[]));
         assert_eq!(desk.run(&["verify", "d.json"]).code, Some(0));
     }
+}
+
+/// A period without a name is called by its length, one clock has no outer steps, a bound has three digits.
+#[test]
+fn what_has_no_name_is_called_by_its_period() {
+    let text = stdout(&words("advise --period 10fs --steps 2fs --steps 4fs", &[]));
+    for said in [
+        "T/6.28 of the period of 10 fs, that is h w <= 1: beyond it bonds",
+        "limit: the period of 10 fs: T/6.28",
+        "1.65 at 2 fs, 1.33 at the advised 1.59 fs for the period of 10 fs",
+        "tenfold in 1.64 steps = 6.56 fs",
+        "longer: nothing that was looked at lets the step grow; forces that are slow may have",
+    ] {
+        assert!(text.contains(said), "{said}: {text}");
+    }
+    assert!(!text.contains("10fs (T"), "{text}");
+    let text = stdout(&words("advise --period OH=10fs --period 40fs --steps 0.48fs,4.8fs", &["--no-levers"]));
+    // 38.7593.
+    assert!(text.contains("(a friction above 38.8/ps masks it)"), "{text}");
+}
+
+/// Steps of four digits had no colour and hung beneath two spaces.
+#[test]
+fn a_long_step_stands_apart_from_its_verdict() {
+    let line =
+        "advise --period bead=1ps --period other=1.0733ps --steps 310fs,2480fs --no-levers --color always";
+    assert!(stdout(&words(line, &[])).starts_with("2480 fs  \u{1b}[1;31munstable\u{1b}[0m, within"));
+}
+
+/// grompp's refusal stood beneath "write" and once more as a note.
+#[test]
+fn why_nothing_is_written_is_said_once() {
+    let desk = Desk::new();
+    desk.write("sd.mdp", "integrator = sd\ndt = 0.0005\nmts = yes\nmts-level2-factor = 10\n");
+    let text =
+        desk.run(&words("advise --engine sd.mdp --period OH=10fs --period 40fs --no-levers", &[])).stdout;
+    assert_eq!(text.matches("mts is for integrator = md").count(), 1, "{text}");
 }
 
 /// A friction of 0.05/ps masks it, one of 3/ps does not: "above" is said only where all larger ones are

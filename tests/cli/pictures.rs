@@ -53,13 +53,25 @@ fn a_judgement_beside_a_step_is_explained_below() {
     }
 }
 
+/// A dashed line at 3 fs stood in a row in which 0.9 fs is proven.
+#[test]
+fn no_step_is_recommended_in_a_row_where_it_is_not_proven() {
+    for (steps, said) in [("0.5fs,4fs", 1), ("0.5fs,4.8fs", 0)] {
+        let svg = drawn(&[&PERIODS[..], &["--steps", steps, "--output", "a.svg"]].concat());
+        assert_eq!(says(&svg, "recommended"), said, "{steps}");
+    }
+}
+
 /// Fifteen ratios within 2 % of each other were fifteen rows.
 #[test]
 fn levers_that_reach_as_far_are_one_row() {
     let args = [&PERIODS[..], &["--steps", "0.5fs,4fs", "--levers", "a.svg"]].concat();
     let svg = drawn(&args);
-    let rows =
-        ["MOLLY, equilibrium or implicit-explicit", "ratio 5 or 9 others", "MOLLY, long average (none)"];
+    let rows = [
+        "equilibrium MOLLY or implicit-explicit",
+        "ratio 5 or 9 others",
+        "long-average MOLLY (no unstable step)",
+    ];
     assert_eq!(rows.map(|words| says(&svg, words)), [1, 1, 1]);
     assert_eq!(says(&svg, "ratio 9"), 0);
 }

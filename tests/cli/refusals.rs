@@ -328,7 +328,7 @@ fn an_output_that_no_file_can_be_is_refused_before_the_work() {
     // Half an hour, if it began.
     let work = "bands --lambda1 pi^2 --lambda2 pi^2/25 --h1-range 0..2/pi --h2-range 0..7/2 --sectors 20000000 --output";
     for (output, remedy) in
-        [("folder", "name a file in it"), ("none/bands.json", "create the directory first")]
+        [("folder", "name a file in it"), ("none/bands.json", "there is no folder none: make it first")]
     {
         let ended = desk.run(&words(&format!("{work} {output}")));
         assert_eq!(ended.code, Some(2), "{output}");

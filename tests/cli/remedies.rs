@@ -68,6 +68,58 @@ fn kicks_beyond_both_limits_name_what_exact_numbers_cost() {
     assert!(code == Some(2) && message.contains("the exact tier"), "{message}");
 }
 
+/// What is typed before any help is read: each message names what to type in its place.
+#[test]
+fn slips_of_a_first_command_are_told_what_to_type() {
+    let desk = Desk::new();
+    desk.write("md.mdp", "dt = 0.002\n");
+    desk.write("notes.md", "import openmm\n");
+    desk.write("curves.csv", "a,b\n");
+    desk.write("proof.v", "Theorem\n");
+    for (line, said) in [
+        (
+            "advise --period OH=10fs --period 40fs --steps 0.5fs 4fs",
+            "argument = 4fs: join the values of a list by commas, as --steps 0.5fs,4fs",
+        ),
+        ("advise --period OH=10fs slow=40fs --steps 0.5fs,4fs", "as --period OH=10fs --period slow=40fs"),
+        ("advise md.mdp --period OH=10fs --steps 2fs", "file = md.mdp: stands for Hessians"),
+        ("advise --period OH=10fs,slow=40fs --steps 0.5fs,4fs", "is a list: give each period by itself"),
+        ("advise --bond OH:450kcal/mol/A^2,15.999,1.008 --steps 1fs", "write k=450kcal/mol/A^2 where"),
+        (
+            "advise --bond CH:K=340kcal/mol/A^2,12.011,1.008 --hmr 13 --steps 1fs",
+            "leave its heavy atom 0.019 amu, less than a hydrogen has",
+        ),
+        ("advise --engine notes.md --period OH=10fs", "names OpenMM and makes no integrator"),
+        ("advise --engine curves.csv --period OH=10fs", "engine = a text that begins with \"a,b\""),
+        ("advise --period 10fs --steps 1fs -o a.json", "flag = -o: unknown; did you mean --output?"),
+        (
+            "verdict 1 1/25 1/2 3",
+            "argument = 1: follows no flag: --help lists all; for example kickdrift verdict --l",
+        ),
+        (
+            "verdict --lambda1 1 --lambda2 1/25 --h1 0.5fs --h2 3",
+            "h1 = 0.5fs: has a unit, and numbers here have none",
+        ),
+        ("advise --period 10fs --steps 1fs --friction 1ps", "write a number such as 10/ps"),
+        ("verify", "add <FILE>; for example kickdrift verify data/"),
+        ("aperture", "add --bond <NAME:SHAPE,M1,M2>; for example kickdrift aperture --bond OH:"),
+        ("map --lambda1 1 --lambda2 1 --color growth", "; --colour says what the colours of the figure show"),
+        ("verify curves.csv", "let the command that made it write curves.json too"),
+        ("verify proof.v", "proof.v: is a proof for Coq: proofs/tools/certificate.sh checks it"),
+    ] {
+        let (code, message) = run(&desk, &parts(line));
+        assert!(code == Some(2) && message.contains(said), "{line}: no {said:?} in {message}");
+    }
+    let small = concat!(env!("CARGO_MANIFEST_DIR"), "/data/scenes/small.json");
+    let ended = desk.run(&["run", small, "--output", "small.svg"]);
+    assert!(
+        ended.code == Some(2) && ended.stderr.contains("name a folder for them, as small"),
+        "{}",
+        ended.stderr
+    );
+    assert!(!desk.path().join("small.svg").exists());
+}
+
 /// What is refused, a part of the message, and what it says to do instead.
 const REMEDIES: &[(&str, &str, &str)] = &[
     ("verdict --lambda1 1 --h1 1 --h2 1", "add --lambda2", "verdict --lambda1 1 --lambda2 1 --h1 1 --h2 1"),

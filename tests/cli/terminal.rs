@@ -25,14 +25,31 @@ fn no_line_is_wider_than_the_terminal_and_no_word_is_broken() {
             let shown = at_a_terminal(&line, Some(columns), &[("NO_COLOR", "1")]).replace('\r', "");
             let wide: Vec<&str> = shown.lines().filter(|line| line.chars().count() > columns).collect();
             assert!(wide.is_empty(), "{columns} {line}: {wide:#?}");
-            let note = "left out here: ; a wider terminal or --format json has them";
+            let note = "at most 8 digits here; left out here: ; a wider terminal or --format json has them";
             let is_new =
                 |word: &&str| !known.contains(word) && !note.contains(word.trim_end_matches([';', ',']));
             let broken: Vec<&str> = shown.split_whitespace().filter(is_new).collect();
             // Rules of tables, and names of columns in the note, which end in a mark.
             let is_mark = |word: &str| word.trim_matches('-').is_empty() || word.ends_with([',', ';']);
-            assert!(broken.iter().all(|word| is_mark(word)), "{columns} {line}: {broken:#?}");
+            // Enclosures with fewer digits.
+            let is_shorter =
+                |word: &str| word.ends_with(')') && known.iter().any(|known| known.starts_with(&word[..5]));
+            assert!(
+                broken.iter().all(|word| is_mark(word) || is_shorter(word)),
+                "{columns} {line}: {broken:#?}"
+            );
         }
+    }
+}
+
+/// The upper edges were left out, for the sake of digits and of a column without a value.
+#[test]
+fn tongues_keep_both_edges_at_a_narrow_terminal() {
+    for line in ["tongues --ratio 7/3 --rho 1/25", "tongues --ratio 2.333 --rho 1/25 --m 3"] {
+        let shown =
+            at_a_terminal(&format!("{line} --quiet"), Some(80), &[("NO_COLOR", "1")]).replace('\r', "");
+        let head = shown.lines().find(|line| line.trim_start().starts_with("p ")).unwrap();
+        assert!(head.contains("lower edge") && head.contains("upper edge"), "{shown}");
     }
 }
 

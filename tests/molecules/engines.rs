@@ -430,7 +430,7 @@ fn an_outer_step_that_no_engine_runs_is_answered_by_those_beside_it() {
     };
     assert_eq!(
         beside(ratio(1, 2), ratio(21, 5)).unwrap(),
-        "4.2 fs is no multiple of 0.5 fs, so no engine runs it; 4 fs (8) and 4.5 fs (9) are"
+        "4.2 fs is no multiple of 0.5 fs, so no engine runs it: ask for 4 fs (8 of 0.5 fs) or 4.5 fs (9 of 0.5 fs)"
     );
     assert!(beside(ratio(1, 2), ratio(4, 1)).is_none());
 }

@@ -86,13 +86,13 @@ pub fn published(steps: usize) -> &'static [Caution] {
 }
 
 /// What runs of our own show of T/4, T/3 and T/2, for people: data/published/bonds.json.
-pub const SEEN: &str = "27 flexible waters in OpenMM at 298 K, bonds and angles at 0.5 fs, by the period that neighbours give: energy drifts at T/4 by 0.5 kT an \
+pub const SEEN: &str = "27 flexible waters in OpenMM at 298 K, bonds and angles at 0.5 fs, by the period that neighbours give: energy drifts at T/4 by 0.5 kT per \
      atom and ns at most, hardly beyond the scatter of 0.2; at T/3 by 3 where bonds are harmonic and by 15 where they are not, which a friction of 1/ps hides; at \
      T/2 all is hot within 0.5 ps, whatever the friction";
 
 /// What practice arrived at, for people.
 pub const PRACTICE: &str =
-    "practice arrived there: 1 fs with flexible O-H, 2 fs with them held, 4 fs with heavy hydrogens besides";
+    "as in practice: 1 fs with flexible O-H, 2 fs with O-H held, 4 fs with heavy hydrogens too";
 
 /// GROMACS's own check of the innermost step (grompp.cpp, check_bonds_timestep): T/5 it warns of, T/10 it
 /// notes.

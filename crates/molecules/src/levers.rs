@@ -44,9 +44,9 @@ pub const RATIOS: std::ops::RangeInclusive<u64> = 2..=16;
 
 /// Other methods, by name.
 pub const SOLVED: [(&str, Way); 4] = [
-    ("MOLLY, short average", Way::Molly(Trigonometric::Short)),
-    ("MOLLY, linear average", Way::Molly(Trigonometric::Linear)),
-    ("MOLLY, long average", Way::Molly(Trigonometric::Long)),
+    ("short-average MOLLY", Way::Molly(Trigonometric::Short)),
+    ("linear-average MOLLY", Way::Molly(Trigonometric::Linear)),
+    ("long-average MOLLY", Way::Molly(Trigonometric::Long)),
     ("implicit-explicit", Way::ImplicitExplicit),
 ];
 
@@ -284,7 +284,7 @@ impl Question {
             step: step.clone(),
             ..Lever::new(name.into(), way)
         };
-        all.rows.push(free("MOLLY, equilibrium", Way::Equilibrium, caps.part_of(&step, inner)));
+        all.rows.push(free("equilibrium MOLLY", Way::Equilibrium, caps.part_of(&step, inner)));
         all.rows.push(free("implicit-explicit", Way::ImplicitExplicit, None));
     }
 

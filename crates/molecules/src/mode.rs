@@ -127,6 +127,12 @@ impl Mode {
         } else if let Some(known) = Typical::of(name, value) {
             let period = format!("{}fs", known.period);
             (Origin::Typical(known), unit::measured("period", &period, Dimension::Time)?)
+        } else if value.contains(',') && value.trim().starts_with(|c: char| c.is_ascii_digit()) {
+            return Err(Error::input(
+                "period",
+                text.trim(),
+                "is a list: give each period by itself, as OH=10fs and slow=40fs",
+            ));
         } else if value.trim().starts_with(|c: char| c.is_ascii_alphabetic())
             && !value.trim().starts_with("pi")
         {
@@ -170,6 +176,12 @@ impl Mode {
         };
         let (name, rest) = text.split_once(':').ok_or_else(form)?;
         let parts: Vec<&str> = rest.split(',').map(str::trim).collect();
+        if let Some(constant) = parts.first().filter(|part| !part.contains('=')) {
+            let remedy = format!(
+                "write k={constant} where E = k x^2/2 (GROMACS, OpenMM), K={constant} where E = K x^2 (Amber, CHARMM)"
+            );
+            return Err(Error::input(&format!("bond {name}"), constant, remedy));
+        }
         let count = parts.iter().take_while(|part| part.contains('=')).count();
         let (constants, rest) = parts.split_at(count);
         let [m1, m2, hydrogens @ ..] = rest else { return Err(form()) };
@@ -305,9 +317,16 @@ fn heavier(bond: &str, masses: [Rational; 2], hydrogen: &Rational, count: u8) ->
     let (h, heavy) = if light[0] { (0, 1) } else { (1, 0) };
     let gain = (hydrogen - &masses[h]) * Rational::from_integer(count.into());
     let left = &masses[heavy] - gain;
-    if left <= Rational::default() {
-        let remedy =
-            format!("heavy hydrogens of {} amu would leave its heavy atom no mass", unit::decimal(hydrogen));
+    if left < masses[h] {
+        let left = if left > Rational::default() {
+            format!("{} amu", unit::decimal(&left))
+        } else {
+            "no mass".into()
+        };
+        let remedy = format!(
+            "hydrogens of {} amu would leave its heavy atom {left}, less than a hydrogen has: take lighter ones",
+            unit::decimal(hydrogen)
+        );
         return Err(Error::input(&format!("bond {bond}"), unit::decimal(&masses[heavy]), remedy));
     }
     let mut all = masses;

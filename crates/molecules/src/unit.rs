@@ -228,7 +228,11 @@ pub fn signed(field: &str, text: &str, dimension: Dimension) -> Result<Laurent> 
         return Err(Error::input(field, text.trim(), remedy));
     };
     if unit.dimension != dimension {
-        let remedy = format!("has another unit than is asked for ({})", dimension.words());
+        let remedy = format!(
+            "has another unit than is asked for: write a number such as 10{} ({})",
+            dimension.usual(),
+            dimension.words()
+        );
         return Err(Error::input(field, text.trim(), remedy));
     }
     let number = parse(field, &number).map_err(|error| Error::input(field, text.trim(), error.remedy()))?;

@@ -78,7 +78,7 @@ def at_rest(
                 found, smooth = newton(cooled(force, near, held, difference), np.inf)
         except KickdriftError as error:
             if not engine.cuts:
-                remedy = "lead to no minimum: minimize them first, if they are in nm"
+                remedy = "is the lowest where the search from there ended, no minimum: give positions in nm, minimized"
                 raise KickdriftError("positions", error.value, remedy) from error
             remedy = (
                 f"is the least that was found, no minimum: forces jump at a cutoff; take {engine.smoother}; "

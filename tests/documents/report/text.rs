@@ -29,6 +29,25 @@ Two rows.
 }
 
 #[test]
+fn a_narrow_table_loses_digits_and_empty_columns_before_others() {
+    let columns = ["lower", "exact", "upper"].map(Column::new).to_vec();
+    let mut table = Table::new("t", "", columns);
+    let edge = |x: f64| Cell::Enclosure { lo: x, hi: x + 2e-15 };
+    table.push(vec![edge(0.190_516_204_998_483_89), Cell::Missing, edge(0.190_742_711_064_138_47)]);
+    let shorter = "       lower  exact         upper\n------------  -----  ------------\n0.1905162(1)      -  0.1907427(1)\n";
+    let narrow = document(&table, Some(40));
+    assert_eq!(
+        narrow,
+        format!("{shorter}\nat most 8 digits here; a wider terminal or --format json has them\n")
+    );
+    let narrow = document(&table, Some(30));
+    assert!(
+        narrow.contains("lower") && narrow.contains("upper") && narrow.contains("left out here: exact;"),
+        "{narrow}"
+    );
+}
+
+#[test]
 fn tables_fold_headings_and_name_the_columns_left_out() {
     let columns = vec![
         Column::new("mode").left(),

@@ -28,8 +28,8 @@ fn what_lets_the_step_grow_of_periods_of_10_and_40_fs() {
     assert_eq!(first("ratio 4"), "4.58797");
     assert_eq!(first("ratio 10"), "4.68754");
     let four = |name: &str| format!("{:.4}", named(&all, name).first.unwrap().0);
-    assert_eq!(["MOLLY, short average", "MOLLY, linear average"].map(four), ["4.8703", "4.9470"]);
-    let long = named(&all, "MOLLY, long average");
+    assert_eq!(["short-average MOLLY", "linear-average MOLLY"].map(four), ["4.8703", "4.9470"]);
+    let long = named(&all, "long-average MOLLY");
     assert!(long.is_free && long.first.is_none());
     // Half the shortest period: beyond it two modes might meet.
     assert_eq!(six(long.band_edge.unwrap()), "4.75000");

@@ -330,19 +330,19 @@ const SAID: [(&str, &str); 16] = [
     ("structure a.psf\ntimestep 1\nif {$hold} {\n rigidBonds all\n}\n", "rigidBonds stands in a condition"),
     (
         "dt = 0.002\nmts = yes\nmts-level2-factor = 3\ncoulombtype = PME\n",
-        "no multiple of 3 is nstcalcenergy = 100 (the default)",
+        "nstcalcenergy = 100 (the default)",
     ),
     (
         "dt = 0.002\nmts = yes\nmts-level2-factor = 3\nmts-level2-forces = longrange-nonbonded nonbonded\nnstenergy = 9\nnstlog = 9\n",
-        "no multiple of 3 is nstlist = 10 (the default)",
+        "nstlist = 10 (the default)",
     ),
     (
         "structure a.psf\nPME yes\ntimestep 1\nfullElectFrequency 3\n",
-        "NAMD refuses this text as it stands: no multiple of 3 is stepspercycle = 20 (the default)",
+        "NAMD refuses this text as it stands: stepspercycle = 20 (the default)",
     ),
     (
         "structure a.psf\nPME yes\ntimestep 1\nfullElectFrequency 4\noutputEnergies 10\n",
-        "no multiple of 4 is outputEnergies = 10",
+        "outputEnergies = 10",
     ),
     (
         "structure a.psf\nPME yes\ntimestep 1\nfullElectFrequency 2\nnonbondedFreq 4\n",
@@ -362,7 +362,7 @@ const SAID: [(&str, &str); 16] = [
     ("dt = 0.0005\nmts = yes\nmts-level2-factor = 4\n", "no force is on the second level"),
     (
         "dt = 0.0005\nmts = yes\nmts-level2-factor = 4\nnstlog = 10\n",
-        "grompp refuses this text as it stands: no multiple of 4 is nstlog = 10",
+        "grompp refuses this text as it stands: nstlog = 10 is no multiple of 4",
     ),
     ("dt = 0.002\nconstraints = all-angles\nnstlist = 10\n", "angles that constraints hold"),
     ("structure a.psf\nPME yes\ntimestep 2\nrigidBonds water\nfullElectFrequency 2\n", "water alone"),

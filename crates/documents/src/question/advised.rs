@@ -74,6 +74,9 @@ pub enum Safe {
 const KICKS_A_SECOND: f64 = 5e6;
 const PRODUCTS_A_SECOND: f64 = 1e10;
 
+/// The step from which on a hot bond is lost, by both kinds of schemes: seconds, as measured of a Morse bond.
+const HOT_BOND_SECONDS: f64 = 36.0;
+
 /// Levers of a molecule cost about as much as so many schemes.
 const LEVERS: usize = 10;
 
@@ -91,6 +94,8 @@ impl Question for Advised {
             let mut question = question.with_beads(self.beads.clone()).in_units_of(self.unit());
             if self.modes.iter().flatten().any(|mode| mode.shape.is_some()) {
                 let (temperature, seen) = self.heat()?;
+                let shapes = self.modes.iter().flatten().filter(|mode| mode.shape.is_some()).count();
+                work.announce("how hot the bonds may be", shapes as f64 * HOT_BOND_SECONDS);
                 question = question.at_temperature(&temperature, &seen)?;
             } else if self.temperature.is_some() || self.bonds.is_some() {
                 let remedy = "are about bonds of a known shape, and none is given: write one, as OH:morse:D=485.72kJ/mol,a=22.87/nm,15.999,1.008";
@@ -195,7 +200,12 @@ impl Advised {
         let held = || Some("h-bonds".to_string());
         let mut ways: Vec<_> = masses.iter().map(heavy).collect();
         ways.push(("h-bonds held".into(), Way::Held, None, held()));
-        ways.push((format!("both, {} amu", masses[0]), Way::HeldAndHeavy, Some(masses[0].clone()), held()));
+        ways.push((
+            format!("h-bonds held and hydrogens of {} amu", masses[0]),
+            Way::HeldAndHeavy,
+            Some(masses[0].clone()),
+            held(),
+        ));
         for (name, way, mass, constraints) in ways {
             if mass.is_some() && given("hydrogen_mass") || constraints.is_some() && given("constraints") {
                 all.left_out.push(format!("{name}: the file says it"));
@@ -222,7 +232,7 @@ impl Advised {
             }
         }
         if is_of_two {
-            let why = "MOLLY, equilibrium: Hessians do not say which motions the fast forces leave alone";
+            let why = "equilibrium MOLLY: Hessians do not say which motions the fast forces leave alone";
             all.left_out.push(why.into());
         }
         all.rows.extend(molecule.ratios(scheme, &self.band)?);

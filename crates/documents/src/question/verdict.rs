@@ -148,8 +148,7 @@ pub struct Decided {
 }
 
 const CAPTION: &str = "Stability of one pair of steps";
-const CAPTION_LATEX: &str =
-    "Stability of one pair of steps, $Q$ the propagator over the synchronization period $T = q h_2 = p h_1$";
+const CAPTION_LATEX: &str = "Stability of one pair of steps, $Q$ the propagator over the synchronization period $T = q h_2 = p h_1$, $\\mu$ its larger multiplier";
 
 /// A rational trace is shown unasked where the period has at most so many kicks.
 const SHORT_PERIOD: u64 = 40;
@@ -285,7 +284,15 @@ impl Decided {
         let mut lines = vec![
             self.headline(),
             format!(
-                "  h2/h1        {p}/{q}: {p} fast and {q} slow kicks in the period T = {}",
+                "  h2/h1        {p}/{q}: {} in the period T = {}",
+                if p < q {
+                    format!(
+                        "{p} {} every h1 and {q} every h2",
+                        if *p == BigInt::from(1) { "kick" } else { "kicks" }
+                    )
+                } else {
+                    format!("{p} fast and {q} slow kicks")
+                },
                 self.oscillator.period()
             ),
             format!("  trace        {}", shown(self.growth.trace.to_f64_enclosure())),
@@ -299,7 +306,11 @@ impl Decided {
             let steps = std::f64::consts::LN_10 / (rate.0 * self.oscillator.h2().to_f64());
             // Where the rate or the steps are beyond doubles, nothing can be said of the steps.
             let steps = Some(steps).filter(|steps| steps.is_finite() && *steps > 0.0).map(significant);
-            let tenfold = steps.map_or(String::new(), |steps| format!(": tenfold in {steps} slow steps"));
+            let tenfold = steps.map_or(String::new(), |steps| {
+                // What is called slow is rare, as a rule.
+                let unit = if p < q { "steps h2" } else { "slow steps" };
+                format!(": tenfold in {steps} {unit}")
+            });
             lines.push(format!("  growth rate  {} per unit time{tenfold}", shown(rate)));
         }
         if let Some((m, a, b)) = self.resonance() {
@@ -369,8 +380,14 @@ fn stability(is_stable: bool) -> &'static str {
     if is_stable { "stable" } else { "unstable" }
 }
 
-/// An enclosure as the digits that are certain.
+/// An enclosure as the digits that are certain; a number beyond doubles has one end alone.
 fn shown((lo, hi): (f64, f64)) -> String {
+    if lo == f64::NEG_INFINITY && hi < 0.0 {
+        return format!("below {hi:?}");
+    }
+    if hi == f64::INFINITY && lo > 0.0 {
+        return format!("above {lo:?}");
+    }
     decimal::enclosure(lo, hi).to_string()
 }
 

@@ -309,7 +309,11 @@ impl Drop for Folder {
 pub(super) fn explained(path: &Path, error: Error) -> Error {
     let Some(cause) = error.lost_stream() else { return error };
     let remedy = match cause.kind() {
-        ErrorKind::NotFound => "create the directory first, or name another file",
+        ErrorKind::NotFound => {
+            let folder = path.parent().unwrap_or(Path::new("")).display();
+            let text = format!("there is no folder {folder}: make it first, or name another file");
+            return error.at(path.display()).or(text);
+        }
         ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {
             "name a file in a directory you may write to"
         }

@@ -81,6 +81,10 @@ pub fn lines(own: &Friction) -> Vec<String> {
         own.growth.map_or(String::new(), |(lo, hi)| format!("; ln rho/T = {}", decimal::enclosure(lo, hi)));
     let mut lines = vec![format!("  with friction {}: {radius}{rate}", own.rate)];
     lines.push(match &own.masking {
+        Mask::At(mask) if mask.stays() => {
+            let above = decimal::enclosure(mask.grows, mask.least());
+            format!("  a friction above {above} masks all growth{}", others(mask))
+        }
         Mask::At(mask) => format!("  {} all growth{}", masking(mask, 1.0, ""), others(mask)),
         Mask::NotNeeded => "  nothing grows without friction".into(),
         Mask::Undecided => "  a friction that masks what may grow was not found".into(),
@@ -95,7 +99,7 @@ const NARROW: f64 = 1.01;
 /// and its name.
 pub(crate) fn masking(own: &Masked, unit: f64, name: &str) -> String {
     if own.stays() {
-        let above = decimal::enclosure(unit * own.grows, unit * own.least());
+        let [above, _] = inward(unit * own.least(), 2.0 * unit * own.least());
         return format!("a friction above {above}{name} masks");
     }
     if let [(lo, hi)] = own.ranges[..]

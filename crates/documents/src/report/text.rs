@@ -21,28 +21,55 @@ pub fn quoted(word: &str) -> String {
     }
 }
 
-/// The whole table as lines of text, the caption first. Where it is wider than `most` characters, headings
-/// and words fold, and the last columns are left out and named.
+/// The whole table as lines of text, the caption first. Where it is wider than `most` characters, enclosures
+/// have fewer digits, headings and words fold, and columns are left out and named: those that are empty first,
+/// then the last ones.
 ///
 /// Enclosures show the digits that are certain, see [`decimal::enclosure`]. Widths count characters, so
 /// columns line up for everything but double-width scripts.
 pub fn document(table: &Table, most: Option<usize>) -> String {
     let heads: Vec<String> = table.columns().iter().map(head).collect();
-    let rows: Vec<Vec<String>> = table.rows().iter().map(|row| row.iter().map(shown).collect()).collect();
-    let widths = whole_widths(&heads, &rows);
+    let mut rows = cells(table);
+    let mut widths = whole_widths(&heads, &rows);
     let mut out = String::new();
     if !table.caption().is_empty() {
         out.push_str(table.caption());
         out.push_str("\n\n");
     }
-    if let Some(most) = most.filter(|&most| total(&widths) > most) {
-        put_folded(&mut out, table.columns(), &heads, &rows, most);
+    let Some(most) = most.filter(|&most| total(&widths) > most) else {
+        put_whole(&mut out, table.columns(), &widths, &heads, &rows);
         return out;
+    };
+    let whole = std::mem::replace(&mut rows, cells(&table.shortened(NARROW_DIGITS)));
+    let mut less: Vec<String> = Vec::new();
+    if whole != rows {
+        less.push(format!("at most {NARROW_DIGITS} digits here"));
+        widths = whole_widths(&heads, &rows);
     }
-    for fields in [&heads, &rule(&widths)].into_iter().chain(&rows) {
-        put_line(&mut out, table.columns(), &widths, fields);
+    if total(&widths) > most {
+        let left_out = put_folded(&mut out, table.columns(), &heads, &rows, most);
+        less.extend((!left_out.is_empty()).then(|| format!("left out here: {}", left_out.join(", "))));
+    } else {
+        put_whole(&mut out, table.columns(), &widths, &heads, &rows);
+    }
+    if !less.is_empty() {
+        out.push_str(&format!("\n{}; a wider terminal or --format json has them\n", less.join("; ")));
     }
     out
+}
+
+/// Digits of an enclosure where a table is wider than a terminal.
+const NARROW_DIGITS: u32 = 8;
+
+/// All cells as a person reads them.
+fn cells(table: &Table) -> Vec<Vec<String>> {
+    table.rows().iter().map(|row| row.iter().map(shown).collect()).collect()
+}
+
+fn put_whole(out: &mut String, columns: &[Column], widths: &[usize], heads: &[String], rows: &[Vec<String>]) {
+    for fields in [heads, &rule(widths)].into_iter().chain(rows.iter().map(Vec::as_slice)) {
+        put_line(out, columns, widths, fields);
+    }
 }
 
 /// One cell as a person reads it.
@@ -122,20 +149,35 @@ fn folded_widths(columns: &[Column], heads: &[String], rows: &[Vec<String>], mos
     widths
 }
 
-/// The table in lines of at most so many characters.
-fn put_folded(out: &mut String, columns: &[Column], heads: &[String], rows: &[Vec<String>], most: usize) {
-    let mut widths = folded_widths(columns, heads, rows, most);
-    while widths.len() > 1 && total(&widths) > most {
-        widths.pop();
+/// The table in lines of at most so many characters, and the headings of the columns that are left out.
+fn put_folded(
+    out: &mut String,
+    columns: &[Column],
+    heads: &[String],
+    rows: &[Vec<String>],
+    most: usize,
+) -> Vec<String> {
+    let widths = folded_widths(columns, heads, rows, most);
+    let mut kept: Vec<usize> = (0..heads.len()).collect();
+    let is_empty = |&n: &usize| rows.iter().all(|row| row[n] == shown(&Cell::Missing));
+    while kept.len() > 1 && total(&of(&widths, &kept)) > most {
+        kept.remove(kept.iter().rposition(is_empty).unwrap_or(kept.len() - 1));
     }
-    put_row(out, columns, &widths, heads, true);
-    put_line(out, columns, &widths, &rule(&widths));
-    rows.iter().for_each(|row| put_row(out, columns, &widths, row, false));
-    let left_out = &heads[widths.len()..];
-    if !left_out.is_empty() {
-        let names = left_out.join(", ");
-        out.push_str(&format!("\nleft out here: {names}; a wider terminal or --format json has them\n"));
+    let (columns, widths) = (of(columns, &kept), of(&widths, &kept));
+    put_row(out, &columns, &widths, &of(heads, &kept), true);
+    put_line(out, &columns, &widths, &rule(&widths));
+    rows.iter().for_each(|row| put_row(out, &columns, &widths, &of(row, &kept), false));
+    let mut left_out: Vec<String> = Vec::new();
+    for n in (0..heads.len()).filter(|n| !kept.contains(n)) {
+        // Two edges have columns of one name.
+        left_out.extend((!left_out.contains(&heads[n])).then(|| heads[n].clone()));
     }
+    left_out
+}
+
+/// Those at these places.
+fn of<T: Clone>(all: &[T], places: &[usize]) -> Vec<T> {
+    places.iter().map(|&n| all[n].clone()).collect()
 }
 
 /// A row in as many lines as its longest cell takes; headings stand on the rule.

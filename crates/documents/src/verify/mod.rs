@@ -225,7 +225,7 @@ fn asked_in(document: &Map<String, Value>) -> [Option<Value>; 2] {
 }
 
 /// The limit of every check.
-const QUESTION: &str = "that this was the question, where another one has the same answer";
+const QUESTION: &str = "which question was asked, where another one has the same answer";
 
 /// That the head is one that kickdrift writes: which version and which command, and an input without nulls.
 fn head(document: &Map<String, Value>) -> Result<()> {

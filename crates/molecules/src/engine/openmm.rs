@@ -45,7 +45,11 @@ pub(super) fn read(texts: &[&str]) -> Result<Reading> {
         }
     }
     let mut reading = reading.ok_or_else(|| {
-        let remedy = "a system alone has no steps: give the integrator too, as Python text or serialized";
+        let remedy = if texts.iter().any(|text| xml::is_xml(text)) {
+            "a system alone has no steps: give the integrator too, as Python text or serialized"
+        } else {
+            "the text names OpenMM and makes no integrator: give the script that does, or the steps themselves"
+        };
         Error::missing("integrator", remedy)
     })?;
     let (serialized, scripts): (Vec<&str>, Vec<&str>) = texts.iter().partition(|text| xml::is_xml(text));

@@ -61,7 +61,10 @@ fn of_texts(texts: &[&str], outer: Option<&Rational>) -> Result<Reading> {
             return Ok(reading);
         }
     }
-    Err(Error::input("engine", texts.first().map_or("nothing", |text| first_words(text)), NONE))
+    let first = texts
+        .first()
+        .map_or("nothing".into(), |text| format!("a text that begins with {:?}", first_words(text)));
+    Err(Error::input("engine", first, NONE))
 }
 
 /// What an engine wrote about its run.

@@ -182,8 +182,8 @@ pub fn nested_beside(scheme: &Scheme, unit: TimeUnit) -> Option<String> {
     let ([inner, outer], Some(why)) = (scheme.steps(), not_nested(scheme, unit)) else { return None };
     let one = Rational::from_integer(1.into());
     let [below, above] = [(outer / inner).floor(), (outer / inner).floor() + one]
-        .map(|n| format!("{} ({n})", unit.of(decimal(&(inner * &n)))));
-    Some(format!("{why}, so no engine runs it; {below} and {above} are"))
+        .map(|n| format!("{} ({n} of {})", unit.of(decimal(&(inner * &n))), unit.of(decimal(inner))));
+    Some(format!("{why}, so no engine runs it: ask for {below} or {above}"))
 }
 
 impl Reading {
@@ -196,9 +196,9 @@ impl Reading {
         });
         let wrong: Vec<String> = wrong.collect();
         if !wrong.is_empty() {
+            let are = if wrong.len() == 1 { "is no multiple" } else { "are no multiples" };
             let wrong = wrong.join(", ");
-            self.remarks
-                .push(format!("{by} refuses this text as it stands: no multiple of {outer} is {wrong}"));
+            self.remarks.push(format!("{by} refuses this text as it stands: {wrong} {are} of {outer}"));
         }
     }
 

@@ -296,12 +296,21 @@ impl Parser<'_> {
 
     fn unexpected(&self) -> Remedy {
         const FORM: &str = "write a number such as 3/10, 0.3, 1e-3 or pi^2/25, with * for products";
+        let rest: String = self.characters[self.at..].iter().collect();
         match self.peek() {
+            Some(_) if UNITS.contains(&rest.trim()) => {
+                format!(
+                    "has a unit, and numbers here have none: write all times in one unit, and {rest} nowhere"
+                )
+            }
             Some(c) => format!("unexpected {c:?} (symbol {}); {FORM}", self.at + 1),
             None => format!("ends too early; {FORM}"),
         }
     }
 }
+
+/// Units of time, where no number has one.
+const UNITS: [&str; 4] = ["fs", "ps", "ns", "s"];
 
 /// The number of products of coefficients in a · b.
 fn pairs(a: &Laurent, b: &Laurent) -> u64 {

@@ -53,8 +53,12 @@ impl Atlas {
     /// # Errors
     /// A question that makes no sense; λ1 or a range of steps that is missing; a window without a step.
     pub fn new(ratios: Ratios, listing: Listing, colour: Colour, families: Option<Families>) -> Result<Self> {
-        let missing =
-            |field: &str, example: &str| Error::missing(field, format!("an atlas needs it, as {example}"));
+        let missing = |field: &str, example: &str| {
+            Error::missing(
+                field,
+                format!("the picture of all tongues in the plane of steps needs it, as {example}"),
+            )
+        };
         let lambda1 =
             listing.stiffness.lambda1.as_ref().ok_or_else(|| missing("lambda1", "--lambda1 pi^2"))?;
         let h1 = listing.window.h1.as_ref().ok_or_else(|| missing("h1-range", "--h1-range 0..2/pi"))?;

@@ -1,6 +1,6 @@
 //! How far off the energy of a stable mode is, for people.
 
-use super::words::{cap, length, nearest};
+use super::words::{called, cap, length, nearest};
 use molecules::unit::TimeUnit;
 use molecules::{Advice, Biased, Finding, Scheme, most_biased};
 use number::Rational;
@@ -11,7 +11,7 @@ pub(super) fn line(advice: &Advice) -> Option<String> {
     if advice.lacks_fast || advice.beads.is_some() {
         return None;
     }
-    let named = |(mode, bias): Biased| (advice.modes[mode].name.clone(), bias);
+    let named = |(mode, bias): Biased| (called(&advice.modes[mode], advice.unit), bias);
     let asked = most_biased(answer.rows.iter().filter_map(|row| Some((row.mode, row.bias?))));
     told(&answer.scheme, asked.map(named), answer.safe.as_ref().zip(answer.safe_bias.map(named)), advice.unit)
 }
@@ -33,17 +33,23 @@ fn told(
     unit: TimeUnit,
 ) -> Option<String> {
     let is_alone = scheme.steps().len() == 1;
-    let shown = |(mode, bias): Named, place: String| format!("{mode} {} at {place}", nearest(bias, 3));
-    let asked = asked.map(|biased| shown(biased, length(scheme.outer(), unit)));
-    let advised = safe.filter(|(safe, _)| *safe != scheme.outer()).map(|(safe, biased)| {
+    let safe = safe.filter(|(safe, _)| *safe != scheme.outer());
+    // One mode is named once, behind both of its numbers.
+    let is_one = asked.as_ref().zip(safe.as_ref()).is_some_and(|(asked, (_, safe))| asked.0 == safe.0);
+    let shown = |(mode, bias): Named, place: String, is_named: bool| {
+        let name = if is_named { format!(" for {mode}") } else { String::new() };
+        format!("{} at {place}{name}", nearest(bias, 3))
+    };
+    let asked = asked.map(|biased| shown(biased, length(scheme.outer(), unit), !is_one));
+    let advised = safe.map(|(safe, biased)| {
         let step = if is_alone { cap(safe, unit) } else { length(safe, unit) };
-        shown(biased, format!("the advised {step}"))
+        shown(biased, format!("the advised {step}"), true)
     });
     let told: Vec<String> = asked.into_iter().chain(advised).collect();
     let middle = if is_alone {
         "BAOAB and LangevinMiddle have it right"
     } else {
-        "a thermostat in the drifts has another bias"
+        "BAOAB and other thermostats in the drifts have another bias"
     };
     (!told.is_empty()).then(|| {
         format!(

@@ -230,7 +230,9 @@ fn draw(blocks: &[Block], right: f64, (title, near): (&str, &str), unit: TimeUni
             let note = Note::new([*outer, top - NEXT * (i % 2) as f64], text);
             notes.push(note.anchored(anchor, [shift, 0.0]).in_colour(INK));
         }
-        if let Some(safe) = block.safe {
+        // The advice is the first scheme's: in rows where its step is not proven it would mislead.
+        let is_proven = |safe: &f64| block.lines.iter().all(|line| *safe <= line.band);
+        if let Some(safe) = block.safe.filter(is_proven) {
             layers.recommended.push(vec![[safe, end], [safe, edge]]);
         }
     }
@@ -301,14 +303,15 @@ pub fn levers(levers: &Levers, title: &str, unit: TimeUnit) -> Figure {
         layers.add(&line, at, right);
         let names: Vec<&str> = group.iter().map(|lever| &*lever.name).collect();
         let name = one_of(names[0], &names[1..]);
-        let name = if group.iter().all(|lever| lever.is_free) { format!("{name} (none)") } else { name };
+        let name =
+            if group.iter().all(|lever| lever.is_free) { format!("{name} (no unstable step)") } else { name };
         ticks.push(Tick { at, label: Some(literal(&name)) });
     }
     layers.beyond.clear();
     let (low, high) = (-FOOT, rows as f64 - 1.0 + FOOT);
     let panel = Panel::new(Axis::linear(axis(unit), 0.0, right), Axis::linear("", low, high).ticks(ticks));
     let names = Names {
-        safe: "to be taken",
+        safe: "the step to take",
         caution: "proven, all periods in the band",
         sampled: "masked by the friction",
         near: "first unstable step of the periods given",

@@ -3,7 +3,7 @@
 use super::answer;
 use super::lines::{self, advised, read_from};
 use super::tables::{self, Told, enclosed, for_people};
-use super::words::{fs, nearest, percent, within};
+use super::words::{fs, nearest, percent, up, within};
 use crate::report::decimal::is_nothing;
 use crate::report::document::Document;
 use crate::report::record::Record;
@@ -217,18 +217,15 @@ fn line(findings: &DirectFindings, direct_finding: &DirectFinding) -> String {
     let masks = match (direct_finding.is_damped, direct_finding.masking) {
         (Some(true), _) => "; masked by the friction given (proven)".into(),
         (Some(false), Some(mask)) => {
-            format!(
-                "; a friction of {}/ps masks it (proven), the one given does not",
-                nearest((1000.0 * mask, 1000.0 * mask), 3)
-            )
+            format!("; a friction of {}/ps masks it (proven), the one given does not", up(1000.0 * mask))
         }
         (_, Some(mask)) => {
-            format!("; a friction of {}/ps masks it (proven)", nearest((1000.0 * mask, 1000.0 * mask), 3))
+            format!("; a friction of {}/ps masks it (proven)", up(1000.0 * mask))
         }
         _ => String::new(),
     };
     let run = within(direct_finding.within_run, &findings.length, TimeUnit::Femtoseconds);
-    format!("{:7} {adds}{of_steps}{tenfold}{masks}{run}{band}", fs(direct_finding.scheme.outer()))
+    format!("{:6}  {adds}{of_steps}{tenfold}{masks}{run}{band}", fs(direct_finding.scheme.outer()))
 }
 
 /// The modes that the advice rests on.

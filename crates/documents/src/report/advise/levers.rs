@@ -165,13 +165,31 @@ pub(super) fn longer(levers: &Levers, unit: TimeUnit) -> Option<String> {
         let others: Vec<&str> =
             group.iter().map(|one| &*one.0.name).filter(|name| *name != lever.name).collect();
         let name = one_of(&lever.name, &others);
-        format!("{} by {name} ({} times)", unit.of(decimal(step)), nearest((*gain, *gain), 3))
+        let today = *step / lever.gain.as_ref().expect("only what gains is here");
+        let today = unit.of(nearest((to_f64(&today), to_f64(&today)), 3));
+        let gain = nearest((*gain, *gain), 3);
+        (format!("{} by {name}", unit.of(decimal(step))), gain, today)
     };
-    let shown: Vec<String> = groups.iter().take(3).map(shown).collect();
+    // What all are compared with is said once.
+    let shown: Vec<String> = groups
+        .iter()
+        .take(3)
+        .map(shown)
+        .enumerate()
+        .map(|(n, (way, gain, today))| match n {
+            0 => format!("{way} ({gain} times the {today} of kicks and drifts at their best)"),
+            _ => format!("{way} ({gain} times)"),
+        })
+        .collect();
     if levers.rows.is_empty() {
         None
     } else if shown.is_empty() {
-        Some("longer: no lever that could be looked at lets the step grow".into())
+        let is_one_clock = levers.rows[0].way == Way::Verlet;
+        let slower = "; forces that are slow may have a longer step of their own: ask about two steps, the shorter first";
+        Some(format!(
+            "longer: nothing that was looked at lets the step grow{}",
+            if is_one_clock { slower } else { "" }
+        ))
     } else {
         Some(format!("longer: {}", shown.join("; ")))
     }

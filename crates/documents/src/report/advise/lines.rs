@@ -1,15 +1,15 @@
 //! Advice as text: a line for each scheme, then which step to take, then why.
 
-use super::answer;
 use super::words::{Choice, cap, down, length, named, nearest, percent, within};
+use super::{answer, silent};
 use crate::report::decimal::few;
 use crate::report::friction;
 use molecules::aperture::{Cold, Edge};
 use molecules::engine::{Engine, Reading, nested_beside, not_nested};
 use molecules::unit::{TimeUnit, decimal};
 use molecules::{
-    Advice, Answer, Beads, Bound, FAST, GROMPP, Mode, Origin, PRACTICE, Pair, Place, Row, SEEN, SLOW, Scheme,
-    Status, Typical, Unstable, shortest_of,
+    Advice, Answer, Beads, Bound, GROMPP, Mode, Origin, PRACTICE, Pair, Place, Row, SEEN, Scheme, Status,
+    Typical, Unstable,
 };
 use number::Rational;
 use number::rational::to_f64;
@@ -76,16 +76,22 @@ pub(super) fn grompp(reading: &Reading, fastest: &str, part: impl Fn(u64) -> Str
 pub(super) fn read_from(advised: Option<&Rational>, reading: &Reading) -> Vec<String> {
     let name = reading.engine.name();
     let mut lines = Vec::new();
+    // Why nothing is written, said once.
+    let mut told = None;
     match advised.map(|outer| reading.changed_lines(outer)) {
         Some(Ok(changed)) => lines.extend(changed.iter().map(|line| format!("  write      {line}"))),
-        Some(Err(error)) => lines.push(format!("  write      nothing: {}", error.remedy())),
+        Some(Err(error)) => {
+            lines.push(format!("  write      nothing: {}", error.remedy()));
+            told = Some(error.remedy().to_string());
+        }
         None => {}
     }
+    let remarks = reading.remarks.iter().filter(|remark| told.as_ref() != Some(remark));
     let steps: Vec<String> = reading.scheme.steps().iter().map(|step| length(step, reading.unit)).collect();
     let forces = reading.forces.iter().zip(&steps).map(|(forces, step)| format!("{step}: {forces}"));
     lines.push(format!("  {name:10} {}; {}", reading.engine.dt(), forces.collect::<Vec<_>>().join("; ")));
     lines.push(format!("  used       {}", reading.used.join("; ")));
-    lines.extend(reading.remarks.iter().map(|remark| format!("  note       {remark}")));
+    lines.extend(remarks.map(|remark| format!("  note       {remark}")));
     lines
 }
 
@@ -96,8 +102,9 @@ fn line(advice: &Advice, answer: &Answer) -> String {
     // No engine runs this scheme, so its resonance does no harm.
     if let Some(beside) = nested_beside(&answer.scheme, unit) {
         let kind = if answer.rows.iter().any(|row| row.found.rate.1 > 0.0) { "unstable" } else { "stable" };
+        let beside = beside.strip_prefix(&format!("{outer} is ")).unwrap_or(&beside);
         return format!(
-            "{outer:7} {beside} (asynchronous, as it stands, it is {kind}; `verdict` shows more)"
+            "{outer:6}  {beside}; asynchronous, as it stands, it is {kind} (`verdict` shows more)"
         );
     }
     // The row that says most: one that grows, else the one whose first unstable interval is the lowest.
@@ -105,9 +112,13 @@ fn line(advice: &Advice, answer: &Answer) -> String {
     let worst = answer.rows.iter().max_by(|a, b| grows(a).total_cmp(&grows(b)));
     let next = next(advice, answer);
     let what = match answer.status {
-        Status::Safe => format!("safe{}{next}", slow_forces(advice, answer)),
+        Status::Safe => format!("safe{}{next}", silent::condition(advice, answer)),
         Status::Caution => {
-            format!("stable{}{next}; caution: {}", slow_forces(advice, answer), not_below(advice, answer))
+            format!(
+                "stable{}{next}; caution: {}",
+                silent::condition(advice, answer),
+                not_below(advice, answer)
+            )
         }
         Status::Near => format!("stable{next}: less than the band of {}: do not use", percent(&advice.band)),
         Status::Island => island(answer, unit),
@@ -121,7 +132,7 @@ fn line(advice: &Advice, answer: &Answer) -> String {
         }
         Status::Unstable => unstable(answer, worst, unit),
     };
-    format!("{outer:7} {what}{}", within(answer.within_run, &advice.length, unit))
+    format!("{outer:6}  {what}{}", within(answer.within_run, &advice.length, unit))
 }
 
 /// "; next unstable interval 4.6768-4.9679 fs, margin 0.677 fs".
@@ -139,17 +150,6 @@ fn next(advice: &Advice, answer: &Answer) -> String {
     };
     let margin = nearest((next.lower.0 - outer, next.lower.1 - outer), 3);
     format!("; {what}, margin {}", unit.of(margin))
-}
-
-/// On which condition a scheme is stable where a clock has no period: its forces' own steps are no longer
-/// than all others'.
-fn slow_forces(advice: &Advice, answer: &Answer) -> String {
-    let Some(proven) = answer.needs else { return String::new() };
-    let value = proven.max(shortest_of(to_f64(answer.scheme.outer())));
-    let [own, proven] = [value, proven].map(|x| advice.unit.of(few(x * 1.005, 3)));
-    format!(
-        " where the forces of the clock without a period have periods above {own} (proven stable above {proven})"
-    )
 }
 
 /// What a step is not below.
@@ -225,11 +225,17 @@ fn unstable(answer: &Answer, worst: Option<&Row>, unit: TimeUnit) -> String {
         (_, None) => String::new(),
     };
     format!(
-        "unstable{inside}: tenfold in {} outer steps = {}, {}{friction}: do not use",
+        "unstable{inside}: tenfold in {} {} = {}, {}{friction}: do not use",
         nearest((lo, hi), 3),
+        steps_of(&answer.scheme),
         unit.of(nearest((lo * outer, hi * outer), 3)),
         unit.rate(nearest(rate, 4))
     )
+}
+
+/// What the steps are called that a growth is counted in.
+pub(super) fn steps_of(scheme: &Scheme) -> &'static str {
+    if scheme.steps().len() == 1 { "steps" } else { "outer steps" }
 }
 
 /// Another ratio beside an unstable one is no way out. Ends are shown to three decimals, inward.
@@ -267,13 +273,14 @@ fn action(advice: &Advice, answer: &Answer) -> String {
     }
     if let Some(slow) = answer.needs {
         return format!(
-            "advice: give the period of the clock without one; {} is proven stable (all periods within {band}) where it is above {}",
+            "advice: give the shortest period of {}, which has none yet; {} is proven stable (all periods within {band}) where it is above {}",
+            silent::clocks(advice, scheme),
             length(scheme.outer(), unit),
             unit.of(few(slow * 1.005, 3))
         );
     }
     if let Some(beside) = nested_beside(scheme, unit) {
-        return format!("advice: {beside}: ask for one of these");
+        return format!("advice: {beside}");
     }
     if let (None, Some(why)) = (&answer.largest, not_nested(scheme, unit)) {
         return format!(
@@ -312,7 +319,7 @@ pub(super) fn published(
         );
     }
     let own = inner.map_or_else(String::new, |own| {
-        format!("; the inner step stays below T/6.28 = {own} unless bonds are harmonic: {PRACTICE}")
+        format!("; the inner step stays below T/6.28 = {own} unless bonds are harmonic, {PRACTICE}")
     });
     format!(
         "  published  {name}: outer steps near T/3 = {} and T/4 = {} meet nonlinear resonances (Ma, Izaguirre, Skeel 2003){own}",
@@ -337,7 +344,7 @@ pub(super) fn friction(rate: &Rational, unit: TimeUnit) -> String {
 }
 
 /// A period that is known by name, and where it comes from.
-fn typical(typical: &Typical) -> String {
+pub(super) fn typical(typical: &Typical) -> String {
     format!(
         "{} is {} fs, the shortest period {} ({})",
         typical.asked(),
@@ -445,7 +452,7 @@ fn reasons(advice: &Advice) -> Vec<String> {
     if let Some(why) = not_nested(&answer.scheme, unit) {
         lines.push(format!("  engines    {why}: OpenMM, LAMMPS, GROMACS and NAMD refuse that; the scheme is decided above all the same"));
     }
-    lines.extend(missing(advice));
+    lines.extend(silent::missing(advice));
     lines.extend(advice.modes.iter().filter_map(|mode| match mode.origin {
         Origin::Typical(known) => {
             let word = if known.is_fast { "fast" } else { "slow" };
@@ -469,26 +476,4 @@ fn sums(answer: &Answer, modes: &[Mode], unit: TimeUnit) -> Option<String> {
     (!shown.is_empty()).then(|| {
         format!("  sums       two coupled modes may resonate with each other, to first order: {shown}{more}")
     })
-}
-
-/// The periods that nobody gave, and typical ones by name.
-fn missing(advice: &Advice) -> Vec<String> {
-    let in_fs = advice.unit == TimeUnit::Femtoseconds;
-    if advice.lacks_fast {
-        let of = |all: &[Typical]| {
-            let shown = all
-                .iter()
-                .map(|typical| format!("{} {} fs", typical.asked(), typical.period))
-                .collect::<Vec<_>>()
-                .join(", ");
-            format!("  fast       {shown}: {}", all[0].source)
-        };
-        return FAST.chunk_by(|a, b| a.source == b.source).map(of).filter(|_| in_fs).collect();
-    }
-    if !advice.silent {
-        return Vec::new();
-    }
-    let line = "  unknown    a clock has no period given: its force is taken as 0; with it unstable steps begin somewhat below the step given here";
-    let slow = format!("  slow       measured at a minimum: {}", SLOW.each_ref().map(typical).join("; "));
-    [line.to_string()].into_iter().chain(in_fs.then_some(slow)).collect()
 }

@@ -9,6 +9,7 @@ mod levers;
 mod lines;
 mod molecule;
 mod periods;
+mod silent;
 mod tables;
 mod words;
 
@@ -20,6 +21,7 @@ use molecules::{Advice, DirectFindings, Findings};
 pub use chart::levers as levers_figure;
 pub use periods::ORIGIN;
 pub use words::nearest;
+pub(crate) use words::time;
 
 /// The subject of advice.
 #[derive(Clone, Copy)]

@@ -3,7 +3,7 @@
 use super::answer;
 use super::lines::{self, advised, read_from};
 use super::tables::{self, Told, enclosed, for_people};
-use super::words::{Choice, cap, down, fs, nearest, percent, within};
+use super::words::{Choice, cap, down, fs, nearest, percent, up, within};
 use crate::report::document::Document;
 use crate::report::record::Record;
 use crate::report::shape::{
@@ -196,18 +196,21 @@ fn slow(period: f64) -> String {
     )
 }
 
-/// "5.0226-5.0228 fs (tenfold in ...)": the first one, and how many more there are.
-fn interval(finding: &Finding) -> Option<String> {
+/// "the unstable 5.0226-5.0228 fs (tenfold in ...)": the first one behind `kind`, and how many more there
+/// are.
+fn interval(finding: &Finding, kind: &str) -> Option<String> {
     let first = nearest(finding.first?, 5);
     let growing = finding.growing.first()?;
-    let end = growing.upper.map_or_else(|| " and on".into(), |upper| format!("-{}", rounded(upper, 5)));
+    let end = growing.upper.map(|upper| rounded(upper, 5));
+    let reach =
+        end.map_or_else(|| format!("unstable from {first} fs on"), |end| format!("{kind} {first}-{end} fs"));
     let (at, rate) = growing.worst;
     let worst = rounded(std::f64::consts::LN_10 / (rate * at), 3);
     let more = match finding.growing.len() {
         1 => String::new(),
         all => format!(", {} more above it", all - 1),
     };
-    Some(format!("{first}{end} fs (at worst tenfold in {worst} steps){more}"))
+    Some(format!("{reach} (at worst tenfold in {worst} steps){more}"))
 }
 
 fn line(findings: &Findings, finding: &Finding) -> String {
@@ -216,7 +219,8 @@ fn line(findings: &Findings, finding: &Finding) -> String {
         let margin = finding.first.map_or_else(String::new, |(lo, hi)| {
             format!(", margin {} fs", nearest((lo - outer, hi - outer), 3))
         });
-        interval(finding).map_or_else(String::new, |next| format!("; next unstable interval {next}{margin}"))
+        let next = interval(finding, "next unstable interval");
+        next.map_or_else(String::new, |next| format!("; {next}{margin}"))
     };
     let what = match finding.status {
         Status::Safe => format!("safe{}", next()),
@@ -225,7 +229,7 @@ fn line(findings: &Findings, finding: &Finding) -> String {
             format!("stable{}: less than the band of {}: do not use", next(), percent(&findings.band))
         }
         Status::Island => {
-            format!("stable, but above the unstable {}: do not use", interval(finding).unwrap_or_default())
+            format!("stable, but above {}: do not use", interval(finding, "the unstable").unwrap_or_default())
         }
         Status::Undecided => {
             format!(
@@ -241,7 +245,7 @@ fn line(findings: &Findings, finding: &Finding) -> String {
         Status::Unstable => format!("unstable{}: do not use", grows(finding)),
     };
     let within = within(finding.within_run, &findings.length, TimeUnit::Femtoseconds);
-    format!("{:7} {what}{within}", fs(finding.scheme.outer()))
+    format!("{:6}  {what}{within}", fs(finding.scheme.outer()))
 }
 
 /// What a step is not below.
@@ -270,22 +274,17 @@ fn grows(finding: &Finding) -> String {
     let friction = match (finding.is_damped, finding.masking) {
         (Some(true), _) => "masked by the friction given, which hides it and does not cure it".into(),
         (Some(false), Some(mask)) => {
-            format!(
-                "a friction of {}/ps masks it (proven), the one given does not",
-                rounded(1000.0 * mask, 3)
-            )
+            format!("a friction of {}/ps masks it (proven), the one given does not", up(1000.0 * mask))
         }
         (None, Some(mask)) => {
-            format!(
-                "a friction of {}/ps masks it; for the one given this is not proven",
-                rounded(1000.0 * mask, 3)
-            )
+            format!("a friction of {}/ps masks it; for the one given this is not proven", up(1000.0 * mask))
         }
         _ => format!("a friction of some {}/ps would mask it, to first order", rounded(2000.0 * rate, 2)),
     };
     format!(
-        ": tenfold in {} outer steps = {} ps, {}/ps{named}{atoms} ({friction})",
+        ": tenfold in {} {} = {} ps, {}/ps{named}{atoms} ({friction})",
         rounded(steps, 3),
+        lines::steps_of(&finding.scheme),
         rounded(steps * to_f64(finding.scheme.outer()) / 1000.0, 3),
         rounded(1000.0 * rate, 3)
     )

@@ -23,10 +23,20 @@ pub fn nearest((lo, hi): (f64, f64), digits: usize) -> String {
 /// The name of a mode and where it comes from, for people.
 pub(super) fn named(mode: &Mode, unit: TimeUnit) -> String {
     let period = unit.of(nearest(mode.period(), 4));
+    let called = called(mode, unit);
     match mode.origin {
-        Origin::Period => format!("{} (T = {period})", mode.name),
-        origin => format!("{} (T = {period} from the {})", mode.name, origin.name()),
+        Origin::Period if called != mode.name => called,
+        Origin::Period => format!("{called} (T = {period})"),
+        origin => format!("{called} (T = {period} from the {})", origin.name()),
     }
+}
+
+/// The name of a mode; one that was given none is called by its period.
+pub(super) fn called(mode: &Mode, unit: TimeUnit) -> String {
+    if mode.name.starts_with(|c: char| c.is_ascii_digit() || c == '.') {
+        return format!("the period of {}", unit.of(nearest(mode.period(), 4)));
+    }
+    mode.name.clone()
 }
 
 /// A judgement as a picture's key explains it; the band is named beside it.
@@ -42,7 +52,7 @@ pub(super) fn meaning(status: Status) -> &'static str {
 }
 
 /// A length of time in the unit that suits it.
-fn time(x: &Rational, unit: TimeUnit) -> String {
+pub(crate) fn time(x: &Rational, unit: TimeUnit) -> String {
     let over = |n: u64| x / Rational::from_integer(n.into());
     let one = Rational::from_integer(1.into());
     let units = [(1_000_000_000_000_000, "s"), (1_000_000, "ns"), (1000, "ps")];
@@ -72,6 +82,12 @@ pub(super) fn fs(x: &Rational) -> String {
 pub(super) fn down(x: f64) -> String {
     let size = 10f64.powi(2 - x.abs().log10().floor() as i32);
     few((x * size).floor() / size, 3)
+}
+
+/// Three digits, rounded up.
+pub(super) fn up(x: f64) -> String {
+    let size = 10f64.powi(2 - x.abs().log10().floor() as i32);
+    few((x * size).ceil() / size, 3)
 }
 
 /// A bound on a step, three digits, rounded down.
@@ -157,15 +173,15 @@ impl Choice<'_> {
         let edge = unit.of(down(edge));
         match self.caps.outer().filter(|(_, bound)| self.bound == Some(*bound)) {
             Some((value, Bound::Aperture)) => format!(
-                "advice: keep the step below {}, as measured and not proven: beyond it hot bonds are lost; proven stable is all below {edge} (all periods \
-                 within {band}), but of small oscillations",
+                "advice: keep the step below {}, as measured and not proven: beyond it hot bonds are lost. All steps below {edge} are proven stable (all \
+                 periods within {band}), but for small oscillations alone",
                 cap(value, unit),
             ),
             Some((value, _)) => format!(
-                "advice: keep the step below {} = T/6.28 of {name}, that is h w <= 1: proven stable is all below {edge} (all periods within {band}), but \
-                 of small oscillations; beyond T/6.28 bonds that are not harmonic are lost{}. Say --harmonic if they are harmonic",
+                "advice: keep the step below {} = T/6.28 of {name}, that is h w <= 1: beyond it bonds that are not harmonic are lost{}. All steps below \
+                 {edge} are proven stable (all periods within {band}), but for small oscillations alone: if your bonds are harmonic, say --harmonic",
                 cap(value, unit),
-                self.practice()
+                self.practice(),
             ),
             None => format!(
                 "advice: keep the step below {edge} (proven for all periods within {band}{}); T/10 = {} resolves {name}",

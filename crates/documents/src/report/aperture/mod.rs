@@ -2,6 +2,7 @@
 
 mod chart;
 
+use super::advise::time;
 use super::decimal::few;
 use super::document::Document;
 use super::record::Record;
@@ -9,7 +10,7 @@ use super::shape::{ABOVE_0, FLAG, Keys, ROUNDED, ROUNDED_OR_NULL, Shape, TEXT};
 use super::table::{Cell, Column};
 pub use chart::figure;
 use molecules::aperture::{EARLY, Hottest, LATE, Measured, PHASES, Resonance, Step, rungs};
-use molecules::unit::decimal;
+use molecules::unit::{TimeUnit, decimal};
 use number::rational::to_f64;
 
 /// What the document, the text and the schema say of every number.
@@ -79,7 +80,7 @@ fn record<'a>() -> Record<'a, Row<'a>> {
             Shape::OrNull(&Shape::Plain(r#"{"type": "integer", "minimum": 2}"#)),
             "The k for which 2 pi/k is nearest to the turn; null where the step is linearly unstable.",
         )
-        .field(Column::new("resonance").in_words("its step").in_unit("fs"), |(step, _)| {
+        .field(Column::new("resonance").in_words("step of k").in_unit("fs"), |(step, _)| {
             step.nearest.and_then(|(_, h)| h).into()
         })
         .says(ROUNDED_OR_NULL, "The step in fs nearest to this one at which the method turns by 2 pi/k; null where there is none from 0 to three times this step; a rounded double.")
@@ -89,7 +90,7 @@ fn record<'a>() -> Record<'a, Row<'a>> {
         .says(ROUNDED_OR_NULL, "The least energy in kT at which at least half of all phases are lost within 20000 steps; null where they are at none up to 40 kT; a rounded double.")
         .field(Column::new("share_lost").in_words("share lost"), |(step, _)| step.share.into())
         .says(SHARE, "The share of a thermal ensemble of starts that is lost within 3000 steps; a rounded double.")
-        .field(Column::new("enough_for").in_words("enough for"), |(step, _)| step.enough.into())
+        .field(Column::new("enough_for").in_words("enough for").in_unit("bonds x ps"), |(step, _)| step.enough.into())
         .says(ROUNDED_OR_NULL, "exp(aperture): about one of so many bonds times picoseconds is as hot; null above 40 kT; a rounded double.")
         .field(Column::new("band_aperture").in_words("least of band").in_unit("kT"), |(step, _)| {
             step.band.as_ref().and_then(|hottest| hottest.aperture).into()
@@ -126,10 +127,10 @@ fn lines(measured: &Measured) -> Vec<String> {
         format!("  period        {} fs at rest{limit}", few(measurement.period(), 5)),
         format!("  resonances    {}", places.collect::<Vec<_>>().join(", ")),
         format!(
-            "  level         {} kT: about as hot is the hottest of {} bonds in {} ps",
+            "  level         {} kT: the hottest of {} bonds in {} is about as hot",
             few(*level, 3),
             measured.meant.0,
-            decimal(&(&measured.meant.1 / number::Rational::from_integer(1000.into())))
+            time(&measured.meant.1, TimeUnit::Femtoseconds)
         ),
     ];
     if let Some(depth) = measurement.depth.filter(|depth| *depth <= last) {

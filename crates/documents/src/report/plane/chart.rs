@@ -162,7 +162,7 @@ impl Chart {
     }
 
     fn by_bias(&self, panel: Panel, biased: &Raster<f64>, steps: [f64; 2]) -> Panel {
-        let axis = Axis::log("*R* or 1/*R*, the larger one", 1.0, WORST_BIAS);
+        let axis = Axis::log("bias, the larger of *R* and 1/*R*", 1.0, WORST_BIAS);
         let bar = ColourBar::new(axis, Gradient::on_white()).over(biased.filled().map(|(_, _, bias)| bias));
         panel.with(shaded(biased, steps, &bar, |bias| bias)).with(self.unstable(steps, GREY)).bar(bar)
     }

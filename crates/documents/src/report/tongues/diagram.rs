@@ -43,7 +43,7 @@ fn panel(diagram: &Diagram, rho: f64) -> Panel {
     panel = panel.with(Layer::lines(lines, stroke).labelled("*p*θ = *m*π"));
     if !diagram.closings.is_empty() {
         let layer = Layer::dots(diagram.closings.clone(), Shape::Ring, 4.5, COEXISTENCE);
-        panel = panel.with(layer.labelled("closed: *Q* = ±1"));
+        panel = panel.with(layer.labelled("closed: *Q* = ±*I*"));
     }
     panel.legend(Place::Above)
 }

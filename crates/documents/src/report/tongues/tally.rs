@@ -4,6 +4,7 @@ use super::rows::side;
 use crate::report::decimal::{self, few};
 use crate::report::record::Record;
 use crate::report::shape::{COUNT, Shape};
+use crate::report::text::counted;
 use clocks::tongue::Tongue;
 
 /// Counts and extremes, in the order in which the tongues come.
@@ -86,13 +87,15 @@ impl TongueTally {
         if self.predicted != [0; 3] {
             let [inside, on_edge, outside] = self.predicted;
             lines.push(format!(
-                "  predicted    {} points p theta = m pi: {outside} outside their own tongue, {on_edge} on its edge, {inside} inside",
-                inside + on_edge + outside
+                "  predicted    {} p theta = m pi: {outside} outside their own tongue, {on_edge} on its edge, {inside} inside",
+                counted((inside + on_edge + outside) as usize, "point", "points")
             ));
         }
         if let Some((least, largest)) = self.ratios {
             let [least, largest] = [least, largest].map(|x| few(x, 4));
-            lines.push(format!("  first order  widths are {least} to {largest} times the law's"));
+            lines.push(format!(
+                "  first order  widths are {least} to {largest} times those that first-order theory gives"
+            ));
         }
         lines
     }
