@@ -23,7 +23,7 @@ pub fn explained(error: &clap::Error, program: &clap::Command) -> Error {
                 let remedy = format!("cannot be used with {}: give one of them", names(&other));
                 Error::input("argument", names(&flag), remedy)
             }
-            _ => Error::input("flag", names(&flag), "is given twice; give it once"),
+            _ => Error::input("flag", names(&flag), once(&flag)),
         }),
         ErrorKind::TooManyValues => invalid().map(|flag| {
             let value = shown(error, ContextKind::InvalidValue).unwrap_or_default();
@@ -36,21 +36,33 @@ pub fn explained(error: &clap::Error, program: &clap::Command) -> Error {
             if given.starts_with('-') {
                 return Error::input("flag", &given, suggestion(error));
             }
-            Error::input("argument", &given, "is of no use here; --help lists all flags")
+            Error::input("argument", &given, "belongs to no flag: several values of one stand behind commas without spaces, a text with spaces in quotes; --help lists all flags")
         }),
         _ => None,
     };
     known.unwrap_or_else(|| plain(error))
 }
 
+/// How to give a flag once: some take several values.
+fn once(flag: &str) -> &'static str {
+    match names(flag).as_str() {
+        "parameter" => "is given twice; give it once, further names behind commas, as b=0.1..0.2:1/100,c=1/3",
+        "methods" | "columns" | "constraints" | "on" => {
+            "is given twice; give it once, with commas between values"
+        }
+        _ => "is given twice; give it once",
+    }
+}
+
 fn bad_value(error: &clap::Error) -> Option<Error> {
     let flag = names(&shown(error, ContextKind::InvalidArg)?);
     let value = shown(error, ContextKind::InvalidValue).unwrap_or_default();
     let choices = shown(error, ContextKind::ValidValue).filter(|choices| !choices.is_empty());
+    let form = || format!("write a value, as {}", shown(error, ContextKind::InvalidArg).unwrap_or_default());
     let remedy = match (choices, std::error::Error::source(error)) {
         (Some(choices), _) => format!("choose one of {}", choices.replace(' ', ", ")),
         (None, Some(cause)) => cause.to_string(),
-        (None, None) => "write a value".into(),
+        (None, None) => form(),
     };
     // An empty value that a parser has seen is bad; else there was none.
     let absent = value.is_empty() && std::error::Error::source(error).is_none();
