@@ -18,7 +18,8 @@
 //! and `band`.
 //!
 //! ```
-//! use kickdrift_clocks::{Kind, Limits, Oscillator, Tongues, TwoClocks, decide, decide_steps, number::rational::ratio};
+//! use kickdrift_clocks::number::rational::ratio;
+//! use kickdrift_clocks::{Kind, Limits, Oscillator, Tongues, TwoClocks, decide, decide_steps};
 //! // Stiffnesses and steps as people write them: just below h2 = T½ = 1, resonant.
 //! let pair = Oscillator::builder().lambda1("pi^2").lambda2("pi^2/25").h1("1/100").h2("0.98").build()?;
 //! assert!(!decide_steps(&pair, &Limits::default())?.verdict.is_stable());
