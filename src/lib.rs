@@ -104,12 +104,10 @@ pub use systems::{self as system, avi};
 pub use words as word;
 
 // What everyone needs, without the way to it.
-pub use clocks::map::{Grid, Map};
-pub use clocks::propagator::{HalfPeriod, Oscillator, TwoClocks, half_period};
-pub use clocks::resonance::{Families, dominant_family};
-pub use clocks::tongue::{Tongues, closings};
-pub use clocks::verdict::{Kind, Limits, Side, Verdict, decide, decide_steps};
-pub use number::error::{Error, Result};
+pub use clocks::{
+    Error, Families, Grid, HalfPeriod, Kind, Limits, Map, Oscillator, Result, Side, Tongues, TwoClocks,
+    Verdict, closings, decide, decide_steps, dominant_family, half_period,
+};
 pub use number::parse::parse;
 pub use number::{Laurent, Ratio, Rational, Sign};
 

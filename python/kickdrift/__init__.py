@@ -18,6 +18,7 @@ from kickdrift._aperture import Aperture, aperture
 from kickdrift._bands import Bands, bands
 from kickdrift._compare import Comparison, compare
 from kickdrift._document import Document, Row, Table
+from kickdrift._enclosure import Bias, Enclosure
 from kickdrift._entries import Half, half
 from kickdrift._errors import BudgetError, KickdriftError
 from kickdrift._explore import explore
@@ -28,6 +29,7 @@ from kickdrift._numbers import Exact, Labels, Range, exact, number, simplest
 from kickdrift._program import main
 from kickdrift._recheck import Recheck, recheck
 from kickdrift._resonances import Curves, Proposition, curves, proposition
+from kickdrift._scan import Scan
 from kickdrift._simulate import Run, simulate
 from kickdrift._system import System, SystemVerdict
 from kickdrift._tongues import Closings, Tongues, closings, tongues
@@ -41,11 +43,13 @@ __all__ = [
     "Advice",
     "Aperture",
     "Bands",
+    "Bias",
     "BudgetError",
     "Closings",
     "Comparison",
     "Curves",
     "Document",
+    "Enclosure",
     "Exact",
     "Family",
     "Half",
@@ -60,6 +64,7 @@ __all__ = [
     "Recheck",
     "Row",
     "Run",
+    "Scan",
     "System",
     "SystemAdvice",
     "SystemVerdict",

@@ -35,14 +35,16 @@ class Advisable(Protocol):
 
 @overload
 def advise(
-    periods: Mapping[str, Time] | Sequence[Time] = (),
+    periods: Mapping[str, Time] | Sequence[Time] | Sequence[tuple[str, Time]] = (),
     *,
     steps: str | Sequence[Any] = (),
-    bonds: Mapping[str, str] | None = None,
-    on: Mapping[str, int] | None = None,
+    bonds: Mapping[str, str] | Sequence[tuple[str, str]] | None = None,
+    on: Mapping[str, int] | Sequence[tuple[str, int]] | None = None,
     engine: Engine | None = None,
     band: Exact = "5%",
     length: Time | None = None,
+    temperature: Exact | None = None,
+    bond_count: int | None = None,
     friction: Exact | None = None,
     constraints: str | None = None,
     hmr: Exact | None = None,
@@ -73,11 +75,13 @@ def advise(
     periods: Any = (),
     *,
     steps: str | Sequence[Any] | Mapping[int, Any] = (),
-    bonds: Mapping[str, str] | None = None,
-    on: Mapping[str, int] | None = None,
+    bonds: Mapping[str, str] | Sequence[tuple[str, str]] | None = None,
+    on: Mapping[str, int] | Sequence[tuple[str, int]] | None = None,
     engine: Engine | None = None,
     band: Exact = "5%",
     length: Time | None = None,
+    temperature: Exact | None = None,
+    bond_count: int | None = None,
     friction: Exact | None = None,
     constraints: str | None = None,
     hmr: Exact | None = None,
@@ -91,19 +95,21 @@ def advise(
     Parameters
     ----------
     periods : what vibrates
-        A mapping of str to Time, or a sequence of Time: the periods of the forces, fs, wavenumbers as ``"3700/cm"``, or
-        ``"water"``, ``"protein"`` (in water), ``"peptide"`` (in vacuum) for what nonbonded forces have there; the last
-        ones are on the slower clocks. A typical ``"fast"`` one has a name, as ``"protein,h-bonds"`` or
-        ``"water,rigid"``. Without the fastest period nothing is called safe. Texts without a unit are plain numbers,
-        where all times are. Or a molecule: a :class:`System`, the path of a system file, OpenMM's ``Simulation`` or
-        ``System``, ASE's ``Atoms``, an instance of LAMMPS, which is asked for :meth:`System.advise`; or the path of an archive
-        ``FILE.npz`` with ``fast``, ``slow`` (mass-weighted, 1/ps²), ``masses`` and ``positions``.
+        A mapping of str to Time, pairs of both, or a sequence of Time: the periods of the forces, fs, wavenumbers as
+        ``"3700/cm"``, or ``"water"``, ``"protein"`` (in water), ``"peptide"`` (in vacuum) for what nonbonded forces
+        have there; the last ones are on the slower clocks. A typical ``"fast"`` one has a name, as
+        ``"protein,h-bonds"`` or ``"water,rigid"``. Without the fastest period nothing is called safe. Texts without a
+        unit are plain numbers, where all times are. Or a molecule: a :class:`System`, the path of a system file,
+        OpenMM's ``Simulation`` or ``System``, ASE's ``Atoms``, an instance of LAMMPS, which is asked for
+        :meth:`System.advise`; or the path of an archive ``FILE.npz`` with ``fast``, ``slow`` (mass-weighted, 1/ps²),
+        ``masses`` and ``positions``.
     steps : sequence of Time, or a sequence of such
         A scheme, from the innermost to the outermost step, fs; or several schemes. For OpenMM's ``System`` also
         a mapping of force groups to steps.
     bonds : mapping of str to str, optional
         ``"k=1106kcal/mol/A^2,15.999,1.008"``: the force constant (k of E = k x²/2, K of E = K x²), two masses in amu,
-        and behind them the heavy atom's hydrogens if not 1.
+        and behind them the heavy atom's hydrogens if not 1. In place of ``k=X`` the bond's shape, as
+        :func:`aperture` reads it: ``"morse:D=485.72kJ/mol,a=22.87/nm,15.999,1.008"``.
     on : mapping of str to int, optional
         The clocks of modes, 1 the fastest.
     engine : path or text, or a sequence of such, optional
@@ -112,6 +118,10 @@ def advise(
         How far every period may be off, relatively.
     length : Time, optional
         The length of the run, as ``"10ns"``.
+    temperature : Exact, optional
+        At which bonds of a known shape must stay: a number in K, or a text with its unit; 298 K unless given.
+    bond_count : int, optional
+        How many bonds of a known shape the run has, whose hottest must stay; 10,000 unless given.
     friction : Exact, optional
         A thermostat's, as ``"1/ps"``: does it mask the growth?
     constraints : str, optional
@@ -154,7 +164,8 @@ def advise(
         return advise_archive(periods, listed(steps), engine, scales, levers=levers, harmonic=harmonic)
     found, rest = molecule(periods, steps, made)
     if found is not None:
-        for field, value in {"bonds": bonds, "on": on, "all_modes": all_modes or None}.items():
+        of_periods = {"bonds": bonds, "on": on, "temperature": temperature, "bond_count": bond_count}
+        for field, value in (of_periods | {"all_modes": all_modes or None}).items():
             if value is not None:
                 raise KickdriftError(field, str(value), "is for periods: a system has its modes of its own")
         told: Advice | SystemAdvice = found.advise(
@@ -177,6 +188,8 @@ def advise(
         (band, length, friction, constraints, hmr),
         bonds=bonds,
         on=on,
+        temperature=temperature,
+        bond_count=bond_count,
         levers=levers,
         all_modes=all_modes,
         harmonic=harmonic,

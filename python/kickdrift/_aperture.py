@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from kickdrift import _plot
 from kickdrift._document import Table, answered
-from kickdrift._numbers import Exact, items, text, written
+from kickdrift._numbers import Exact, items, text, with_unit, written
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -112,34 +112,27 @@ def aperture(
         "steps",
         budget,
         bond=written("bond", bond),
-        temperature=_with_unit("temperature", temperature, "K"),
+        temperature=with_unit("temperature", temperature, "K"),
         steps=_listed(steps),
         h_range=_ends(h_range),
-        step=_with_unit("step", step, "fs"),
+        step=with_unit("step", step, "fs"),
         method=method,
         word=word,
         substeps=substeps,
-        slow=_with_unit("slow", slow, "fs"),
+        slow=with_unit("slow", slow, "fs"),
         band=band if band is None or isinstance(band, str) else text("band", band),
         bonds=bonds,
-        length=_with_unit("length", length, "fs"),
+        length=with_unit("length", length, "fs"),
     )
-
-
-def _with_unit(field: str, value: Exact | None, unit: str) -> str | None:
-    """A quantity as it is written; a number in this unit."""
-    if value is None or isinstance(value, str):
-        return value if value is None else written(field, value)
-    return f"{text(field, value)}{unit}"
 
 
 def _listed(steps: str | Exact | Sequence[Exact] | None) -> str | None:
     if isinstance(steps, list | tuple):
-        return ",".join(str(_with_unit("steps", step, "fs")) for step in items("steps", steps, _STEPS))
-    return _with_unit("steps", steps, "fs")
+        return ",".join(str(with_unit("steps", step, "fs")) for step in items("steps", steps, _STEPS))
+    return with_unit("steps", steps, "fs")
 
 
 def _ends(h_range: str | Sequence[Exact] | None) -> str | None:
     if h_range is None or isinstance(h_range, str):
         return h_range if h_range is None else written("h_range", h_range)
-    return "..".join(str(_with_unit("h_range", end, "fs")) for end in items("h_range", h_range, _RANGE))
+    return "..".join(str(with_unit("h_range", end, "fs")) for end in items("h_range", h_range, _RANGE))

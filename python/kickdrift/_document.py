@@ -27,6 +27,9 @@ Row = Mapping[str, Any]
 
 _SHOWN = 20
 
+#: The flags of fields that have other names.
+_FLAGS = {"width": "resolution", "scan_x": "scan", "scan_y": "scan"}
+
 
 class Frozen:
     """A frozen dataclass whose copy is itself; it is pickled by its fields alone, which stay read only."""
@@ -88,7 +91,7 @@ class Asked(Frozen):
         """The answer as the program draws it."""
         words = ["kickdrift", {"family": "word"}.get(self.name, self.name)]
         for name, value in {**self.fields, **self.files}.items():
-            flag = "--" + {"width": "resolution"}.get(name, name.replace("_", "-"))
+            flag = "--" + _FLAGS.get(name, name.replace("_", "-"))
             several = [value] if isinstance(value, str) else value
             if name == "file" or (name == "word" and words[1] == "word"):
                 words += several
@@ -246,7 +249,8 @@ class Table(Document, Sequence[Row]):
         return frame(flat(self.rows))
 
     def __repr__(self) -> str:
-        return f"{type(self).__name__}({len(self)} {self._rows_are}: {', '.join(self._given())})"
+        given = ", ".join(self._given())
+        return f"{type(self).__name__}({len(self)} {self._rows_are}{': ' if given else ''}{given})"
 
     def _given(self) -> list[str]:
         return [f"{key} = {value}" for key, value in self.data["input"].items()]
@@ -261,6 +265,26 @@ class Table(Document, Sequence[Row]):
         more = f"<p>{len(self) - _SHOWN} more rows</p>" if len(self) > _SHOWN else ""
         title = html.escape(f"{type(self).__name__}: {', '.join(self._given())}")
         return f"<p>{title}</p><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>{more}"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Told(Table):
+    """A table whose answer has words, too: ``print`` shows them."""
+
+    def __str__(self) -> str:
+        return self._asked.render("text").rstrip()
+
+    @property
+    def details(self) -> str:
+        """The whole answer with its tables, as the program's ``--details`` has it.
+
+        Examples
+        --------
+        >>> import kickdrift as kd
+        >>> "palindrome   yes" in kd.word("K(1/2) D(1) K(1/2)").details
+        True
+        """
+        return self._asked.render("details").rstrip()
 
 
 _Kind = TypeVar("_Kind", bound=Table)

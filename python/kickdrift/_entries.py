@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from kickdrift._document import Table, answered
-from kickdrift._numbers import Exact, text
+from kickdrift._numbers import Exact, ratio_text, text
 
 
 class Half(Table):
@@ -42,4 +42,4 @@ def half(ratio: Exact, *, s: Exact, rho: Exact, budget: int | None = None) -> Ha
     >>> kd.half("5/3", s="11/4", rho="1/25")[0]["sign"]
     1
     """
-    return answered(Half, "half", "entries", budget, ratio=text("ratio", ratio), s=text("s", s), rho=text("rho", rho))
+    return answered(Half, "half", "entries", budget, ratio=ratio_text(ratio), s=text("s", s), rho=text("rho", rho))

@@ -14,6 +14,7 @@ import numpy.typing as npt
 from kickdrift import _plot
 from kickdrift._cost import Work
 from kickdrift._document import Frozen
+from kickdrift._enclosure import Enclosure
 from kickdrift._errors import KickdriftError
 from kickdrift._numbers import frozen
 from kickdrift._rigid import Doubles
@@ -125,7 +126,7 @@ class Monodromy(Frozen):
         return None if measured is None else {"stable": True, "unstable": False}.get(measured["holds"])
 
     @property
-    def growth_bounds(self) -> tuple[float, float] | None:
+    def growth_bounds(self) -> Enclosure | None:
         """Doubles that enclose the largest growth rate for all Hessians within the accuracy; None where it is not
         proven."""
         return self.verdict.growth_bounds if self.verdict is not None and self.proven else None

@@ -19,8 +19,14 @@ Exact: TypeAlias = int | float | Fraction | Decimal | str | Number | Any
 without rounded parts, a NumPy scalar, a Number. A float means what it prints, its shortest decimal: 0.02 is 1/50."""
 
 
-Range: TypeAlias = tuple[Exact, Exact] | str
-"""A closed range: a pair of exact numbers, or a text ``"LO..HI"``."""
+Range: TypeAlias = tuple[Exact, Exact] | str | Mapping[str, float]
+"""A closed range: a pair of exact numbers, a text ``"LO..HI"``, or an enclosure of a row, with ``lo`` and ``hi``."""
+
+Spaced: TypeAlias = tuple[Exact, Exact, Exact] | str
+"""Values from one end of a range on by a spacing: three exact numbers, or a text ``"LO..HI:BY"``."""
+
+Families: TypeAlias = int | tuple[int, int] | str
+"""The integers a or b of families: one, both ends of a range, or a text as ``"-2..3"``."""
 
 Labels: TypeAlias = int | str | Iterable[int]
 """Labels m: one, several, or a text such as ``"1,3,7..9"``."""
@@ -128,10 +134,57 @@ def range_text(field: str, value: Range) -> str:
     if isinstance(value, str):
         return value.replace("**", "^")
     try:
-        lo, hi = value
-    except (TypeError, ValueError):
+        lo, hi = (value["lo"], value["hi"]) if isinstance(value, Mapping) else value
+    except (TypeError, ValueError, KeyError):
         raise KickdriftError(field, shown(value), "give a pair (lo, hi), or a text as '1/100..7/2'") from None
     return f"{text(field, lo)}..{text(field, hi)}"
+
+
+def families_text(field: str, value: Families) -> str:
+    """Families as the library reads them."""
+    return range_text(field, (value, value) if isinstance(value, int | np.integer) else value)
+
+
+def spaced_text(field: str, value: Any, form: str) -> str:
+    """Numbers by their names, as the library reads them: each with one value or with values from LO on by a spacing.
+
+    Raises
+    ------
+    KickdriftError
+        What is neither a text nor a mapping or pairs of names to such values.
+    """
+    if isinstance(value, str):
+        return written(field, value).replace("**", "^")
+
+    def one(name: str, values: Any) -> str:
+        if isinstance(values, list | tuple) and len(values) == 3:
+            lo, hi, by = (text(f"{field}[{name}]", part) for part in values)
+            return f"{name}={lo}..{hi}:{by}"
+        if isinstance(values, list | tuple):
+            raise KickdriftError(f"{field}[{name}]", shown(values), form)
+        return f"{name}={values if isinstance(values, str) else text(f'{field}[{name}]', values)}"
+
+    return ",".join(one(written(field, name), values) for name, values in mapping_of(field, value, form).items())
+
+
+def ratio_text(value: Exact) -> str:
+    """A ratio of steps as the library reads it.
+
+    Raises
+    ------
+    KickdriftError
+        A float that was rounded from a simple fraction: it means what it prints, and has as many tongues.
+    """
+    exactly = _native.number("ratio", value)
+    if isinstance(value, float | np.floating) and exactly.is_rational and exactly.fraction.denominator > _LONG:
+        meant = simplest(float(value))
+        if meant.denominator <= _SHORT:
+            raise KickdriftError("ratio", shown(value), f"a float means what it prints: write '{meant}'")
+    return str(exactly)
+
+
+#: Denominators of floats that were rounded, and of the fractions that they stand for.
+_LONG, _SHORT = 10**6, 10**4
 
 
 def optional_range(field: str, value: Range | None) -> str | None:
@@ -183,10 +236,15 @@ def flag(field: str, value: Any) -> bool:
 
 
 def mapping_of(field: str, value: Any, remedy: str) -> Mapping[str, Any]:
-    """A mapping from names to their values."""
-    if not isinstance(value, Mapping):
+    """A mapping from names to their values; pairs of a name and a value are one, too."""
+    if isinstance(value, Mapping):
+        return value
+    pairs = [] if isinstance(value, str | bytes) or not isinstance(value, Iterable) else list(value)
+    is_named = all(isinstance(pair, list | tuple) and len(pair) == 2 and isinstance(pair[0], str) for pair in pairs)
+    found = {pair[0]: pair[1] for pair in pairs} if is_named else {}
+    if not found or len(found) != len(pairs):
         raise KickdriftError(field, shown(value), remedy)
-    return value
+    return found
 
 
 def pair_of(field: str, value: Any, remedy: str) -> tuple[Any, Any]:
@@ -195,6 +253,23 @@ def pair_of(field: str, value: Any, remedy: str) -> tuple[Any, Any]:
     if len(parts) != 2:
         raise KickdriftError(field, shown(value), remedy)
     return parts[0], parts[1]
+
+
+def level_of(field: str, value: Any, remedy: str) -> tuple[Any, Any]:
+    """The step of a level and what acts there, which stand in either order."""
+    first, second = pair_of(field, value, remedy)
+    return (second, first) if _is_number(second) and not _is_number(first) else (first, second)
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, str | int | float | Fraction | Decimal | Number | np.generic)
+
+
+def with_unit(field: str, value: Exact | None, unit: str) -> str | None:
+    """A quantity as it is written; a number in this unit."""
+    if value is None or isinstance(value, str):
+        return value if value is None else written(field, value)
+    return f"{text(field, value)}{unit}"
 
 
 def names_text(field: str, value: Any, remedy: str) -> str:

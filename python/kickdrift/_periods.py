@@ -12,7 +12,7 @@ from kickdrift._advice import Advice, Engine, SystemAdvice, Time
 from kickdrift._document import Asked
 from kickdrift._errors import KickdriftError, shown
 from kickdrift._files import text_of
-from kickdrift._numbers import Exact, items, mapping_of, text, written
+from kickdrift._numbers import Exact, items, mapping_of, text, with_unit, written
 
 Scales: TypeAlias = tuple[Exact, Time | None, Exact | None, str | None, Exact | None]
 """The band, the length of the run, friction, constraints, and the mass of hydrogens."""
@@ -24,8 +24,10 @@ def advise_periods(
     engine: Engine | None,
     scales: Scales,
     *,
-    bonds: Mapping[str, str] | None = None,
-    on: Mapping[str, int] | None = None,
+    bonds: Mapping[str, str] | Sequence[tuple[str, str]] | None = None,
+    on: Mapping[str, int] | Sequence[tuple[str, int]] | None = None,
+    temperature: Exact | None = None,
+    bond_count: int | None = None,
     levers: bool = True,
     all_modes: bool = False,
     harmonic: bool = False,
@@ -36,7 +38,8 @@ def advise_periods(
         [periods] if isinstance(periods, str) else periods,
         "give a list of periods in fs, or texts as '10fs'; or periods by name",
     )
-    named = periods.items() if isinstance(periods, Mapping) else ((None, value) for value in alone)
+    has_names = isinstance(periods, Mapping) or any(isinstance(value, list | tuple) for value in alone)
+    named = mapping_of("periods", periods, _NAMED).items() if has_names else ((None, value) for value in alone)
     given: dict[str, list[str]] = {"period": [], "bond": [], "on": []}
     for name, value in named:
         if isinstance(value, PathLike) or (name is None and isinstance(value, str) and isfile(value)):
@@ -46,8 +49,22 @@ def advise_periods(
     bonded, clocks = mapping_of("bonds", bonds or {}, _BONDS), mapping_of("on", on or {}, _CLOCKS)
     given["bond"] = [f"{_name('bonds', name)}:{value}" for name, value in bonded.items()]
     given["on"] = [f"{_name('on', name)}={clock}" for name, clock in clocks.items()]
-    question = asked(given, steps, engine, scales, levers=levers, all_modes=all_modes, harmonic=harmonic)
-    return Advice(question.render("json"), question.render("text"), question.render("details"), question)
+    hot = {"temperature": with_unit("temperature", temperature, "K"), "bonds": _count(bond_count)}
+    every = given | {name: value for name, value in hot.items() if value is not None}
+    question = asked(every, steps, engine, scales, levers=levers, all_modes=all_modes, harmonic=harmonic)
+    try:
+        return Advice(question.render("json"), question.render("text"), question.render("details"), question)
+    except KickdriftError as error:
+        # The program's flag --bonds is bond_count here.
+        if error.field != "temperature or bonds":
+            raise
+        raise KickdriftError("temperature or bond_count", "given", _SHAPES) from None
+
+
+def _count(bonds: int | None) -> str | None:
+    if bonds is None or (isinstance(bonds, int) and not isinstance(bonds, bool)):
+        return bonds if bonds is None else written("bond_count", bonds)
+    raise KickdriftError("bond_count", shown(bonds), "give how many bonds the run has, as 1700")
 
 
 def advise_archive(
@@ -67,7 +84,14 @@ def advise_archive(
 
 
 #: What to give in place of what is none.
-_BONDS = "give a mapping of names to bonds, as {'OH': 'k=1106kcal/mol/A^2,15.999,1.008'}"
+_NAMED = "give periods by name, as {'OH': '10fs'}, or a list of them, as ['10fs', '40fs']"
+_BONDS = (
+    "give a mapping of names to bonds, as {'OH': 'k=1106kcal/mol/A^2,15.999,1.008'}; how many there are is bond_count"
+)
+_SHAPES = (
+    "are about bonds of a known shape, and none is given: write one, as "
+    "bonds={'OH': 'morse:D=485.72kJ/mol,a=22.87/nm,15.999,1.008'}"
+)
 _CLOCKS = "give a mapping of names to clocks, as {'OH': 1}"
 _STEPS = "give the steps of a scheme, the inner one first, as '0.5fs,4fs' or [0.5, 4]; of one clock '2fs' or [2]"
 _INPUTS = "give the path of an input or its text, or several"

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from kickdrift import _plot
 from kickdrift._document import Table, answered, frame
-from kickdrift._numbers import Exact, Range, frozen, range_text, text
+from kickdrift._numbers import Exact, Families, Range, families_text, frozen, range_text, text
 
 if TYPE_CHECKING:
     import pandas
@@ -71,8 +71,8 @@ def curves(
     lambda1: Exact = "pi^2",
     h1: Range = ("1/1000", "2/pi"),
     h2: Range = ("1/1000", "7/2"),
-    a: str = "0..3",
-    b: str = "-12..12",
+    a: Families = "0..3",
+    b: Families = "-12..12",
     samples: int = 400,
 ) -> Curves:
     """Sample the (a, b) families of resonance curves.
@@ -83,8 +83,8 @@ def curves(
         The fast stiffness, 1/time².
     h1, h2 : Range
         The closed ranges of steps.
-    a, b : str
-        Ranges of integers, as ``"-2..3"``.
+    a, b : Families
+        Which families: an integer, a pair (lo, hi), or a text as ``"-2..3"``.
     samples : int
         Points a curve, evenly spaced in theta.
 
@@ -107,8 +107,8 @@ def curves(
         lambda1=text("lambda1", lambda1),
         h1_range=range_text("h1", h1),
         h2_range=range_text("h2", h2),
-        a=a,
-        b=b,
+        a=families_text("a", a),
+        b=families_text("b", b),
         samples=samples,
     )
 

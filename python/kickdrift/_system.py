@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
@@ -12,10 +12,12 @@ import numpy.typing as npt
 
 from kickdrift._advice import Engine, SystemAdvice, Time
 from kickdrift._document import question
+from kickdrift._enclosure import Enclosure
 from kickdrift._errors import KickdriftError, shown
 from kickdrift._intervals import Intervals
-from kickdrift._numbers import Exact, Range, range_text, text
+from kickdrift._numbers import Exact, Range, Spaced, mapping_of, range_text, spaced_text, text, written
 from kickdrift._periods import asked
+from kickdrift._scan import AXES, Scan
 from kickdrift._system_hessians import HessianSystem
 from kickdrift._system_verdict import DecidedSystem
 
@@ -44,7 +46,7 @@ class Oscillation(Protocol):
         """The largest growth rate, 1/time: an estimate."""
 
     @property
-    def growth_bounds(self) -> tuple[float, float] | None:
+    def growth_bounds(self) -> Enclosure | None:
         """Doubles that enclose it for all these Hessians, where it is proven."""
 
     @property
@@ -87,7 +89,8 @@ class System(HessianSystem):
     ----------
     document : mapping
         As in a system file, without ``schema``: ``masses``, ``potentials`` and so on; numbers are exact, a float means
-        what it prints. Arrays of doubles stand by reference, ``{"npz": "arrays.npz", "array": NAME}``.
+        what it prints, also in arrays of NumPy's. Measured Hessians stand by reference, ``{"npz": "arrays.npz",
+        "array": NAME}``; :meth:`System.from_hessians` does it.
     arrays : mapping of str to array, optional
         The arrays referred to; read-only copies are kept.
     notes : sequence of str, optional
@@ -204,12 +207,14 @@ class System(HessianSystem):
         self,
         outer: Range,
         *,
+        path: str = "outer",
         resolution: float = 1e-4,
         accuracy: float | None = None,
         method: str | None = None,
         budget: int | None = None,
     ) -> Intervals:
-        """All stable and unstable intervals of the outer step, at the ratios of steps that there are.
+        """All stable and unstable intervals of the outer step, at the ratios of steps that there are; or of another
+        number of the system.
 
         For measured Hessians a stretch is proven for all within their accuracy. ``the data do not tell`` if these share
         no verdict, or nothing is proven.
@@ -217,7 +222,9 @@ class System(HessianSystem):
         Parameters
         ----------
         outer : Range
-            The closed range of outer steps, rational.
+            The closed range of outer steps, or of the number at ``path``, rational.
+        path : str
+            Which number varies, as a system file has it: ``"masses.0"``, ``"potentials.soft.scale"``.
         resolution : float
             The relative width above which no interval is missed.
         accuracy : float, optional
@@ -238,11 +245,55 @@ class System(HessianSystem):
         >>> system = kd.System.from_hessians([1.0], {"stiff": ("1/40", [[400.0]]), "soft": ("1/10", [[1.0]])})
         >>> [row["verdict"] for row in system.intervals(("1/20", "1/10"))]
         ['stable']
+        >>> len(system.intervals(("1/2", 4), path="potentials.soft.scale"))
+        1
         """
-        over = f"outer={range_text('outer', outer)}"
+        over = f"{written('path', path)}={range_text('outer', outer)}"
         asked = question("system", budget, intervals=over, width=resolution, accuracy=accuracy, method=method)
         asked = self._about(asked)
         return Intervals(asked.render("json"), "stretches", asked)
+
+    def scan(
+        self,
+        over: str | Mapping[str, Spaced] | Sequence[tuple[str, Spaced]],
+        *,
+        exact: bool = False,
+        accuracy: float | None = None,
+        method: str | None = None,
+        budget: int | None = None,
+    ) -> Scan:
+        """The verdict at each value of one number of the system, or of two.
+
+        Parameters
+        ----------
+        over : mapping of str to (lo, hi, spacing), or str
+            Which numbers vary, as a system file has them, and their values: ``{"outer": ("0.1", 2, "0.1")}`` keeps all
+            steps in their ratios; ``{"potentials.soft.step": (1, 2, "1/10"), "masses.0": (1, 3, 1)}`` is a map.
+            A text has one: ``"outer=0.1..2:0.1"``.
+        exact, accuracy, method, budget
+            As for :meth:`decide`.
+
+        Raises
+        ------
+        KickdriftError, BudgetError
+            A path that leads nowhere; more work than the budget allows, before it begins.
+
+        Examples
+        --------
+        >>> import kickdrift as kd
+        >>> system = kd.System({"masses": [1], "potentials": [{"name": "bond", "step": 1, "springs": [[0, None, 1]]}]})
+        >>> found = system.scan({"potentials.bond.step": (1, 3, "1/2")})
+        >>> [(row["x"], row["kind"]) for row in found][:3]
+        [('1', 'elliptic'), ('3/2', 'elliptic'), ('2', 'parabolic')]
+        """
+        axes = [over] if isinstance(over, str) else list(mapping_of("over", over, _OVER).items())
+        if not 1 <= len(axes) <= len(AXES):
+            raise KickdriftError("over", shown(over), "give one number of the system or two, each with its values")
+        texts = [axis if isinstance(axis, str) else spaced_text("over", [axis], _OVER) for axis in axes]
+        varied = dict(zip(AXES, texts, strict=False))
+        asked = question("system", budget, exact=exact, accuracy=accuracy, method=method, **varied)
+        asked = self._about(asked)
+        return Scan(asked.render("json"), "verdicts", asked)
 
     def advise(
         self,
@@ -325,7 +376,12 @@ class System(HessianSystem):
     def __repr__(self) -> str:
         potentials = self.document.get("potentials", ())
         steps = ", ".join(f"{p.get('name', k)}: step {p['step']}" for k, p in enumerate(potentials))
-        return f"System({self.document.get('title') or 'untitled'}; {steps or 'built'})"
+        made = "built" if {"build", "mesh"} & set(self.document) else "no potentials"
+        return f"System({self.document.get('title') or 'untitled'}; {steps or made})"
+
+
+#: What :meth:`System.scan` varies.
+_OVER = "give values by path, as {'outer': ('0.1', 2, '0.1')}, or a text as 'outer=0.1..2:0.1'"
 
 
 def a_system(value: Any) -> System:

@@ -8,7 +8,7 @@ import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
-from os import PathLike
+from os import PathLike, fspath
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Self
@@ -37,6 +37,8 @@ class SystemFile(Frozen):
 
     def __post_init__(self) -> None:
         for name, mapping in (("document", self.document), ("arrays", self.arrays)):
+            if isinstance(mapping, str | PathLike):
+                raise KickdriftError(name, shown(mapping), f"a file is read by System.read({fspath(mapping)!r})")
             if not isinstance(mapping, Mapping):
                 raise KickdriftError(name, shown(mapping), "give a mapping of names to what they mean")
         kept = {name: doubles(name, array) for name, array in self.arrays.items()}
@@ -149,6 +151,11 @@ def _exact(value: Any, field: str = "document") -> Any:
     """Whatever stands for an exact number as its text; JSON would round it or not know it. An error names its place."""
     if isinstance(value, Mapping):
         return {written(field, key): _exact(part, f"{field}.{key}") for key, part in value.items()}
+    if isinstance(value, np.ndarray):
+        # Its own entries: a float of NumPy's means what it prints, as any other.
+        if np.ma.is_masked(value):
+            raise KickdriftError(field, "masked entries", "fill them or leave them out: every entry counts")
+        return _exact(list(value), field) if value.ndim else text(field, value[()])
     if isinstance(value, list | tuple):
         return [_exact(part, f"{field}[{n}]") for n, part in enumerate(value)]
     if value is None or isinstance(value, bool | str):

@@ -12,8 +12,11 @@ import numpy as np
 import numpy.typing as npt
 
 from kickdrift._errors import KickdriftError, shown
-from kickdrift._numbers import Exact, doubles, duration, items, pair_of, written
+from kickdrift._numbers import Exact, doubles, duration, items, level_of, mapping_of, written
 from kickdrift._system_file import ARRAYS, SystemFile
+
+Levels: TypeAlias = Mapping[str, tuple[Any, Any]] | Sequence[tuple[str, tuple[Any, Any]]]
+"""By name a step (Exact) and a matrix, in either order."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -24,7 +27,7 @@ class HessianSystem(SystemFile):
     def from_hessians(
         cls,
         masses: npt.ArrayLike,
-        potentials: Mapping[str, tuple[Exact, npt.ArrayLike]],
+        potentials: Levels,
         *,
         positions: npt.ArrayLike | None = None,
         accuracy: float = 1e-6,
@@ -46,7 +49,7 @@ class HessianSystem(SystemFile):
         ----------
         masses : array of doubles, shape (n,) or (n/3,)
             One for each degree of freedom, or for each particle of three.
-        potentials : mapping of str to (step, Hessian)
+        potentials : mapping of str to (step, Hessian), in either order
             A step (Exact, or with its unit as ``"0.5fs"``) and a symmetric matrix of doubles, shape (n, n),
             energy/length², by name; minus the derivative of a force that is no gradient. Two sparse matrices or arrays
             of SciPy are decided by sparse factorizations, in the first stable region: some 10^5 degrees of freedom.
@@ -94,12 +97,11 @@ class HessianSystem(SystemFile):
         >>> system.decide().stable
         True
         """
-        if not isinstance(potentials, Mapping):
-            raise KickdriftError("potentials", shown(potentials), "give a mapping of names to (step, Hessian)")
+        potentials = mapping_of("potentials", potentials, "give a mapping of names to (step, Hessian)")
         known = doubles("accuracy", accuracy)
         if known.ndim > 0:
             raise KickdriftError("accuracy", shown(accuracy), "give one number")
-        pairs = {name: pair_of(written("potentials", name), pair, _PAIR) for name, pair in potentials.items()}
+        pairs = {name: level_of(written("potentials", name), pair, _PAIR) for name, pair in potentials.items()}
         steps = {name: _step(name, step, time_unit) for name, (step, _) in pairs.items()}
         arrays = {"masses": doubles("masses", masses)}
         if positions is not None:
@@ -130,7 +132,7 @@ class HessianSystem(SystemFile):
     def along_orbit(
         cls,
         masses: npt.ArrayLike,
-        potentials: Mapping[str, tuple[Exact, npt.ArrayLike]],
+        potentials: Levels,
         *,
         positions: npt.ArrayLike | None = None,
         turned: npt.ArrayLike | None = None,
@@ -180,8 +182,7 @@ class HessianSystem(SystemFile):
         >>> verdict.stable, verdict.measured["holds"]
         (True, 'stable')
         """
-        if not isinstance(potentials, Mapping):
-            raise KickdriftError("potentials", shown(potentials), "give a mapping of names to (step, Hessians)")
+        potentials = mapping_of("potentials", potentials, "give a mapping of names to (step, Hessians)")
         arrays = {"masses": doubles("masses", masses)}
         ends = {"positions": positions, "turned": turned, "rigid": rigid}
         if not (periodic or keep_rigid):
@@ -192,7 +193,7 @@ class HessianSystem(SystemFile):
         named |= {"periodic": periodic, "keep_rigid": keep_rigid}
         document |= {key: value for key, value in named.items() if value}
         document["potentials"] = []
-        pairs = {name: pair_of(written("potentials", name), pair, _PAIR) for name, pair in potentials.items()}
+        pairs = {name: level_of(written("potentials", name), pair, _PAIR) for name, pair in potentials.items()}
         for place, (name, (step, hessians)) in enumerate(pairs.items()):
             at, stored = _dense(place, name, hessians)
             exact = written(name, _step(name, step, time_unit))

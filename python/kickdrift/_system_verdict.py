@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from kickdrift import _plot
 from kickdrift._document import Asked, Document
+from kickdrift._enclosure import Enclosure
 from kickdrift._native import Number
 from kickdrift._numbers import frozen
 
@@ -49,11 +50,11 @@ class DecidedSystem(Document):
         return float("nan") if bounds is None else sum(bounds) / 2
 
     @property
-    def growth_bounds(self) -> tuple[float, float] | None:
+    def growth_bounds(self) -> Enclosure | None:
         """Doubles that enclose the largest growth rate per unit time: zeros where nothing grows exponentially, None
         where no bound is proven."""
         found = self.data["growth_rate"]
-        return None if found is None else (found["lo"], float("inf") if found["hi"] is None else found["hi"])
+        return None if found is None else Enclosure(found["lo"], float("inf") if found["hi"] is None else found["hi"])
 
     @property
     def period(self) -> Number:

@@ -10,7 +10,18 @@ import numpy.typing as npt
 
 from kickdrift import _plot
 from kickdrift._document import Asked, Table, answered
-from kickdrift._numbers import Exact, Labels, Range, labels_text, names_text, optional_range, optional_text, text
+from kickdrift._numbers import (
+    Exact,
+    Families,
+    Labels,
+    Range,
+    families_text,
+    labels_text,
+    names_text,
+    optional_range,
+    optional_text,
+    ratio_text,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -77,7 +88,7 @@ def _ratios(given: Exact | Iterable[Exact]) -> str:
     if isinstance(given, str):
         given = given.split(",")
     several: Iterable[Exact] = given if isinstance(given, Iterable) else [given]
-    return ",".join(text("ratio", ratio) for ratio in several)
+    return ",".join(ratio_text(ratio) for ratio in several)
 
 
 def tongues(
@@ -90,8 +101,8 @@ def tongues(
     h1: Range | None = None,
     h2: Range | None = None,
     m: Labels | None = None,
-    a: str | None = None,
-    b: str | None = None,
+    a: Families | None = None,
+    b: Families | None = None,
     digits: int | None = None,
     columns: Iterable[Literal["edges", "exact", "growth", "predicted", "first-order"]] | None = None,
 ) -> Tongues:
@@ -111,8 +122,8 @@ def tongues(
         Only tongues that meet these closed ranges of steps (needs ``lambda1``).
     m : Labels, optional
         Only these labels.
-    a, b : str, optional
-        Only dominant families in these ranges, as ``"0..2"``.
+    a, b : Families, optional
+        Only these dominant families: an integer, a pair (lo, hi), or a text as ``"0..2"``.
     digits : int, optional
         Significant digits of the edges, as decimals.
     columns : iterable of str, optional
@@ -144,8 +155,8 @@ def tongues(
         h1_range=optional_range("h1", h1),
         h2_range=optional_range("h2", h2),
         m=None if m is None else labels_text(m),
-        a=a,
-        b=b,
+        a=None if a is None else families_text("a", a),
+        b=None if b is None else families_text("b", b),
         digits=digits,
         columns=None if columns is None else names_text("columns", columns, "name them, as ['edges']"),
     )

@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from kickdrift import _native
 from kickdrift._document import Document, Frozen
+from kickdrift._enclosure import Bias, Enclosure
 from kickdrift._errors import BudgetError, KickdriftError, required
 from kickdrift._native import Number
 from kickdrift._numbers import Exact, flag, frozen, placed
@@ -104,19 +105,19 @@ class Verdict:
         return Document(self._pair.render("json"))
 
     @property
-    def trace(self) -> tuple[float, float]:
+    def trace(self) -> Enclosure:
         """Doubles that enclose Tr Q; infinite where it is beyond them."""
         return _ends(self.document.data["trace"])
 
     @property
-    def growth_rate(self) -> tuple[float, float]:
+    def growth_rate(self) -> Enclosure:
         """Doubles that enclose the growth rate per unit time; zeros where nothing grows exponentially."""
         return _ends(self.document.data["growth_rate"])
 
     @property
-    def bias(self) -> tuple[tuple[float, float], tuple[float, float]] | None:
+    def bias(self) -> Bias | None:
         """By how much the potential energy of a stable pair is off, 1 being right: doubles that enclose it where
-        velocities are thermal at the kicks (constant energy, OBABO), and in the drifts (BAOAB, LangevinMiddle).
+        velocities are thermal ``at_kicks`` (constant energy, OBABO), and ``in_drifts`` (BAOAB, LangevinMiddle).
         None unless elliptic, and beyond 1,000 kicks a period.
 
         Examples
@@ -127,7 +128,7 @@ class Verdict:
         (1.333333, 1.0)
         """
         found = self.document.data["bias"]
-        return None if found is None else (_ends(found["at_kicks"]), _ends(found["in_drifts"]))
+        return None if found is None else Bias(_ends(found["at_kicks"]), _ends(found["in_drifts"]))
 
     @property
     def m(self) -> int | None:
@@ -229,12 +230,12 @@ def _again(quantities: list[Number], exact: bool, friction: Number | None, budge
     return Verdict(_native.decide(lambda1, lambda2, h1, h2, exact, friction, budget))
 
 
-def _ends(enclosure: Any) -> tuple[float, float]:
+def _ends(enclosure: Any) -> Enclosure:
     lo, hi = (
         float(np.copysign(np.inf, sign)) if end is None else float(end)
         for end, sign in ((enclosure["lo"], -1), (enclosure["hi"], 1))
     )
-    return lo, hi
+    return Enclosure(lo, hi)
 
 
 def decide(
@@ -320,6 +321,8 @@ class Verdicts(Frozen):
 
     def to_pandas(self) -> pandas.DataFrame:
         """One row a pair, in the order of the flattened arrays: stable, kind, decided_by.
+
+        What was given can stand beside: ``found.to_pandas().assign(h2=h2)``.
 
         Examples
         --------

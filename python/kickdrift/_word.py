@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
-from kickdrift._document import Table, answered
-from kickdrift._numbers import Exact, Range, optional_range, optional_text
+from collections.abc import Mapping, Sequence
+
+from kickdrift._document import Table, Told, answered
+from kickdrift._numbers import Exact, Range, Spaced, optional_range, optional_text, spaced_text
 
 
-class Word(Table):
+class Word(Told):
     """An integrator as its author writes it: its stable and unstable intervals, its order, cost and engines.
+
+    Its rows are the intervals. ``print`` shows the answer in words; ``data`` has all of it by name: ``order``,
+    ``general_order``, ``edge``, ``efficiency`` and so on.
 
     Examples
     --------
@@ -15,6 +20,8 @@ class Word(Table):
     >>> found = kd.word("K(1/6) D(1/2) K(2/3, -1/36) D(1/2) K(1/6)")
     >>> found.data["order"], found.data["edge"]["exact"]
     (4, '12')
+    >>> print(str(found).splitlines()[1].strip())
+    stable       0 < omega h <= 3.4641016151377546(3) = sqrt(12)
     """
 
     def to_svg(self) -> str:
@@ -29,8 +36,10 @@ class Word(Table):
         return self._asked.svg()
 
 
-class Family(Table):
+class Family(Told):
     """A word with a parameter: what is known of it at each value, and the best one.
+
+    Its rows are the values. ``print`` shows the answer in words.
 
     Examples
     --------
@@ -125,7 +134,7 @@ def word(
 def family(
     word: str,
     *,
-    parameter: str,
+    parameter: str | Mapping[str, Spaced | Exact] | Sequence[tuple[str, Spaced | Exact]],
     maximize: str | None = None,
     minimize: str | None = None,
     up_to: Exact | None = None,
@@ -139,8 +148,9 @@ def family(
     ----------
     word : str
         As :func:`word` has it; coefficients may have names, as "K(b) D(1/2) K(1-2*b) D(1/2) K(b)".
-    parameter : str
-        Their values, as "b=0.15..0.25:1/100"; further names behind commas, one more with a range, others with a value.
+    parameter : mapping of str to (lo, hi, spacing) or Exact, or str
+        Their values, as ``{"b": ("0.15", "0.25", "1/100")}`` or "b=0.15..0.25:1/100"; one name or two have a range,
+        others a value: ``{"a": (0, 1, "1/10"), "c": "1/3"}`` or "a=0..1:1/10,c=1/3".
     maximize, minimize : str, optional
         "edge" or "efficiency" is to be greatest; or "error" or "bias" least.
     up_to : Exact, optional
@@ -162,6 +172,8 @@ def family(
     >>> found = kd.family(two, parameter="b=0.15..0.25:1/100", maximize="edge")
     >>> found.data["best"]["value"], found[-1]["edge"]
     ('1/4', {'lo': 4.0, 'hi': 4.0})
+    >>> kd.family(two, parameter={"b": (0.15, 0.25, 0.01)}, maximize="edge") == found
+    True
     """
     return answered(
         Family,
@@ -169,13 +181,16 @@ def family(
         "members",
         budget,
         word=word,
-        parameter=parameter,
+        parameter=spaced_text("parameter", parameter, _PARAMETER),
         maximize=maximize,
         minimize=minimize,
         up_to=optional_text("up_to", up_to),
         lambda1=optional_text("lambda1", lambda1),
         lambda2=optional_text("lambda2", lambda2),
     )
+
+
+_PARAMETER = "give values by name, as {'b': (0.15, 0.25, 0.01)}, or a text as 'b=0.15..0.25:1/100'"
 
 
 def methods() -> Methods:

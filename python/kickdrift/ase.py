@@ -16,7 +16,7 @@ from kickdrift._errors import KickdriftError, needs, shown
 from kickdrift._groups import Groups
 from kickdrift._hessians import Force
 from kickdrift._monodromy import Monodromy
-from kickdrift._numbers import Exact, doubles, duration, positive
+from kickdrift._numbers import Exact, doubles, duration, level_of, mapping_of, positive
 from kickdrift._periods import listed
 from kickdrift._progress import Progress
 from kickdrift._rigid import Doubles
@@ -51,7 +51,7 @@ def system(
     ----------
     atoms : ase.Atoms
         Not changed; constraints of ASE's are an error.
-    groups : mapping of str to (calculator, step)
+    groups : mapping of str to (calculator, step), in either order
         The forces, and how often each is integrated: a number of fs, exactly, or a text with its unit. A pair of
         calculators stands for the first minus the second: ``{"cheap": (cheap, "0.5fs"), "correction": ((dear, cheap),
         "4fs")}`` evaluates a dear potential every 4 fs.
@@ -152,10 +152,8 @@ def _groups(atoms: Any, groups: Mapping[str, tuple[Any, Exact]]) -> Groups:
         raise KickdriftError("atoms", f"{len(atoms.constraints)} constraints", "constraints are not handled here")
     forces: dict[str, Force] = {}
     steps: list[Fraction] = []
-    for name, pair in groups.items():
-        if not (isinstance(pair, tuple | list) and len(pair) == 2):
-            raise KickdriftError(f"groups[{name}]", type(pair).__name__, "give (calculator, step), as (EMT(), '0.5fs')")
-        calculator, step = pair
+    for name, pair in mapping_of("groups", groups, "give a mapping of names to (calculator, step)").items():
+        step, calculator = level_of(f"groups[{name}]", pair, "give (calculator, step), as (EMT(), '0.5fs')")
         forces[name] = _force(atoms, calculator, f"groups[{name}]")
         steps.append(duration(f"groups[{name}]", step, "fs"))
     return Groups(

@@ -29,7 +29,7 @@ ASKED: dict[str, list[Callable[..., Any]]] = {
     "word": [kd.word],
     "methods": [kd.methods],
     "family": [kd.family],
-    "system": [System.decide, System.nearest, System.intervals],
+    "system": [System.decide, System.nearest, System.intervals, System.scan],
     "simulate": [kd.simulate],
     "advise": [kd.advise, System.advise],
     "aperture": [kd.aperture],
@@ -58,16 +58,18 @@ RENAMED = {
     "period": "periods",
     "bond": "bonds",
     "no_levers": "levers",
+    "scan_x": "over",
+    "scan_y": "over",
 }
 
-#: Fields without a parameter: maps of a system's numbers are loops here, spacings of curves belong to a scene's grid,
-#: the temperature at which bonds must stay and the width of thin tongues are the program's defaults.
+#: Fields of one question whose parameters have other names: ``bonds`` of advice are the bonds themselves.
+OF_ONE = {("advise", "bonds"): "bond_count"}
+
+#: Fields without a parameter: spacings of curves belong to a scene's grid, the width of thin tongues is the program's
+#: default.
 WITHOUT = {
-    ("system", "scan_x"),
-    ("system", "scan_y"),
     ("curves", "step1"),
     ("curves", "step2"),
-    ("advise", "temperature"),
     ("survey", "thinnest"),
 }
 
@@ -96,9 +98,16 @@ def test_every_field_of_a_question_has_a_parameter() -> None:
             continue
         has = {parameter for function in functions for parameter in inspect.signature(function).parameters}
         has |= SYSTEM if has & {"self", "system"} else set()
-        lacks = [field for field in every if field not in has and RENAMED.get(field) not in has]
+        lacks = [field for field in every if not has & _parameters(name, field)]
         missing += [f"{name}: {field}" for field in lacks if functions and (name, field) not in WITHOUT]
     assert not missing
     # What is listed above is there.
     assert set(ASKED) | NOT_ASKED == set(asked)
     assert {field for every in asked.values() for field in every} >= {*RENAMED, *(field for _, field in WITHOUT)}
+    assert all(field in asked[name] for name, field in OF_ONE)
+
+
+def _parameters(name: str, field: str) -> set[str]:
+    """Whose values a field may have."""
+    of_one = OF_ONE.get((name, field))
+    return {of_one} if of_one else {field, RENAMED.get(field, field)}

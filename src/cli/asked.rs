@@ -11,8 +11,8 @@ use super::paper::Paper;
 use super::progress::{Shown, announce, progress};
 use clocks::tongue::Progress;
 use documents::format::Format;
-use documents::question::{Fields, Question, Watch, Work};
-use number::error::Result;
+use documents::question::{Fields, NEEDED, Question, Watch, Work};
+use number::error::{Error, Result};
 
 /// The flags of a question, and of its table.
 #[derive(Debug, clap::Args)]
@@ -65,17 +65,34 @@ pub struct Flags<Q> {
     question: PhantomData<Q>,
 }
 
-impl<Q: Fields> Flags<Q> {
+/// The flags of a question, not built yet: a built one alone can be shown.
+fn flags<Q: Args>() -> Command {
+    Q::augment_args(Command::new(""))
+}
+
+impl<Q: Fields + Args> Flags<Q> {
     /// Whether a field is given.
     pub fn has(&self, field: &str) -> bool {
         self.given.contains_key(field)
+    }
+
+    /// The same with another value of a field.
+    pub fn with(&self, field: &str, value: &str) -> Self {
+        let mut given = self.given.clone();
+        given.insert(field.into(), value.into());
+        Flags { given, question: PhantomData }
     }
 
     /// The question that is asked by them.
     pub fn question(&self) -> Result<Q> {
         Q::read(&self.given).map_err(|error| {
             let flag = error.field().replace('_', "-");
-            error.at(&flag)
+            let mut command = flags::<Q>();
+            command.build();
+            match command.get_arguments().find(|arg| arg.get_long() == Some(&flag)) {
+                Some(arg) if error.remedy() == NEEDED => Error::missing(&flag, format!("add {arg}")),
+                _ => error.at(&flag),
+            }
         })
     }
 }
@@ -83,9 +100,8 @@ impl<Q: Fields> Flags<Q> {
 impl<Q: Fields + Args> Args for Flags<Q> {
     /// Those that the command does not have yet.
     fn augment_args(command: Command) -> Command {
-        let all = Q::augment_args(Command::new(""));
         let is_new = |flag: &&Arg| command.get_arguments().all(|known| known.get_id() != flag.get_id());
-        let new: Vec<Arg> = all.get_arguments().filter(is_new).cloned().collect();
+        let new: Vec<Arg> = flags::<Q>().get_arguments().filter(is_new).cloned().collect();
         command.args(new)
     }
 

@@ -41,7 +41,7 @@ use documents::question::{Aperture, Bands, Closings, Curves, Half, Polynomial, P
 #[cfg(unix)]
 use documents::report::file::abandon;
 use documents::report::file::{stdout_is_closed, writable, write_output};
-use number::error::Result;
+use number::error::{Error, Result};
 use progress::Patience;
 
 /// Exact, certified linear stability of multiple-time-step integrators.
@@ -176,8 +176,17 @@ pub fn program(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     };
     match run(&cli) {
         Ok(code) => code,
-        Err(error) => failure(&error.explain(|needed| format!("allow it with --budget {needed}"))),
+        Err(error) => {
+            failure(&by_its_flag(error).explain(|needed| format!("allow it with --budget {needed}")))
+        }
     }
+}
+
+/// The error of a field by the name of its flag: `rho-range` for `rho_range`.
+fn by_its_flag(error: Error) -> Error {
+    let flag = error.field().replace('_', "-");
+    let has_it = |command: &clap::Command| command.get_arguments().any(|arg| arg.get_long() == Some(&flag));
+    if flag != error.field() && whole().get_subcommands().any(has_it) { error.at(&flag) } else { error }
 }
 
 /// A process that a signal ends leaves no unfinished file behind, and ends as one without this would; a file

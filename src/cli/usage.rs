@@ -36,7 +36,7 @@ pub fn explained(error: &clap::Error, program: &clap::Command, arguments: &[OsSt
                 let remedy = format!("cannot be used with {other}: give one of them");
                 Error::input("argument", field, remedy)
             }
-            _ => Error::input("flag", names(&flag), "is given twice; give it once"),
+            _ => Error::input("flag", names(&flag), once(&flag)),
         }),
         ErrorKind::TooManyValues => invalid().map(|flag| {
             let value = shown(error, ContextKind::InvalidValue).unwrap_or_default();
@@ -113,7 +113,7 @@ impl<'a> Given<'a> {
             Some((flag, name, value)) if matches!(flag.get_action(), clap::ArgAction::Append) => {
                 format!("write the flag again before it, as {name} {value} {name} {text}")
             }
-            _ => format!("follows no flag: --help lists all{}", self.example()),
+            _ => format!("follows no flag; a text with spaces stands in quotes. --help lists all{}", self.example()),
         }
     }
 }
@@ -123,10 +123,22 @@ fn is_list(flag: &clap::Arg) -> bool {
     flag.get_value_names().into_iter().flatten().any(|name| name.contains(',') && !name.contains('='))
 }
 
+/// How to give a flag once: some take several values.
+fn once(flag: &str) -> &'static str {
+    match names(flag).as_str() {
+        "parameter" => "is given twice; give it once, further names behind commas, as b=0.1..0.2:1/100,c=1/3",
+        "methods" | "columns" | "constraints" | "on" => {
+            "is given twice; give it once, with commas between values"
+        }
+        _ => "is given twice; give it once",
+    }
+}
+
 fn bad_value(error: &clap::Error, given: &Given) -> Option<Error> {
     let flag = names(&shown(error, ContextKind::InvalidArg)?);
     let value = shown(error, ContextKind::InvalidValue).unwrap_or_default();
     let choices = shown(error, ContextKind::ValidValue).filter(|choices| !choices.is_empty());
+    let form = || format!("write a value, as {}", shown(error, ContextKind::InvalidArg).unwrap_or_default());
     let remedy = match (choices, std::error::Error::source(error)) {
         (Some(choices), _) => {
             let paints = given.flag("--colour").is_some() && flag == "color";
@@ -134,7 +146,7 @@ fn bad_value(error: &clap::Error, given: &Given) -> Option<Error> {
             format!("choose one of {}{more}", choices.replace(' ', ", "))
         }
         (None, Some(cause)) => cause.to_string(),
-        (None, None) => "write a value".into(),
+        (None, None) => form(),
     };
     // An empty value that a parser has seen is bad; else there was none.
     let absent = value.is_empty() && std::error::Error::source(error).is_none();

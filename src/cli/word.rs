@@ -90,17 +90,21 @@ impl Args {
                 if format == Format::Text { self.columns.in_digits(LISTED) } else { self.columns.clone() };
             return common.write(&columns.of(Methods {}.ask(&work)?)?, Format::Text);
         }
-        if self.family.has("parameter") {
+        let family = self.family.has("parameter").then(|| self.family.question()).transpose()?;
+        let filled = family.as_ref().map_or(Ok(None), Family::only_word)?;
+        if let Some(question) = family.filter(|_| filled.is_none()) {
             let of_one =
                 [("--method", "method"), ("--h", "h"), ("--h-range", "h_range"), ("--friction", "friction")];
             let of_one = of_one.map(|(flag, field)| (flag, self.asked.has(field)));
             unused(&of_one, "goes with one word: leave it out, or --parameter")?;
             unused(&[("--certificate", self.certificate.is_some())], "is of one word: leave it out")?;
-            let question = self.family.question()?;
             return self.answered(&question, &question.answer(&work)?, format, common);
         }
         self.certificate.as_ref().map_or(Ok(()), |path| common.apart_from_output("certificate", path))?;
-        let question = self.asked.question()?;
+        let question = match &filled {
+            Some(word) => self.asked.with("word", &word.to_string()).question()?,
+            None => self.asked.question()?,
+        };
         let answer = question.answer(&work)?;
         if let Some(path) = &self.certificate {
             certify(&question, &answer, path, common.budget)?;

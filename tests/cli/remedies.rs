@@ -139,6 +139,68 @@ const REMEDIES: &[(&str, &str, &str)] = &[
         "word \"K(a)D(1/2)K(1-2*a)D(1/2)K(a)\" --parameter a=0.1..0.3:1/100",
     ),
     (
+        "word \"K(a)D(1/2)K(1-2*a)D(1/2)K(a)\" --parameter a=0.1:0.3:0.1",
+        "write b=LO..HI:STEP",
+        "word \"K(a)D(1/2)K(1-2*a)D(1/2)K(a)\" --parameter a=0.1..0.3:0.1",
+    ),
+    (
+        "word \"K(a)D(b)K(1-2*a)D(b)K(a)\" --parameter a=0.2 --parameter b=1/2",
+        "further names behind commas",
+        "word \"K(a)D(b)K(1-2*a)D(b)K(a)\" --parameter a=0.2,b=1/2",
+    ),
+    (
+        "word \"K(a)D(1/2)K(1-2*a)D(1/2)K(a)\" --parameter a=0.2 --minimize error",
+        "ask about the word with these values",
+        "word \"K(0.2)D(1/2)K(0.6)D(1/2)K(0.2)\"",
+    ),
+    (
+        "word \"K(a)D(1/2)K(1-2*a)D(1/2)K(a)\" --parameter a=0.1..0.3:0.1 --minimize edge",
+        "--maximize edge",
+        "word \"K(a)D(1/2)K(1-2*a)D(1/2)K(a)\" --parameter a=0.1..0.3:0.1 --maximize edge",
+    ),
+    (
+        "word --method forest-ruth --lambda1 1 --h 1 --certificate word.v",
+        "write roots as decimals",
+        "word \"K(0.675603595979829) D(1.351207191959658) K(-0.175603595979829) D(-1.702414383919316) K(-0.175603595979829) D(1.351207191959658) K(0.675603595979829)\" --lambda1 1 --h 1 --certificate word.v",
+    ),
+    (
+        "word --method respa-4 --h 1",
+        "add --lambda1",
+        "word --method respa-4 --h 1 --lambda1 1 --lambda2 1/16",
+    ),
+    ("word PEFRL", "did you mean --method pefrl?", "word --method pefrl"),
+    ("word --method PEFRL", "did you mean pefrl?", "word --method pefrl"),
+    (
+        "compare --methods pefrl,forest-ruth --by-cost",
+        "add --h-range <LO..HI>",
+        "compare --methods pefrl,forest-ruth --by-cost --h-range 0..4 --h-step 1",
+    ),
+    (
+        "compare --methods pefrl forest-ruth --h-range 0..4 --h-step 1",
+        "commas without spaces",
+        "compare --methods pefrl,forest-ruth --h-range 0..4 --h-step 1",
+    ),
+    (
+        "compare --methods respa-4,pefrl --h-range 0..4 --h-step 1",
+        "rho-range missing: two forces",
+        "compare --methods respa-4,pefrl --h-range 0..4 --h-step 1 --rho-range 0..1 --rho-step 1/2",
+    ),
+    (
+        "compare --methods respa-4,pefrl --h-range 0..4 --h-step 1",
+        "or --h1-range, --h2-range and --step",
+        "compare --methods respa-4,pefrl --h1-range 0..4 --h2-range 0..4 --step 1",
+    ),
+    (
+        "system data/two-bars.json --scan courant=1/2..1:1/2",
+        "did you mean mesh.courant?",
+        "system data/two-bars.json --scan mesh.courant=1/2..1:1/2",
+    ),
+    (
+        "system data/fpu.json --intervals outer=1/10..1/5:1/10",
+        "without a spacing: write 1/10..1/5",
+        "system data/fpu.json --intervals outer=1/10..1/5",
+    ),
+    (
         "tongues --ratio 5/3 --rho -1/25",
         "use `map` or `verdict`",
         "verdict --lambda1 10 --lambda2 -2/5 --h1 1 --h2 5/3",

@@ -19,16 +19,17 @@
 //!
 //! ```
 //! use kickdrift_clocks::number::rational::ratio;
-//! use kickdrift_clocks::propagator::TwoClocks;
-//! use kickdrift_clocks::tongue::Tongues;
-//! use kickdrift_clocks::verdict::{Kind, Limits, decide};
+//! use kickdrift_clocks::{Kind, Limits, Oscillator, Tongues, TwoClocks, decide, decide_steps};
+//! // Stiffnesses and steps as people write them: just below h2 = T½ = 1, resonant.
+//! let pair = Oscillator::builder().lambda1("pi^2").lambda2("pi^2/25").h1("1/100").h2("0.98").build()?;
+//! assert!(!decide_steps(&pair, &Limits::default())?.verdict.is_stable());
 //! // h2/h1 = 3/2, s = h1² Λ1 = 5/2, Λ2 = Λ1/25.
 //! let clocks = TwoClocks::with_rho("3/2".parse()?, ratio(5, 2), ratio(1, 25));
 //! let answer = decide(&clocks, &Limits::default())?;
 //! assert_eq!(answer.verdict.kind(), Kind::Elliptic);
 //! // p + q − 1 unstable intervals of s, one for each label m.
 //! assert_eq!(Tongues::new("3/2".parse()?, &ratio(1, 25))?.all()?.len(), 4);
-//! # Ok::<(), kickdrift_clocks::number::error::Error>(())
+//! # Ok::<(), kickdrift_clocks::Error>(())
 //! ```
 
 pub mod band;
@@ -41,3 +42,11 @@ pub mod tongue;
 pub mod verdict;
 
 pub use number;
+
+// What everyone needs, without the way to it.
+pub use map::{Grid, Map};
+pub use number::error::{Error, Result};
+pub use propagator::{HalfPeriod, Oscillator, TwoClocks, half_period};
+pub use resonance::{Families, dominant_family};
+pub use tongue::{Tongues, closings};
+pub use verdict::{Kind, Limits, Side, Verdict, decide, decide_steps};

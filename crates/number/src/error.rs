@@ -61,6 +61,12 @@ const LONGEST_TEXT: usize = 400;
 /// The longest list of names in a remedy, the words about it left out.
 const LONGEST_LIST: usize = LONGEST_TEXT - 60;
 
+/// A part of a name that stands for it has this many letters at least.
+const SHORTEST_PART: usize = 3;
+
+/// The most names of which one may be meant.
+pub const MOST_LIKE: usize = 6;
+
 impl Error {
     fn new(kind: Kind, field: impl fmt::Display, remedy: impl fmt::Display) -> Self {
         let (field, remedy) = (field.to_string(), remedy.to_string());
@@ -78,8 +84,8 @@ impl Error {
     /// all of them, or as many as a line has room for.
     pub fn unknown<'a>(field: &str, given: &str, names: impl IntoIterator<Item = &'a str>) -> Self {
         let names: Vec<&str> = names.into_iter().collect();
-        let like: Vec<&str> = names.iter().copied().filter(|name| is_like(given, name)).collect();
-        let remedy = if like.is_empty() {
+        let like = likes(given, &names);
+        let remedy = if like.is_empty() || like.len() > MOST_LIKE {
             let fits = |count: &usize| {
                 names[..*count].iter().map(|name| name.len() + 2).sum::<usize>() < LONGEST_LIST
             };
@@ -243,7 +249,22 @@ pub fn room(bytes: u128, fewer: &str) -> Result<()> {
 /// Whether a word may be a slip of the keyboard for another: one letter in three is wrong, missing or too
 /// much.
 pub fn is_like(given: &str, known: &str) -> bool {
-    3 * strsim::damerau_levenshtein(given, known) <= given.len().max(known.len())
+    let [given, known] = [given, known].map(str::to_lowercase);
+    3 * strsim::damerau_levenshtein(&given, &known) <= given.len().max(known.len())
+}
+
+/// The names that one may be meant for: the same but for capital letters, else those like it, else those that
+/// it is a part of.
+pub fn likes<'a>(given: &str, names: &[&'a str]) -> Vec<&'a str> {
+    let that = |is_meant: &dyn Fn(&str) -> bool| -> Vec<&'a str> {
+        names.iter().copied().filter(|name| is_meant(name)).collect()
+    };
+    let same = that(&|name| name.eq_ignore_ascii_case(given));
+    let like = if same.is_empty() { that(&|name| is_like(given, name)) } else { same };
+    if !like.is_empty() || given.len() < SHORTEST_PART {
+        return like;
+    }
+    that(&|name| name.contains(&given.to_lowercase()))
 }
 
 /// Characters that are not seen or turn the direction of what follows: marks, embeddings, isolates, tags, a

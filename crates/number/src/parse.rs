@@ -1,7 +1,8 @@
 //! Typed numbers, read exactly: `0.3` is 3/10, and `pi^2/25` keeps its π.
 //!
 //! The grammar: sums, differences, products `*`, quotients `/` and integer powers `^` of decimals
-//! (`3`, `0.3`, `.5`, `1e-3`), of `pi` (or `π`) and of parentheses. A product needs its `*`. The sign binds
+//! (`3`, `0.3`, `.5`, `1e-3`), of `pi` (or `π`) and of parentheses. A product needs its `*` (or `·`, `×`),
+//! and a minus may be printed as `−`. The sign binds
 //! weaker than the power: `-2^2` is −4. Every quotient must stay in ℚ[π, 1/π], so a divisor is c π^k.
 //!
 //! ```
@@ -15,6 +16,15 @@
 
 pub mod arithmetic;
 mod grammar;
+
+/// A sign as keyboards have it: papers print `−` for `-`, and `×` or `·` for `*`.
+pub fn typed(c: char) -> char {
+    match c {
+        '−' => '-',
+        '×' | '·' => '*',
+        c => c,
+    }
+}
 
 pub use grammar::{MAX_BITS, MAX_CHARACTERS, MAX_PI_EXPONENT};
 
@@ -74,7 +84,14 @@ pub fn parse_integer_range(field: &str, text: &str) -> Result<(i64, i64)> {
 
 fn split_range<'a>(field: &str, text: &'a str, example: &str) -> Result<(&'a str, &'a str)> {
     let ends = text.split_once("..").filter(|(lo, hi)| !lo.trim().is_empty() && !hi.trim().is_empty());
-    ends.ok_or_else(|| Error::input(field, text, format!("must be a range LO..HI, such as {example}")))
+    match ends {
+        Some((lo, hi)) if hi.contains(':') => {
+            let hi = hi.split(':').next().unwrap_or_default();
+            Err(Error::input(field, text, format!("is a range without a spacing: write {lo}..{hi}")))
+        }
+        Some(ends) => Ok(ends),
+        None => Err(Error::input(field, text, format!("must be a range LO..HI, such as {example}"))),
+    }
 }
 
 fn reversed(field: &str, text: &str) -> Error {

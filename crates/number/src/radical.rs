@@ -69,6 +69,20 @@ impl RadicalField {
         }
     }
 
+    /// The text of an element, its powers of the root in one: `2^(2/3)` for `(2^(1/3))^2`.
+    fn plain(&self, text: String) -> String {
+        // Powers of two digits begin as others do.
+        if !(3..10).contains(&self.n) {
+            return text;
+        }
+        let (name, c, n) = (self.name(), &self.radicand, self.n);
+        // A power that has a factor in common with n is one of another root.
+        let powers = (2..n).rev().filter(|k| k.gcd(&n) == 1);
+        let text =
+            powers.fold(text, |text, k| text.replace(&format!("{name}^{k}"), &format!("{c}^({k}/{n})")));
+        if text.contains(&format!("{name}^")) { text } else { text.replace(&name, &format!("{c}^(1/{n})")) }
+    }
+
     /// The root d^(1/m) of this field's kind, where it lies in it: a rational times a power of the generator.
     fn hold(&self, other: &RadicalField) -> Option<Radical> {
         // d^(1/m) = e c^(k/n) iff d^n = e^(mn) c^(km).
@@ -134,11 +148,30 @@ impl Radical {
         self.polynomial().map(Radical::from_rational).eval(root)
     }
 
-    /// The number in the notation of words: `1/2 - 1/6*sqrt(3)`.
+    /// The number in the notation of words: `1/2 - 1/6*sqrt(3)`, `1/12*2^(2/3) + 1/3`.
     pub fn text(&self, rational: impl Fn(&Rational) -> String) -> String {
         match (self.as_rational(), self.field()) {
             (Some(x), _) => rational(&x),
-            (None, field) => self.polynomial().text(&[&field.map(RadicalField::name).unwrap_or_default()]),
+            (None, None) => self.polynomial().text(&[""]),
+            (None, Some(field)) => field.plain(self.polynomial().text(&[&field.name()])),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rational::ratio;
+
+    #[test]
+    fn powers_of_a_root_are_written_as_one_power() {
+        let text = |x: &Radical| x.text(ToString::to_string);
+        let root = Radical::root(&ratio(2, 1), 3).unwrap();
+        let sum = &(&root * &root) + &root;
+        assert_eq!(text(&sum), "2^(2/3) + 2^(1/3)");
+        // The square of a fourth root is the root of another field.
+        let fourth = Radical::root(&ratio(2, 1), 4).unwrap();
+        assert_eq!(text(&(&(&fourth * &fourth) + &fourth)), "(2^(1/4))^2 + (2^(1/4))");
+        assert_eq!(text(&Radical::root(&ratio(3, 1), 2).unwrap()), "sqrt(3)");
     }
 }

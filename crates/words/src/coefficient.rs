@@ -97,7 +97,13 @@ impl Reader<'_> {
     }
 
     pub fn expect(&mut self, wanted: char, after: &str) -> Read<()> {
-        if self.skip(wanted) { Ok(()) } else { self.wrong(self.at, format!("expected {wanted:?} {after}")) }
+        if self.skip(wanted) {
+            return Ok(());
+        }
+        // As 2b, 2(1-b) or 2sqrt(3) go on.
+        let is_product = wanted == ')' && self.peek().is_some_and(|c| c == '(' || c.is_lowercase());
+        let why = if is_product { PRODUCT.into() } else { format!("expected {wanted:?} {after}") };
+        self.wrong(self.at, why)
     }
 
     pub fn nested<T>(&mut self, inside: impl FnOnce(&mut Self) -> Read<T>) -> Read<T> {
@@ -165,12 +171,7 @@ impl Reader<'_> {
                     return Ok(value.clone());
                 }
                 if name != "sqrt" {
-                    return self.wrong(
-                        at,
-                        format!(
-                            "{name} is no number: write a decimal, sqrt(c) or c^(1/n), or give {name} values by parameter, as {name}=1/6..1/4:1/100"
-                        ),
-                    );
+                    return self.wrong(at, self.unnamed(&name));
                 }
                 self.expect('(', "after sqrt")?;
                 let value = self.nested(Self::sum)?;
@@ -182,6 +183,23 @@ impl Reader<'_> {
             }
             None => self.wrong(at, "the text ends where a number should stand"),
         }
+    }
+
+    /// What to write in place of a name that no number has.
+    fn unnamed(&self, name: &str) -> String {
+        if name.starts_with(|c: char| c.is_uppercase()) {
+            return format!("{name} begins where a number should stand: close the parenthesis before it");
+        }
+        let known: Vec<&str> = self.named.iter().map(|(known, _)| *known).collect();
+        let or = match (name, self.peek(), &known[..]) {
+            // Functions and constants want no values.
+            ("pi" | "π", ..) | (_, Some('('), _) => String::new(),
+            (.., []) => {
+                format!(", or give {name} a value by --parameter, as {name}=1/6 or {name}=1/6..1/4:1/100")
+            }
+            (.., known) => format!("; the parameters given are {}", known.join(", ")),
+        };
+        format!("{name} is no number: write a decimal, sqrt(c) or c^(1/n){or}")
     }
 
     fn decimal(&mut self) -> Read<Radical> {
@@ -207,6 +225,8 @@ impl Reader<'_> {
 
 pub(super) const TWO_FIELDS: &str =
     "one word has the powers of one root, such as 2^(1/3); write another root as a decimal";
+
+const PRODUCT: &str = "write * for a product, as 2*b";
 
 /// The bits of a number's coefficients.
 fn size(x: &Radical) -> u64 {

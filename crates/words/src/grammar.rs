@@ -2,14 +2,16 @@
 
 use std::str::FromStr;
 
+use super::catalogue::METHODS;
 use super::coefficient::{Read, Reader, TWO_FIELDS};
 use super::damping::Damping;
 use super::filter::Filter;
 use super::letters::{Force, Item, Letter, Word};
 use num_traits::Zero;
 use number::Radical;
-use number::error::{Error, Result};
+use number::error::{Error, MOST_LIKE, Result, likes};
 use number::parse::arithmetic::Arithmetic;
+use number::parse::typed;
 
 /// The longest text that is read, in characters.
 const MAX_CHARACTERS: usize = 20_000;
@@ -50,22 +52,45 @@ impl Word {
                 format!("write it in {MAX_CHARACTERS} characters at most"),
             ));
         }
-        let mut reader =
-            Reader { characters: text.chars().collect(), at: 0, depth: 0, known: Radical::zero(), named };
+        let characters = text.chars().map(typed).collect();
+        let mut reader = Reader { characters, at: 0, depth: 0, known: Radical::zero(), named };
         let items = reader.items().and_then(|items| match reader.peek() {
             None if items.is_empty() => reader.wrong(0, "a word has letters, as K(1/2) D(1) K(1/2)"),
             None => Ok(items),
-            Some(c) if c.is_ascii_lowercase() => reader
-                .wrong(reader.at, format!("unexpected {c:?}; {LETTERS}; a name is a method, not a word")),
-            Some(c) => reader.wrong(reader.at, format!("unexpected {c:?}; {LETTERS}")),
+            Some(c) => reader.wrong(reader.at, unexpected(c, &items)),
         });
+        if items.is_err()
+            && let Some(remedy) = of_catalogue(text)
+        {
+            return Err(Error::input("word", text, remedy));
+        }
         let items =
             items.map_err(|(at, why)| Error::input("word", text, format!("character {}: {why}", at + 1)))?;
         Word::new(items).ok_or_else(|| Error::input("word", text, TWO_FIELDS))
     }
 }
 
-const LETTERS: &str = "the letters are K, K1, K2, D, C, C1, C2, R, R1, R2, O, F, I and n*(...)";
+const LETTERS: &str =
+    "K(c) is a kick, D(c) a drift; other letters are K1, K2, C, C1, C2, R, R1, R2, O, F, I and n*(...)";
+
+/// What to write where no letter begins.
+fn unexpected(c: char, before: &[Item]) -> String {
+    match c {
+        '*' | ',' | ';' | '+' | '@' | '∘' if !before.is_empty() => {
+            format!("letters follow each other without {c:?}, as K(1/2) D(1) K(1/2)")
+        }
+        '(' => "letters in parentheses are repeated, as 2*(K(1/4) D(1/2) K(1/4))".into(),
+        c => format!("unexpected {c:?}; {LETTERS}"),
+    }
+}
+
+/// How to ask for a method of the catalogue, where a text is its name or nearly so.
+fn of_catalogue(text: &str) -> Option<String> {
+    let names: Vec<&str> = METHODS.iter().map(|method| method.name).collect();
+    let like = if text.contains('(') { Vec::new() } else { likes(text.trim(), &names) };
+    let flags: Vec<String> = like.iter().take(MOST_LIKE).map(|name| format!("--method {name}")).collect();
+    (!flags.is_empty()).then(|| format!("is no word; did you mean {}?", flags.join(" or ")))
+}
 
 const FILTERS: &str =
     "a filter is made of sinc(x), sinc(x/2), cos(x/2), their powers, 1 and 0, as [sinc(x/2)^2]";
@@ -192,5 +217,40 @@ impl Reader<'_> {
             _ => return self.wrong(at, FILTERS),
         };
         Ok(Filter { cos, sinc, zero: false })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn signs_are_read_as_papers_print_them() {
+        let printed: Word = "K(1/6) D(1/2) K(2·1/3, −1/36) D(1/2) K(1×1/6)".parse().unwrap();
+        let typed: Word = "K(1/6) D(1/2) K(2*1/3, -1/36) D(1/2) K(1*1/6)".parse().unwrap();
+        assert_eq!(printed, typed);
+    }
+
+    #[test]
+    fn a_text_that_is_nearly_a_word_is_answered_with_what_it_lacks() {
+        let b = Radical::zero();
+        for (text, why) in [
+            ("K(2b) D(1)", "write * for a product"),
+            ("K(2(b-1)) D(1)", "write * for a product"),
+            ("K(1/2)*D(1)", "follow each other without '*'"),
+            ("(K(1/2) D(1))^2", "2*(K(1/4)"),
+            ("B(1/2) A(1)", "K(c) is a kick, D(c) a drift"),
+            ("K(c) D(1)", "the parameters given are b"),
+            ("K(sin(1)) D(1)", "is no number: write a decimal, sqrt(c) or c^(1/n)"),
+            ("K(1/2, D(1)", "close the parenthesis before it"),
+            ("BAOAB", "did you mean --method baoab?"),
+            ("velocity-verlet", "did you mean --method velocity-verlet?"),
+            ("molly", "--method molly-short or --method molly-linear"),
+        ] {
+            let error = Word::with(text, &[("b", b.clone())]).unwrap_err().to_string();
+            assert!(error.contains(why), "{error}");
+        }
+        let alone = "K(b) D(1)".parse::<Word>().unwrap_err().to_string();
+        assert!(alone.contains("as b=1/6 or b=1/6..1/4:1/100"), "{alone}");
     }
 }

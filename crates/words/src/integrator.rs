@@ -6,7 +6,7 @@ use super::letters::Word;
 use super::point::{At, at};
 use super::product::Forces;
 use super::trigonometric::Shape;
-use number::error::{Error, Result};
+use number::error::Result;
 use number::{Laurent, Rational};
 
 /// An integrator of x'' + (Λ1 + Λ2) x = 0, Λ1 the fast force.
@@ -39,10 +39,9 @@ impl Integrator {
         match (method(text), text.parse()) {
             (Ok(method), _) => Ok(method.word()),
             (_, Ok(word)) => Ok(word),
-            (Err(unknown), _) => {
-                let remedy = format!("write a word, or a method: {}", unknown.remedy());
-                Err(Error::input("methods", text, remedy))
-            }
+            // Letters have coefficients, names have none.
+            (_, Err(wrong)) if text.contains('(') => Err(wrong),
+            (Err(unknown), _) => Err(unknown.at("methods")),
         }
     }
 

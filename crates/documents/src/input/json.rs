@@ -7,7 +7,7 @@ use std::fmt;
 
 use serde::de::{DeserializeOwned, DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 
-use number::error::room;
+use number::error::{is_like, room};
 
 /// A value of this type, from a text in which no object has a key twice.
 ///
@@ -59,7 +59,11 @@ pub fn plain(cause: &serde_json::Error) -> String {
     match words.split_once(", expected ") {
         Some((unknown, known)) => {
             let known = known.strip_prefix("one of ").unwrap_or(known);
-            format!("{unknown}; known here: {known}")
+            let given = unknown.split('`').nth(1).unwrap_or_default();
+            match known.split('`').skip(1).step_by(2).find(|name| is_like(given, name)) {
+                Some(name) => format!("{unknown}; did you mean `{name}`?"),
+                None => format!("{unknown}; known here: {known}"),
+            }
         }
         None => words.into(),
     }
@@ -204,7 +208,8 @@ mod tests {
         let whole = from_str::<u64>("1.5").map_err(|cause| plain(&cause)).unwrap_err();
         assert_eq!(whole, "found the number 1.5 where a whole number, 0 or more, belongs");
         assert_eq!(wrong("{\"list\": [], \"name\": [1]}"), "found a list where a text belongs");
-        assert_eq!(wrong("{\"lists\": []}"), "unknown field `lists`; known here: `list` or `name`");
+        assert_eq!(wrong("{\"lists\": []}"), "unknown field `lists`; did you mean `list`?");
+        assert_eq!(wrong("{\"other\": []}"), "unknown field `other`; known here: `list` or `name`");
         assert_eq!(wrong("{}"), "missing field `list`");
         assert_eq!(wrong("{\"list\": ["), "the text ends before its last brace or bracket is closed");
         assert!(wrong("{\"list\": x}").starts_with("no JSON from here on"));

@@ -151,8 +151,11 @@ pub(super) fn parsed<T: Notation>(name: &str, value: &Value) -> Result<T> {
 pub fn read<T: Field>(name: &str, from: &Map<String, Value>, default: Option<&str>) -> Result<T> {
     let default = default.map(Value::from);
     let number = T::of(from.get(name).or(default.as_ref()), name);
-    number.unwrap_or_else(|| Err(Error::missing(name, "the question needs it: add it")))
+    number.unwrap_or_else(|| Err(Error::missing(name, NEEDED)))
 }
+
+/// The remedy where a field is missing; the program names its flag instead.
+pub const NEEDED: &str = "the question needs it: add it";
 
 /// The first of a field's names that is given, or its own.
 pub fn name<'a>(names: &[&'a str], from: &Map<String, Value>) -> &'a str {

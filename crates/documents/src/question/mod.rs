@@ -54,7 +54,7 @@ pub use claims::{Checked, Claimed, Claims, Held, WordCheck};
 pub use closings::{Closings, DIGITS};
 pub use compare::{Compare, Over};
 pub use curves::Curves;
-pub use field::{Field, Notation, StepRange, flag, shown_range};
+pub use field::{Field, NEEDED, Notation, StepRange, flag, shown_range};
 pub use half::Half;
 pub use map::Map;
 pub use polynomial::{Polynomial, Polynomials};

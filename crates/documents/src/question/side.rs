@@ -152,7 +152,7 @@ impl CompareMethods {
     }
 
     fn without_second() -> Error {
-        let remedy = "give the range and spacing of lambda2/lambda1, or those of h2 (lambda2 goes with h2)";
+        let remedy = "two forces have a second axis: add --rho-range and --rho-step (of lambda2/lambda1), or --h1-range, --h2-range and --step in place of those of h";
         Error::missing("rho_range", remedy)
     }
 
@@ -340,7 +340,7 @@ impl Question for CompareMethods {
     fn figure(&self, sides: &Vec<Side>, _: &Work) -> Result<Option<Figure>> {
         let [steps, ratios] = self.grid()?.map(|all| all.iter().map(to_f64).collect::<Vec<_>>());
         let Some((_, second, by_step)) = self.second()? else {
-            let remedy = "words of one force have no plane of steps to draw: give the range and spacing of lambda2/lambda1";
+            let remedy = "words of one force have no plane of steps to draw: add --rho-range and --rho-step, which give a second force beside theirs";
             return Err(Error::missing("rho_range", remedy));
         };
         let (across, up, by_step) = (to_f64(&self.h_step), to_f64(second), by_step.is_some());

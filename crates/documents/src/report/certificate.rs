@@ -156,7 +156,7 @@ pub fn coq_of_word(
     let mut letters = Vec::new();
     for letter in word.letters() {
         let own = Own::of(letter).ok_or_else(|| {
-            let remedy = "a certificate is of kicks, drifts and midpoints with rational coefficients";
+            let remedy = "a certificate is of kicks, drifts and midpoints with rational coefficients: write roots as decimals";
             Error::input("word", letter, remedy)
         })?;
         letters.push(own);

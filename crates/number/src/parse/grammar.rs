@@ -4,6 +4,7 @@ use num_bigint::BigInt;
 use num_traits::{One, ToPrimitive, Zero};
 
 use super::arithmetic::{Arithmetic, Operation};
+use super::typed;
 use crate::{Laurent, Rational};
 
 /// The longest text that is read, in characters.
@@ -37,7 +38,7 @@ pub(super) fn evaluate(text: &str) -> Parsed<Laurent> {
     if text.chars().nth(MAX_CHARACTERS).is_some() {
         return Err(format!("longer than {MAX_CHARACTERS} characters; write the number shorter"));
     }
-    let characters: Vec<char> = text.chars().filter(|c| !c.is_whitespace()).collect();
+    let characters: Vec<char> = text.chars().filter(|c| !c.is_whitespace()).map(typed).collect();
     if characters.is_empty() {
         return Err("empty; write a number such as 3/10, 0.3 or pi^2/25".into());
     }

@@ -59,7 +59,7 @@ pub trait Model: Debug + Send + Sync {
     /// The error for a question that it has no answer to.
     fn refused(&self, what: &str) -> Error {
         let remedy = format!(
-            "{what} needs stiffnesses by reference, as {{\"npz\": \"water.npz\", \"array\": \"fast\"}}; `kickdrift system` takes numbers in place"
+            "{what} needs stiffnesses by reference, as {{\"npz\": \"water.npz\", \"array\": \"fast\"}} (in Python System.from_hessians makes them); `kickdrift system` takes numbers in place"
         );
         Error::input("stiffness", "given in place", remedy)
     }

@@ -224,6 +224,9 @@ pub(super) fn no_system(cause: serde_json::Error) -> Error {
     Error::input(
         "system",
         place,
-        format!("{}; write one JSON object as in data/scenes/diatomic-tether.json", json::plain(&cause)),
+        format!(
+            "{}; write one JSON object as in data/scenes/diatomic-tether.json",
+            json::plain(&cause).trim_end_matches('?')
+        ),
     )
 }

@@ -93,8 +93,12 @@ impl SystemScene {
     /// # Errors
     /// A file without `time_unit`, or with another than fs, ps, ns or s.
     pub fn femtoseconds(&self) -> Result<Rational> {
-        let missing =
-            || Error::missing("time_unit", "say in the file what its steps are in, as \"time_unit\": \"ps\"");
+        let missing = || {
+            Error::missing(
+                "time_unit",
+                "say what its steps are in: \"time_unit\": \"ps\" in the file, time_unit='ps' in Python",
+            )
+        };
         let one = format!("1 {}", self.time_unit().ok_or_else(missing)?);
         unit::rational("time_unit", &one, Dimension::Time)
     }

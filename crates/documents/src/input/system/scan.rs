@@ -204,7 +204,10 @@ impl SystemScene {
         {
             return Ok(SystemScene { source: file, model: Arc::new(sparse_system), ..self.clone() });
         }
-        let mut scene = SystemScene::from_json_in(self.arrays.clone(), file)?;
+        let mut scene = SystemScene::from_json_in(self.arrays.clone(), file).map_err(|error| {
+            // The file itself was read: a key was added that no system has.
+            if error.field() == "system" { unknown_path(&self.source, field, numbers) } else { error }
+        })?;
         let method = self.model.method();
         if scene.model.method() != method {
             scene.model = with_method(scene.model, scene.bonds.as_ref(), method)?;
@@ -246,6 +249,42 @@ fn scale_steps(file: &mut Value, outer: &Rational, field: &str) -> Result<()> {
     let factor = outer / longest;
     steps.into_iter().zip(given).for_each(|(value, step)| *value = (step * &factor).to_string().into());
     Ok(())
+}
+
+/// That one of these paths leads to no number of a system, and which ones of the file end like it.
+fn unknown_path(file: &Value, field: &str, numbers: &[(&str, &Rational)]) -> Error {
+    let mut known = Vec::new();
+    number_paths(file, "", &mut known);
+    let is_new = |path: &&str| *path != OUTER && !known.iter().any(|own| own == path);
+    let path = numbers.iter().map(|(path, _)| *path).find(is_new).unwrap_or(OUTER);
+    let last = path.rsplit('.').next();
+    let like: Vec<&str> = known
+        .iter()
+        .map(String::as_str)
+        .filter(|own| own.rsplit('.').next() == last)
+        .take(MOST_LIKE)
+        .collect();
+    let remedy = match &like[..] {
+        [] => "is no number of a system: name one of the file, as potentials.1.step or build.steps.0".into(),
+        like => format!("is no number of the file; did you mean {}?", like.join(" or ")),
+    };
+    Error::input(field, path, remedy)
+}
+
+/// The most paths of which one may be meant.
+const MOST_LIKE: usize = 3;
+
+/// The paths of all numbers and texts in a file.
+fn number_paths(value: &Value, path: &str, known: &mut Vec<String>) {
+    let below = |key: &str| if path.is_empty() { key.to_string() } else { format!("{path}.{key}") };
+    match value {
+        Value::Object(map) => map.iter().for_each(|(key, value)| number_paths(value, &below(key), known)),
+        Value::Array(all) => {
+            all.iter().enumerate().for_each(|(n, value)| number_paths(value, &below(&n.to_string()), known));
+        }
+        Value::Number(_) | Value::String(_) => known.push(path.into()),
+        Value::Null | Value::Bool(_) => (),
+    }
 }
 
 /// The path of the entry (j, i) of a symmetric matrix for that of (i, j), i ≠ j.

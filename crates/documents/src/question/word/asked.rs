@@ -121,8 +121,10 @@ impl Word {
 
     /// h² Λ1, for a step that is given.
     pub(super) fn s(&self, h: &Laurent, field: &str) -> Result<Laurent> {
-        let lambda1 =
-            self.lambda1.as_ref().ok_or_else(|| Error::missing("lambda1", "a step needs the stiffness"))?;
+        let lambda1 = self
+            .lambda1
+            .as_ref()
+            .ok_or_else(|| Error::missing("lambda1", "a step needs the stiffness: add --lambda1"))?;
         if h.sign() != Sign::Positive {
             return Err(Error::input(field, h, "a step must be positive"));
         }

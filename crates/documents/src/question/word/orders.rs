@@ -20,15 +20,12 @@ impl Linted {
         let text = |order: &FormalOrder, on: &str| {
             let least = if order.order == *most { "at least " } else { "" };
             let rounded = if order.nominal > order.order {
-                format!(
-                    "; {} but for {}, which rounded coefficients leave",
-                    order.nominal,
-                    commutators(&order.error, 1)
-                )
+                let rest = commutators(&order.error, 1);
+                format!(" but for {rest}, which rounded coefficients leave; {} exactly", order.order)
             } else {
                 String::new()
             };
-            format!("{least}{} {on}{rounded}", order.order)
+            format!("{least}{} {on}{rounded}", order.nominal)
         };
         let mut lines = vec![("general", text(general, "on all problems"))];
         if (nystrom.order, nystrom.nominal) != (general.order, general.nominal) {

@@ -61,11 +61,11 @@ impl Linted {
         let least = if order >= MOST_ORDER && !self.word.is_algebraic() { "at least " } else { "" };
         let friction = if self.word.has_friction() { ", friction aside" } else { "" };
         let rounded = if nominal > order {
-            format!("; {nominal} but for errors below 1e-9, as rounded coefficients have them")
+            format!(" but for errors below 1e-9, as rounded coefficients have them; {order} exactly")
         } else {
             String::new()
         };
-        let order = format!("{least}{order} on oscillators{friction}{rounded}");
+        let order = format!("{least}{nominal} on oscillators{friction}{rounded}");
         let mut lines = vec![("consistent", consistent), ("palindrome", palindrome), ("order", order)];
         lines.extend(self.on_all_problems());
         for (name, term) in [("frequency", &self.order.frequency), ("impedance", &self.order.impedance)] {
@@ -117,6 +117,12 @@ impl Linted {
                 },
             ));
         }
+        if self.word.names_forces() && question.lambda1.is_none() {
+            lines.push((
+                "stable",
+                "not told: two forces want their stiffnesses, --lambda1 and --lambda2".into(),
+            ));
+        }
         if self.word.has_friction() {
             lines.push((
                 "friction",
@@ -145,7 +151,7 @@ impl Linted {
             let (most, least) = (enclosed(most), enclosed(least));
             lines.push((
                 "efficiency",
-                format!("{unit} = {most} for each of them at most, {least} of them per unit"),
+                format!("{unit} up to {most} for each of these; at least {least} of these per {unit} = 1"),
             ));
         }
         lines
@@ -205,7 +211,10 @@ fn beside_one(sum: &Radical) -> String {
     match rest {
         0.0 => shown(sum),
         rest if rest.abs() < LITTLE => format!("1 {} {:.1e}", if rest < 0.0 { '-' } else { '+' }, rest.abs()),
-        _ => shown(sum),
+        _ => match shown(sum) {
+            text if text.contains('e') => format!("{:.6}", sum.enclosure(BITS).mid_f64()),
+            text => text,
+        },
     }
 }
 

@@ -253,7 +253,8 @@ fn oscillator_lines(clocked: &Clocked) -> Vec<String> {
     let mut lines = vec![format!("  trace Tr Q = {}", decimal::enclosure(lo, hi))];
     if let Some(m) = clocked.label {
         let families: Vec<String> = clocked.families.iter().map(|family| terms(family, "h")).collect();
-        lines.push(format!("  m = {m} half turns a period: 1/T_half near {}", families.join(" = ")));
+        let turns = if m == 1 { "turn" } else { "turns" };
+        lines.push(format!("  m = {m} half {turns} a period: 1/T_half near {}", families.join(" = ")));
     }
     lines
 }

@@ -99,6 +99,9 @@ impl FromStr for Parameters {
             if name == "sqrt" || name.is_empty() || !name.chars().all(|c| c.is_ascii_lowercase()) {
                 return Err(wrong("name a parameter by lower-case letters, as b"));
             }
+            if !values.contains("..") && values.contains(':') {
+                return Err(wrong(&format!("two points stand between the ends of a range: {AS}")));
+            }
             if !values.contains("..") {
                 let value = parse_rational("parameter", values)?;
                 return Ok(Parameter { name, range: (value.clone(), value), step: None });
@@ -120,8 +123,7 @@ impl FromStr for Parameters {
         }
         let found = Parameters(all);
         match found.ranged().count() {
-            0 => Err(wrong("give one parameter a range: b=LO..HI:STEP")),
-            1..=MOST_RANGES => Ok(found),
+            0..=MOST_RANGES => Ok(found),
             _ => Err(wrong("two parameters at most have a range: give the others one value")),
         }
     }
@@ -167,7 +169,8 @@ question! {
         word: String,
         /// A row for each value of a name in the word, as b=0.15..0.25:1/100 in K(b)D(1/2)K(1-2*b)D(1/2)K(b).
         ///
-        /// Further names stand behind commas, one more with a range, others with a value.
+        /// Further names stand behind commas, one more with a range, others with a value. Where none has a
+        /// range, the program puts the values in, and answers about one word.
         #[arg(long, value_name = "B=LO..HI:STEP", required = false, value_parser = flag::<Parameters>)]
         parameter: Parameters,
         /// With --parameter, the value with the greatest: edge (the longest stable step) or efficiency (the
@@ -192,6 +195,16 @@ question! {
 }
 
 impl Family {
+    /// The word itself, where every parameter has one value and none is looked for.
+    ///
+    /// # Errors
+    /// A text that is no word with these names.
+    pub fn only_word(&self) -> Result<Option<words::Word>> {
+        let values = self.parameter.0.iter().map(|parameter| parameter.range.0.clone());
+        let is_one = self.parameter.ranged().next().is_none() && self.goal().is_none();
+        is_one.then(|| self.word_at(&values.collect::<Vec<_>>())).transpose()
+    }
+
     /// What is to be best.
     pub fn goal(&self) -> Option<Goal> {
         self.maximize.or(self.minimize)
@@ -205,10 +218,12 @@ impl Family {
                 Err(Error::input("minimize", "given", "give --maximize or --minimize, not both"))
             }
             (Some(goal), ..) if !is_great(goal) => {
-                Err(Error::input("maximize", goal.name(), "choose edge or efficiency"))
+                let remedy = format!("choose edge or efficiency; --minimize {} makes it least", goal.name());
+                Err(Error::input("maximize", goal.name(), remedy))
             }
             (_, Some(goal), _) if is_great(goal) => {
-                Err(Error::input("minimize", goal.name(), "choose error or bias"))
+                let remedy = format!("choose error or bias; --maximize {} makes it greatest", goal.name());
+                Err(Error::input("minimize", goal.name(), remedy))
             }
             (.., Some(up_to)) if up_to.sign() != Sign::Positive => {
                 Err(Error::input("up-to", up_to, "a step must be positive"))

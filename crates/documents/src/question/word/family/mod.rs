@@ -30,6 +30,10 @@ impl Question for Family {
 
     fn answer(&self, work: &Work) -> Result<Members> {
         self.check()?;
+        if self.parameter.ranged().next().is_none() {
+            let remedy = "give one parameter a range, as b=0.15..0.25:1/100; or ask about the word with these values in it";
+            return Err(Error::input("parameter", &self.parameter, remedy));
+        }
         let places = self.parameter.places()?;
         let first = self.word_at(&places[0])?;
         let cost = first.degree().max(1).saturating_mul(places.len() as u64);

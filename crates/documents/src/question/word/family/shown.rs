@@ -13,6 +13,7 @@ use crate::report::shape::{
     COUNT, FLAG, GROUP_OR_NULL, INTEGER, RATIONAL, RATIONAL_OR_NULL, Schema, Shape, TEXT, WIDE_ENCLOSURE,
 };
 use crate::report::table::{Cell, Column};
+use num_traits::Zero;
 use number::{Ball, Rational, Real};
 
 const ENDS_OR_NULL: Shape = Shape::OrNull(&WIDE_ENCLOSURE);
@@ -122,7 +123,11 @@ pub(super) fn document(family: &Family, members: &Members) -> Document {
     let table = record.table("members", "A word at each value of its parameter", &rows);
     let mut people = vec!["value"];
     people.extend((!names[1].is_empty()).then_some("second"));
-    people.extend(["order", "nystrom_order", "error", "evaluations", "edge", "efficiency", "bias"]);
+    // What is sought first: a narrow terminal leaves the last columns out.
+    let sought = family.goal().map(Goal::name);
+    people.extend(sought);
+    let rest = ["order", "nystrom_order", "error", "evaluations", "edge", "efficiency", "bias"];
+    people.extend(rest.into_iter().filter(|name| Some(*name) != sought));
     let people = table.only(&people);
     let document = best_record(places).document(Document::new(Family::NAME), &members.best);
     let document = match members.degree {
@@ -157,14 +162,22 @@ fn lines(family: &Family, members: &Members) -> Vec<String> {
                 },
             );
         }
-        (None, Some(goal)) => say("best", format!("no member has {} {}", article(goal), goal.name())),
+        (None, Some(goal)) => say("best", none_has(goal)),
         (None, None) => (),
     }
     lines
 }
 
-fn article(goal: Goal) -> &'static str {
-    if goal == Goal::Bias { "a" } else { "an" }
+/// Why nothing is best.
+fn none_has(goal: Goal) -> String {
+    match goal {
+        Goal::Bias => "no member is stable at all steps that count, or none reads the same backwards: look at shorter steps by --up-to".into(),
+        Goal::Error => "no member has an error in commutators: it has letters other than kicks and drifts".into(),
+        Goal::Edge | Goal::Efficiency => format!(
+            "no member has an {}: all steps are stable, none is, or two forces want --lambda1 and --lambda2",
+            goal.name()
+        ),
+    }
 }
 
 impl Best {
@@ -191,12 +204,18 @@ impl Best {
             Goal::Bias => self.member.bias.as_ref().map(Ball::to_f64_enclosure),
         };
         let size = ends.map_or(String::new(), |(lo, hi)| decimal::enclosure(lo, hi).to_string());
-        let between = self
-            .bracket
-            .as_ref()
-            .filter(|_| !self.proven)
-            .map_or(String::new(), |(lo, hi)| format!(", not better at {} and {}", exact(lo), exact(hi)));
-        format!("{}: {} {size}{between}", values.join(", "), self.goal.name())
+        format!("{}: {} {size}{}", values.join(", "), self.goal.name(), self.beside(places[0]))
+    }
+
+    /// How far off the values are that were tried on both sides and are not better.
+    fn beside(&self, at: usize) -> String {
+        let Some((lo, hi)) = self.bracket.as_ref().filter(|_| !self.proven) else { return String::new() };
+        let value = &self.member.values[at];
+        let sides = [(value - lo, "below"), (hi - value, "above")];
+        let tried = sides.iter().filter(|(far, _)| !far.is_zero());
+        let tried: Vec<String> =
+            tried.map(|(far, side)| format!("{:.0e} {side}", number::rational::to_f64(far))).collect();
+        if tried.is_empty() { String::new() } else { format!(", no better {}", tried.join(" and ")) }
     }
 }
 
