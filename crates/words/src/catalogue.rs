@@ -10,6 +10,9 @@ pub struct Method {
     pub name: &'static str,
     /// The order that its source states, on any problem: on oscillators it may be higher.
     pub order: u64,
+    /// The order between a processor and its inverse, for a method that is meant to stand there. Neither
+    /// changes where steps are stable: conjugation keeps the trace.
+    pub processed: Option<u64>,
     /// The word; decimals are those of the source.
     pub text: &'static str,
     /// Where the coefficients come from.
@@ -34,10 +37,20 @@ pub fn method(name: &str) -> Result<&'static Method> {
     found.ok_or_else(|| Error::unknown("method", name, METHODS.iter().map(|method| method.name)))
 }
 
+/// Name, order, word, source, engines; `=>` before the order between a processor and its inverse.
 macro_rules! methods {
-    ($($name:literal $order:literal $text:expr, $source:expr $(, $engine:literal)*;)*) => {
-        &[$(Method { name: $name, order: $order, text: $text, source: $source, engines: &[$($engine),*] }),*]
+    ($($name:literal $order:literal $(=> $processed:literal)? $text:expr, $source:expr $(, $engine:literal)*;)*) => {
+        &[$(Method {
+            name: $name,
+            order: $order,
+            processed: methods!(@ $($processed)?),
+            text: $text,
+            source: $source,
+            engines: &[$($engine),*],
+        }),*]
     };
+    (@) => { None };
+    (@ $processed:literal) => { Some($processed) };
 }
 
 /// Verlet steps of these shares, the outer half of them; the middle one makes the sum 1.
@@ -76,6 +89,10 @@ const BLANES_2013: &str = "Blanes, Casas, Farres, Laskar, Makazaga, Murua, Appl.
 const FARRES_2013: &str =
     "Farres, Laskar, Blanes, Casas, Makazaga, Murua, Celest. Mech. Dyn. Astron. 116, 141 (2013)";
 const REIN: &str = "Rein, Tamayo, Brown, Mon. Not. R. Astron. Soc. 489, 4632 (2019)";
+// Kernels of methods with a processor, by the number of their steps.
+const PROCESSED: &str = "Blanes, Casas, Murua, Acta Numer. 33, 1 (2024), table 8.1";
+const PROCESSED_PERTURBED: &str =
+    "Blanes, Casas, Ros (2000); digits as in Blanes, Casas, Murua, Acta Numer. 33, 1 (2024), table 8.5";
 const YOSHIDA: &str = "Yoshida, Phys. Lett. A 150, 262 (1990)";
 const CHIN: &str = "Chin, Phys. Lett. A 226, 344 (1997)";
 const BAOAB_RESPA: &str = "Lagardere, Aviat, Piquemal, J. Phys. Chem. Lett. 10, 2593 (2019)";
@@ -95,7 +112,7 @@ pub const METHODS: &[Method] = methods! {
     "mclachlan-atela-2" 2 "K(1-1/sqrt(2)) D(1/sqrt(2)) K(1/sqrt(2)) D(1-1/sqrt(2))", MCLACHLAN_ATELA;
     "sexton-weingarten" 2
         "K(1/6) D(1/2) K(2/3) D(1/2) K(1/6)", "Sexton, Weingarten, Nucl. Phys. B 380, 665 (1992)";
-    "takahashi-imada" 2
+    "takahashi-imada" 2 => 4
         "D(1/2) K(1, -1/12) D(1/2)", "Takahashi, Imada, J. Phys. Soc. Jpn. 53, 3765 (1984)";
     "2mn-velocity" 2 "K(0.1931833275037836) D(1/2) K(1-2*0.1931833275037836) D(1/2) K(0.1931833275037836)", OMELYAN_2002,
         "tmLQCD: Type = 2MN", "BlackJAX: mclachlan";
@@ -296,6 +313,17 @@ pub const METHODS: &[Method] = methods! {
     "yoshida-8-d" 8 verlets!("0.914844246229642658287" "0.253693336566286009974" "-1.44485223686030647660" "-0.158240635368502468458" "1.93813913762291232471" "-1.96061023297558163691" "0.102799849392219431139"; "1-2*(0.914844246229642658287+0.253693336566286009974-1.44485223686030647660-0.158240635368502468458+1.93813913762291232471-1.96061023297558163691+0.102799849392219431139)"), YOSHIDA;
     "yoshida-8-e" 8 verlets!("1.30300165757516838484" "0.107990467718098279648" "-2.04809795883490205633" "0.00536018921375238082832" "-0.0719180053650705075005" "2.52778927318028339169" "0.0227738840126312259937"; "1-2*(1.30300165757516838484+0.107990467718098279648-2.04809795883490205633+0.00536018921375238082832-0.0719180053650705075005+2.52778927318028339169+0.0227738840126312259937)"), YOSHIDA;
     "kahan-li-8" 8 verlets!("0.13020248308889008087881763" "0.56116298177510838456196441" "-0.38947496264484728640807860" "0.15884190655515560089621075" "-0.39590389413323757733623154" "0.18453964097831570709183254" "0.25837438768632204729397911" "0.29501172360931029887096624"; "1-2*(0.13020248308889008087881763+0.56116298177510838456196441-0.38947496264484728640807860+0.15884190655515560089621075-0.39590389413323757733623154+0.18453964097831570709183254+0.25837438768632204729397911+0.29501172360931029887096624)"), KAHAN_LI;
+    // Made for the longest stable step of all kernels of three forces that have order 4 with a processor.
+    "lopez-marcos-3" 2 => 4
+        "K((2+2^(1/3)+2^(-1/3))/6) D(1/2-(2+2^(1/3)+2^(-1/3))/6) K(1/2-(2+2^(1/3)+2^(-1/3))/6) D(2*(2+2^(1/3)+2^(-1/3))/6) K(1/2-(2+2^(1/3)+2^(-1/3))/6) D(1/2-(2+2^(1/3)+2^(-1/3))/6) K((2+2^(1/3)+2^(-1/3))/6)", "Lopez-Marcos, Sanz-Serna, Skeel, An explicit symplectic integrator with maximal stability interval (1996); as in C. M. Campos, mscripts";
+    "pmlf-6" 2 => 6
+        "D(-0.0682610383918630) K(0.2621129352517028) D(1/2+0.0682610383918630) K(1-2*0.2621129352517028, -2*0.0164011128160783) D(1/2+0.0682610383918630) K(0.2621129352517028) D(-0.0682610383918630)", "Rein, Mon. Not. R. Astron. Soc. 492, 5413 (2020); as in REBOUND";
+    "blanes-casas-ros-6" 2 => 6
+        "K(0.0962499147414666) D(-0.6659279171311354) K(-0.0649951074268679) D(1/2+0.6659279171311354) K(1-2*(0.0962499147414666-0.0649951074268679)) D(1/2+0.6659279171311354) K(-0.0649951074268679) D(-0.6659279171311354) K(0.0962499147414666)", PROCESSED_PERTURBED;
+    "blanes-processed-6" 4 => 6 verlets!("0.513910778424374" "0.364193022833858" "-0.867423280969274"; "1-2*(0.513910778424374+0.364193022833858-0.867423280969274)"), PROCESSED;
+    "blanes-casas-murua-6-11" 4 => 6 verlets!("0.1705768865009222157" "0.1705768865009222157" "0.1705768865009222157" "0.1705768865009222157" "-0.423366140892658048"; "1-2*(0.1705768865009222157+0.1705768865009222157+0.1705768865009222157+0.1705768865009222157-0.423366140892658048)"), PROCESSED;
+    "blanes-casas-murua-6-13" 4 => 6 verlets!("0.125696288720106" "0.125696288720106" "0.125696288720106" "0.125696288720106" "0.148070660114965" "-0.350856370823828"; "1-2*(0.125696288720106+0.125696288720106+0.125696288720106+0.125696288720106+0.148070660114965-0.350856370823828)"), PROCESSED;
+    "blanes-casas-murua-8" 4 => 8 verlets!("0.168" "0.168" "0.585550530805562" "-0.460090457516872" "0.172863148729731" "0.179664539695039"; "1-2*(0.168+0.168+0.585550530805562-0.460090457516872+0.172863148729731+0.179664539695039)"), PROCESSED;
     "baoab" 2 "K(1/2) D(1/2) O(1) D(1/2) K(1/2)", "Leimkuhler, Matthews, Appl. Math. Res. Express 2013, 34 (2013)",
         "ASE: LangevinBAOAB", "OpenMM: LangevinMiddleIntegrator (leapfrog velocities)", "NAMD: langevinBAOAB = on", "i-PI: splitting = baoab";
     "obabo" 2 "O(1/2) K(1/2) D(1) K(1/2) O(1/2)", "Bussi, Parrinello, Phys. Rev. E 75, 056707 (2007)", "i-PI: splitting = obabo";
@@ -319,7 +347,7 @@ pub const METHODS: &[Method] = methods! {
     "impulse" 2 "K2(1/2) R1(1) K2(1/2)", RESPA;
     "wisdom-holman" 2
         "R1(1/2) K2(1) R1(1/2)", "Wisdom, Holman, Astron. J. 102, 1528 (1991)", "REBOUND: integrator = whfast";
-    "wisdom-holman-modified" 2
+    "wisdom-holman-modified" 2 => 4
         "R1(1/2) K2(1, -1/12) R1(1/2)", REIN, "REBOUND: integrator = whfast, kernel = modifiedkick";
     "saba-2" 2
         "R1((3-sqrt(3))/6) K2(1/2) R1(sqrt(3)/3) K2(1/2) R1((3-sqrt(3))/6)", LASKAR_ROBUTEL, "REBOUND: integrator = saba, type = 2";
@@ -346,7 +374,9 @@ pub const METHODS: &[Method] = methods! {
         "R1(0.06810235651658372085) K2(0.16844325936189545343) R1(0.25113603872210332331) K2(0.42431771737426772243) R1(-0.07507264957216562516) K2(-0.58581096946817568123) R1(-0.00954471970174500781) K2(1/2-(0.16844325936189545343+0.42431771737426772243-0.58581096946817568123)) R1(1-2*(0.06810235651658372085+0.25113603872210332331-0.07507264957216562516-0.00954471970174500781)) K2(1/2-(0.16844325936189545343+0.42431771737426772243-0.58581096946817568123)) R1(-0.00954471970174500781) K2(-0.58581096946817568123) R1(-0.07507264957216562516) K2(0.42431771737426772243) R1(0.25113603872210332331) K2(0.16844325936189545343) R1(0.06810235651658372085)", FARRES_2013, "REBOUND: integrator = saba, type = h_8_6_4";
     "sabah-10-6-4" 4
         "R1(0.04731908697653382270) K2(0.11968846245853220353) R1(0.26511052357487851595) K2(0.37529558553793742504) R1(-0.00997652288381124084) K2(-0.46845934183259937837) R1(-0.05992919973494155126) K2(0.33513973427558970104) R1(1/2-(0.04731908697653382270+0.26511052357487851595-0.00997652288381124084-0.05992919973494155126)) K2(1-2*(0.11968846245853220353+0.37529558553793742504-0.46845934183259937837+0.33513973427558970104)) R1(1/2-(0.04731908697653382270+0.26511052357487851595-0.00997652288381124084-0.05992919973494155126)) K2(0.33513973427558970104) R1(-0.05992919973494155126) K2(-0.46845934183259937837) R1(-0.00997652288381124084) K2(0.37529558553793742504) R1(0.26511052357487851595) K2(0.11968846245853220353) R1(0.04731908697653382270)", FARRES_2013, "REBOUND: integrator = saba, type = h_10_6_4";
-    "wisdom-holman-composition" 2
+    "plf-7-6-4" 2 => 4
+        "R1(0.5600879810924619) K2(1.5171479707207228) R1(1/2-0.5600879810924619) K2(1-2*1.5171479707207228) R1(1/2-0.5600879810924619) K2(1.5171479707207228) R1(0.5600879810924619)", PROCESSED_PERTURBED;
+    "wisdom-holman-composition" 2 => 4
         "R1(5/8) K2(-1/6) R1(-1/4) K2(1/6) R1(1/8) K2(1) R1(-1/8) K2(-1/6) R1(1/4) K2(1/6) R1(3/8)", REIN, "REBOUND: integrator = whfast, kernel = composition";
     "deuflhard" 2 "K2(1/2) R1(1) K2(1/2)", "Deuflhard, Z. Angew. Math. Phys. 30, 177 (1979)";
     "gautschi" 2 "K2[sinc(x/2)/cos(x/2)](1/2) R1(1) K2[sinc(x/2)/cos(x/2)](1/2)", "Gautschi, Numer. Math. 3, 381 (1961)";

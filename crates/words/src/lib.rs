@@ -68,6 +68,6 @@ pub use letters::{Cost, Force, Item, Letter, Place, Word};
 pub use order::{MOST_ORDER, Order};
 pub use point::{At, at};
 pub use product::{Forces, Polynomials, Product};
-pub use published::{LIMITS, Limit};
+pub use published::{ALL, FREE, HALF_PERIOD, LIMITS, Limit};
 pub use stability::{Edge, Interval, Stability};
 pub use trigonometric::{Shape, Trigonometric};

@@ -7,13 +7,23 @@ use super::catalogue::Method;
 pub struct Limit {
     /// The method's name in the catalogue.
     pub method: &'static str,
-    /// Every ω h below is stable, for one force.
-    pub omega_h: &'static str,
+    /// Every step below is stable: ω h for one force, ω1 h for two, whose fast one is the first; or [`ALL`], or
+    /// [`FREE`].
+    pub below: &'static str,
     /// Where it is printed.
     pub source: &'static str,
     /// Why the end of the stable steps is another one, where it is.
     pub disagrees: Option<&'static str>,
 }
+
+/// In place of a limit: every step is stable.
+pub const ALL: &str = "infinity";
+
+/// In place of a limit: two forces have no resonance, so the slow one's own limit is left.
+pub const FREE: &str = "free";
+
+/// In place of a limit: half the fast period.
+pub const HALF_PERIOD: &str = "pi";
 
 impl Method {
     /// The limit that is published of it.
@@ -22,18 +32,22 @@ impl Method {
     }
 }
 
-const fn limit(method: &'static str, omega_h: &'static str, source: &'static str) -> Limit {
-    Limit { method, omega_h, source, disagrees: None }
+const fn limit(method: &'static str, below: &'static str, source: &'static str) -> Limit {
+    Limit { method, below, source, disagrees: None }
 }
 
 const BOOK: &str = "Hairer, Lubich, Wanner, Geometric Numerical Integration, I.5.2";
 const BLACKJAX: &str = "BlackJAX, blackjax.mcmc.integrators, to about three digits";
 const LATTICE: &str = "Schaefers, Finkenrath, Guenther, Knechtli, arXiv:2506.08813 (2025)";
+const JULIA: &str = "OrdinaryDiffEq.jl, its documentation";
+const MOLLY: &str = "Garcia-Archilla, Sanz-Serna, Skeel, SIAM J. Sci. Comput. 20, 930 (1998)";
 
 /// All that are known here: no source that could be opened prints one of another method.
 pub const LIMITS: &[Limit] = &[
     limit("symplectic-euler", "2", BOOK),
     limit("velocity-verlet", "2", BOOK),
+    limit("midpoint", ALL, JULIA),
+    limit("newmark", ALL, JULIA),
     limit("bcss-3", "4.67", BLACKJAX),
     Limit {
         disagrees: Some("its decimals open a narrow unstable interval, which the published limit leaves out"),
@@ -44,4 +58,10 @@ pub const LIMITS: &[Limit] = &[
     limit("vefrl", "3.469636", LATTICE),
     limit("fg-adada", "2.926948", LATTICE),
     limit("fg-badadadab", "2.184445", LATTICE),
+    Limit {
+        disagrees: Some("the published limit is that of a weak slow force; an unstable interval ends there"),
+        ..limit("impulse", HALF_PERIOD, MOLLY)
+    },
+    limit("implicit-explicit", FREE, "Stern, Grinspun, Multiscale Model. Simul. 7, 1779 (2009)"),
+    limit("rpmd-cayley", FREE, "Korol, Bou-Rabee, Miller, J. Chem. Phys. 151, 124103 (2019)"),
 ];

@@ -2,7 +2,10 @@
 
 use kickdrift_words::anharmonic::order_shown;
 use kickdrift_words::number::{Radical, Rational};
-use kickdrift_words::{Forces, GeneralOrder, LIMITS, METHODS, NoGeneralOrder, Stability, Word, method};
+use kickdrift_words::{
+    ALL, FREE, Forces, GeneralOrder, HALF_PERIOD, LIMITS, METHODS, NoGeneralOrder, Shape, Stability, Word,
+    method,
+};
 use num_traits::{One, Zero};
 
 fn orders(text: &str) -> GeneralOrder {
@@ -63,26 +66,49 @@ fn methods_of_the_catalogue_converge_as_their_orders_say() {
 /// A limit that a source prints holds to its last digit, or the catalogue says why not.
 #[test]
 fn published_limits_are_met_or_the_reason_is_listed() {
-    let mut met = 0;
-    for listed in METHODS {
-        let Some(limit) = listed.limit() else { continue };
-        let printed: f64 = limit.omega_h.parse().unwrap();
-        let places = limit.omega_h.split_once('.').map_or(0, |(_, fraction)| fraction.len());
-        let stability = Stability::of(&listed.word().polynomials(&Forces::one()));
-        let (strict, nominal) = (stability.first_edge().unwrap(), stability.nominal_edge().unwrap());
-        let [strict, nominal] = [strict, nominal].map(|edge| edge.s().mid_f64().sqrt());
-        // Rounded or cut.
-        let is_met = |edge: f64| (edge - printed).abs() < 10f64.powi(-(places as i32));
-        assert!(is_met(nominal), "{}: {nominal}, published {printed}", listed.name);
-        assert_eq!(
-            is_met(strict),
-            limit.disagrees.is_none(),
-            "{}: {strict}, published {printed}",
-            listed.name
-        );
-        met += 1;
+    for limit in LIMITS {
+        let word = method(limit.method).unwrap().word();
+        let agrees = limit.disagrees.is_none();
+        match limit.below {
+            ALL => {
+                let stability = Stability::of(&word.polynomials(&Forces::one()));
+                assert!(agrees && stability.begins_stable() && stability.first_edge().is_none());
+            }
+            FREE => {
+                // Up to the slow force's own limit: ω2 h = 2 is ω1 h = 8 at a quarter of the frequency.
+                let sixteenth = Rational::new(1.into(), 16.into());
+                let stability = Stability::of(&word.polynomials(&Forces::ratio(&sixteenth)));
+                let edge = stability.first_edge().unwrap().rational();
+                assert!(agrees && edge == Some(Rational::from_integer(64.into())), "{}", limit.method);
+            }
+            HALF_PERIOD => {
+                let (first, last) = first_unstable(&word);
+                assert_eq!((first < last, agrees), (true, false), "{}: {first}", limit.method);
+                assert!((last - 5.0).abs() < 1e-9, "{}: the half period is 5, not {last}", limit.method);
+            }
+            below => is_met(limit.method, &word, below, agrees),
+        }
     }
-    assert_eq!(met, LIMITS.len(), "each limit is one of a method");
+}
+
+/// The first unstable steps of a fast period 10 and a slow one 40.
+fn first_unstable(word: &Word) -> (f64, f64) {
+    let [fast, slow] = ["pi^2/25", "pi^2/400"].map(|stiffness| stiffness.parse().unwrap());
+    let pieces = Shape::of(word).unwrap().pieces(&fast, &slow, 0.0, 6.0);
+    let unstable = pieces.iter().find(|piece| !piece.stable).unwrap();
+    (unstable.lower.0, unstable.upper.1)
+}
+
+fn is_met(name: &str, word: &Word, below: &str, agrees: bool) {
+    let printed: f64 = below.parse().unwrap();
+    let places = below.split_once('.').map_or(0, |(_, fraction)| fraction.len());
+    let stability = Stability::of(&word.polynomials(&Forces::one()));
+    let (strict, nominal) = (stability.first_edge().unwrap(), stability.nominal_edge().unwrap());
+    let [strict, nominal] = [strict, nominal].map(|edge| edge.s().mid_f64().sqrt());
+    // Rounded or cut.
+    let is_met = |edge: f64| (edge - printed).abs() < 10f64.powi(-(places as i32));
+    assert!(is_met(nominal), "{name}: {nominal}, published {printed}");
+    assert_eq!(is_met(strict), agrees, "{name}: {strict}, published {printed}");
 }
 
 #[test]
@@ -179,4 +205,37 @@ fn random_words_show_the_order_that_is_computed() {
         seen[orders.general.order as usize] += 1;
     }
     assert!(seen[1] > 40 && seen[2] > 40, "{seen:?}");
+}
+
+/// Orders that Principia states of partitioned methods, which need no quadratic kinetic energy.
+#[test]
+fn partitioned_methods_have_the_order_of_their_source_on_all_problems() {
+    let partitioned = [
+        "velocity-verlet",
+        "mclachlan-atela-2",
+        "2mn-velocity",
+        "mclachlan-atela-3",
+        "ruth-3",
+        "blanes-moan-4",
+        "forest-ruth",
+        "mclachlan-s4",
+        "mclachlan-s5",
+        "mclachlan-ss5",
+        "suzuki-4",
+        "blanes-moan-6",
+        "mclachlan-ss9",
+        "yoshida-6",
+        "yoshida-6-b",
+        "yoshida-6-c",
+        "mclachlan-ss15",
+        "mclachlan-ss17",
+        "yoshida-8",
+        "yoshida-8-b",
+        "yoshida-8-c",
+        "yoshida-8-d",
+        "yoshida-8-e",
+    ];
+    for listed in partitioned.map(|name| method(name).unwrap()) {
+        assert_eq!(listed.word().general_order().unwrap().general.nominal, listed.order, "{}", listed.name);
+    }
 }

@@ -9,6 +9,8 @@
 //! A word is exp(F) exp(A + B), and F a sum of commutators: those of the least degree are the leading error.
 
 mod commutator;
+#[cfg(test)]
+mod perturbed;
 mod series;
 mod whole;
 

@@ -1,5 +1,6 @@
 //! The catalogue of published integrators, each linted.
 
+use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
 use super::asked::Word;
@@ -78,6 +79,7 @@ impl Question for Methods {
             "two forces: omega1 h below which they are stable at lambda2/lambda1 = 1/16 (periods 1:4)".into(),
             "free: no unstable step there before the slow force's own limit omega2 h = 2".into(),
         ];
+        lines.push(processed(all));
         lines.extend(all.iter().filter_map(Listed::disagreement));
         // A narrow terminal leaves out the last ones.
         let people = table.only(&[
@@ -150,10 +152,12 @@ fn record() -> Record<'static, Listed> {
         .says(Shape::OrNull(&TEXT), "Programs that have it, each with what to write there; null where none is known here.")
         .field(Column::new("published_order").aside(), |listed| listed.method.order.into())
         .says(INTEGER, "The order that its source states, where the kinetic energy is quadratic.")
+        .field(Column::new("processed_order").aside(), |listed| listed.method.processed.into())
+        .says(Shape::OrNull(&INTEGER), "The same between a processor and its inverse, which change no stable step; null for a method without them.")
         .field(Column::new("published_edge").aside(), |listed| {
-            listed.method.limit().map_or(Cell::Missing, |limit| Cell::Text(limit.omega_h.into()))
+            listed.method.limit().map_or(Cell::Missing, |limit| Cell::Text(limit.below.into()))
         })
-        .says(Shape::OrNull(&TEXT), "omega h below which it is published to be stable; null where no such limit is known here.")
+        .says(Shape::OrNull(&TEXT), "omega h, or omega1 h of two forces, below which it is published to be stable; \"infinity\" where no step is unstable; \"free\" where two forces have no resonance; null where no such limit is known here.")
         .field(Column::new("published_edge_source").left().aside(), |listed| {
             listed.method.limit().map_or(Cell::Missing, |limit| Cell::Text(limit.source.into()))
         })
@@ -167,6 +171,17 @@ fn record() -> Record<'static, Listed> {
         .says(TEXT, "The word, its coefficients exact.")
         .field(Column::new("source").left().aside(), |listed| listed.method.source.into())
         .says(TEXT, "Where the coefficients come from.")
+}
+
+/// The orders of methods that are meant to stand between a processor and its inverse.
+fn processed(all: &[Listed]) -> String {
+    let mut names: BTreeMap<u64, Vec<&str>> = BTreeMap::new();
+    for Method { name, processed, .. } in all.iter().map(|listed| listed.method) {
+        processed.iter().for_each(|&order| names.entry(order).or_default().push(name));
+    }
+    let each: Vec<String> =
+        names.iter().map(|(order, names)| format!("order {order}: {}", names.join(", "))).collect();
+    format!("between a processor and its inverse, which change no stable step: {}", each.join("; "))
 }
 
 /// An entry of the catalogue.
@@ -186,9 +201,13 @@ fn slow_range() -> StepRange {
 impl Listed {
     /// Where a published limit is not the one found here, and why.
     fn disagreement(&self) -> Option<String> {
-        let (limit, edge) = (self.method.limit()?, self.linted.edge_omega_h()?);
-        let (name, published, edge) = (self.method.name, limit.omega_h, edge.mid_f64());
-        Some(format!("{name}: published omega h below {published}, here {edge:.5}: {}", limit.disagrees?))
+        let (name, limit) = (self.method.name, self.method.limit()?);
+        let (linted, omega) = match &self.two {
+            Some(two) => (two, "omega1"),
+            None => (&self.linted, "omega"),
+        };
+        let (published, edge) = (limit.below, linted.edge_omega_h()?.mid_f64());
+        Some(format!("{name}: published {omega} h below {published}, here {edge:.5}: {}", limit.disagrees?))
     }
 
     /// Whether no step below √Λ2 h = 2 is unstable at Λ2/Λ1 = 1/16: that is free of resonance. `None` for one
