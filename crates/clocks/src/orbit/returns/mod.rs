@@ -24,6 +24,7 @@ mod frame;
 mod lanes;
 mod long;
 mod map;
+mod product;
 mod row;
 mod run;
 mod series;
