@@ -9,14 +9,15 @@ use num_bigint::BigInt;
 use super::answer::{Answer, Decision};
 use super::exact::Decidable;
 use super::growth::{Growth, Runs, long_growth};
-use super::kind::Verdict;
+use super::kind::{Side, Verdict};
 use super::lone;
 use super::tier::{Limits, Tier};
 use crate::orbit::floquet::Floquet;
-use crate::orbit::returns::{self, Wanted};
+use crate::orbit::returns::{self, Found, Wanted};
 use crate::orbit::{filter, plain, refine};
 use crate::propagator::{LongClocks, Oscillator, TwoClocks};
 use crate::schedule::Schedule;
+use number::Sign;
 use number::error::{Error, Result};
 use number::parallel::go_on;
 
@@ -134,7 +135,7 @@ pub fn decide_long<S: Decidable>(clocks: &LongClocks<S>) -> Result<Decision> {
     }
     for bits in returns::PRECISIONS {
         go_on()?;
-        if let Some(verdict) = returns::signs(clocks, bits).and_then(|signs| signs.verdict()) {
+        if let Some((verdict, _)) = returned(clocks, bits, Wanted::Verdict) {
             let decided_by = if bits == 53 { Tier::Filter } else { Tier::Refine };
             return Ok(Decision { verdict, decided_by });
         }
@@ -199,15 +200,27 @@ fn by_returns<S: Decidable>(
     runs: &mut Runs,
 ) -> Result<Option<(Verdict, u32)>> {
     let long = clocks.into();
+    // Another route than the first tier's goes to the end.
+    let wanted = if *precisions.start() == 53 { Wanted::Verdict } else { Wanted::Entries };
     for bits in returns::PRECISIONS.into_iter().filter(|bits| precisions.contains(bits)) {
         go_on()?;
-        let Some(ends) = returns::run(&long, bits, Wanted::Entries) else { continue };
-        if let Some(verdict) = ends.signs().verdict() {
-            runs.refined = Some((ends, bits));
+        if let Some((verdict, ends)) = returned(&long, bits, wanted) {
+            runs.refined = ends.map(|ends| (ends, bits));
             return Ok(Some((verdict, bits)));
         }
     }
     go_on().map(|()| None)
+}
+
+/// The verdict by return maps, with the half period where it took all of it.
+fn returned<S: Decidable>(
+    clocks: &LongClocks<S>,
+    bits: u32,
+    wanted: Wanted,
+) -> Option<(Verdict, Option<refine::Ends>)> {
+    let Found { signs, grows, ends } = returns::decisive(clocks, bits, wanted)?;
+    let side = grows.map(|sign| if sign == Sign::Positive { Side::Plus } else { Side::Minus });
+    Some((side.map(Verdict::Hyperbolic).or_else(|| signs.verdict())?, ends))
 }
 
 fn by_filter<S: Decidable>(

@@ -17,11 +17,14 @@
 //! rounding. So the levels above, of many passes, want more bits than those below, and a branch is rounded as
 //! soon as what is left is known well enough so.
 
+use super::Wanted;
 use super::branch::{Branch, Budget};
 use super::coefficient::Coefficient;
+use super::cone;
 use super::fit;
 use super::map::Map;
 use super::run::Run;
+use number::Sign;
 
 /// The two branches of one level; the longer one is the one that runs.
 struct Level<T> {
@@ -36,34 +39,54 @@ pub struct Reached<P> {
     pub left: u128,
 }
 
+/// How a walk ends.
+pub enum Walked<P> {
+    Reached(Reached<P>),
+    /// The period grows, with this sign of Tr Q.
+    Grows(Sign),
+}
+
 /// The highest sum of the roundings of all passes through a level: a result that is known less well has few
 /// digits.
 const ROUNDINGS: f64 = 1.0 / 32768.0;
 
 /// The terms left out of a level's products may add up to this share of the error that long products may
-/// have.
+/// have, or to that of what rounding costs the result.
 const LEFT_OUT: f64 = 1e-3;
+const LEFT_OUT_BESIDE_ROUNDING: f64 = 1.0 / 32.0;
+
+/// What the terms left out of a level's products may add up to, of an orbit over q places.
+pub fn left_out<T: Coefficient, P: Coefficient>(q: u128) -> f64 {
+    let rounding = if T::BITS > P::BITS { most_roundings::<P>() } else { q as f64 * P::UNIT };
+    (LEFT_OUT * P::CLOSE).max(LEFT_OUT_BESIDE_ROUNDING * rounding.min(most_roundings::<P>()))
+}
+
+fn most_roundings<P: Coefficient>() -> f64 {
+    ROUNDINGS * (P::UNIT / f64::UNIT).sqrt()
+}
 
 /// Whether a level's branches may be known to these numbers' digits, where the product is wanted to those of
 /// P.
 fn suffices<T: Coefficient, P: Coefficient>(passes: i128) -> bool {
-    passes as f64 * T::UNIT <= ROUNDINGS * (P::UNIT / f64::UNIT).sqrt()
+    passes as f64 * T::UNIT <= most_roundings::<P>()
 }
 
-/// The first n maps from x = 0 after `entered`, to the digits of P; `None` where the budget or a bound does
-/// not last.
+/// The first n maps from x = 0 after `entered`, to the digits of P, or where the verdict alone is wanted, the
+/// level that shows that the period grows; `None` where the budget or a bound does not last.
 pub fn walk<T: Coefficient, P: Coefficient>(
     mut left: Branch<T>,
     mut right: Branch<T>,
     n: u128,
     mut entered: Map<P>,
+    left_out: f64,
+    wanted: Wanted,
     budget: &mut Budget,
-) -> Option<Reached<P>> {
+) -> Option<Walked<P>> {
     if T::BITS > P::BITS && suffices::<T::Lower, P>(left.length + right.length) {
-        return walk::<T::Lower, P>(left.rounded(), right.rounded(), n, entered, budget);
+        return walk::<T::Lower, P>(left.rounded(), right.rounded(), n, entered, left_out, wanted, budget);
     }
     // The terms left out of a product add an error on each pass.
-    let least = LEFT_OUT * P::CLOSE / (left.length + right.length) as f64;
+    let least = left_out / (left.length + right.length) as f64;
     [&mut left, &mut right].into_iter().for_each(|branch| branch.map.least = branch.map.least.max(least));
     let back = fit::coordinates(&left.map, &right.map).map(|(there, back)| {
         for branch in [&mut left, &mut right] {
@@ -72,11 +95,19 @@ pub fn walk<T: Coefficient, P: Coefficient>(
         entered = there.rounded().after(&entered);
         back
     });
+    if wanted == Wanted::Verdict
+        && let Some(sign) = cone::trace_sign(&left, &right)
+    {
+        return Some(Walked::Grows(sign));
+    }
     // So often, and oftener than any branch below, is the next level's new one passed through.
     let allowed = P::CLOSE / left.length.min(right.length) as f64;
     let mut level = Level { left: Run::new(left, allowed), right: Run::new(right, allowed) };
     let mut reached = match level.induced(n, budget)? {
-        Some([left, right]) => walk(left, right, n, entered, budget)?,
+        Some([left, right]) => match walk(left, right, n, entered, left_out, wanted, budget)? {
+            Walked::Reached(reached) => reached,
+            grows => return Some(grows),
+        },
         None => Reached { product: entered, x: 0, left: n },
     };
     while let Some((value, steps)) = level.next(&reached, budget)? {
@@ -91,7 +122,7 @@ pub fn walk<T: Coefficient, P: Coefficient>(
     if let Some(back) = back {
         reached.product = back.rounded().after(&reached.product);
     }
-    Some(reached)
+    Some(Walked::Reached(reached))
 }
 
 impl<T: Coefficient> Level<T> {

@@ -7,10 +7,11 @@ use num_bigint::BigUint;
 use num_integer::Integer;
 use num_traits::ToPrimitive;
 
+use super::Wanted;
 use super::branch::{Branch, Budget};
 use super::coefficient::{Coefficient, exact};
 use super::enclosure::{Enclosure, Matrix, balanced, power, product};
-use super::euclid;
+use super::euclid::{self, Reached, Walked};
 use super::map::Map;
 use super::turn::{Turn, direction, principal};
 use crate::orbit::ends::{End, Ends};
@@ -63,6 +64,7 @@ pub struct Frame<T, E> {
     unit: E,
     /// `None` where nobody asks for turns.
     turning: Option<Turning>,
+    wanted: Wanted,
     bits: u32,
     numbers: PhantomData<T>,
 }
@@ -82,8 +84,17 @@ enum Turning {
 /// The result of a run.
 pub struct Found {
     pub signs: PartialSigns,
+    /// The sign of Tr Q, which is beyond ±2, where that is known without the ends.
+    pub grows: Option<Sign>,
     /// `None` where their logarithms are too large for the exponents of balls.
     pub ends: Option<Ends>,
+}
+
+impl Found {
+    /// Whether a verdict follows.
+    pub fn decides(&self) -> bool {
+        self.grows.is_some() || self.signs.verdict().is_some()
+    }
 }
 
 /// A, B, C, D without their common power of two, and the sign changes of the even solution.
@@ -102,9 +113,8 @@ struct Rotation<E> {
 }
 
 impl<T: Coefficient, E: Enclosure> Frame<T, E> {
-    /// `None` where these numbers cannot decide on which side of its own limit the base is. Turns are
-    /// followed where they are `wanted`.
-    pub fn new<S: Real>(clocks: &LongClocks<S>, wanted: bool) -> Option<Self> {
+    /// `None` where these numbers cannot decide on which side of its own limit the base is.
+    pub fn new<S: Real>(clocks: &LongClocks<S>, wanted: Wanted) -> Option<Self> {
         let beat = Beat::of(clocks.ratio())?;
         // Each squaring doubles the radius, and adds four of them: it loses a bit and a half.
         let lost = beat.whole.bits() as u32;
@@ -119,7 +129,7 @@ impl<T: Coefficient, E: Enclosure> Frame<T, E> {
         } else {
             E::quotient(1, 1, bits)
         };
-        let turning = if !wanted {
+        let turning = if wanted != Wanted::Nodes {
             None
         } else if elliptic && lost <= FEW {
             // An error δ of s changes θ by less than 1.1 √δ, at the worst next to 0 and to 4.
@@ -133,7 +143,7 @@ impl<T: Coefficient, E: Enclosure> Frame<T, E> {
         } else {
             Some(if s.ends().0 > 2.0 { Turning::Half } else { Turning::Not })
         };
-        Some(Frame { beat, s, k, unit, turning, bits, numbers: PhantomData })
+        Some(Frame { beat, s, k, unit, turning, wanted, bits, numbers: PhantomData })
     }
 
     fn quotient(&self, n: i128, d: u128) -> E {
@@ -259,7 +269,13 @@ impl<T: Coefficient, E: Enclosure> Frame<T, E> {
 
     /// The even and the odd solution at T/2.
     pub fn found<P: Coefficient>(&self) -> Option<Found> {
-        let Half { entries: [a, b, c, d], exponent, nodes } = self.half::<P>()?;
+        let middle = match self.walked::<P>(self.beat.q / 2)? {
+            Walked::Reached(reached) => reached.product,
+            Walked::Grows(sign) => {
+                return Some(Found { signs: PartialSigns::default(), grows: Some(sign), ends: None });
+            }
+        };
+        let Half { entries: [a, b, c, d], exponent, nodes } = self.half(&middle)?;
         let signs = PartialSigns { a: certain(&a), b: certain(&b), c: certain(&c), d: certain(&d) };
         let exponent = exponent_of_balls(exponent);
         let ends = exponent.map(|exponent| {
@@ -273,11 +289,23 @@ impl<T: Coefficient, E: Enclosure> Frame<T, E> {
                 odd: end(&b, &d, (signs.b, signs.d), odd_nodes),
             }
         });
-        Some(Found { signs, ends })
+        Some(Found { signs, grows: None, ends })
     }
 
-    fn half<P: Coefficient>(&self) -> Option<Half<E>> {
-        let mut journey = self.kicked::<P>(self.beat.q / 2)?;
+    /// The first n kicks of the other clock in the coordinates of the base.
+    fn walked<P: Coefficient>(&self, n: u128) -> Option<Walked<P>> {
+        let identity = Map::identity();
+        if n == 0 {
+            return Some(Walked::Reached(Reached { product: identity, x: 0, left: 0 }));
+        }
+        let [left, right] = self.branches()?;
+        let left_out = euclid::left_out::<T, P>(self.beat.q);
+        euclid::walk(left, right, n, identity, left_out, self.wanted, &mut Budget::of::<T>())
+    }
+
+    /// All of the half period, `middle` between both ends.
+    fn half<P: Coefficient>(&self, middle: &Map<P>) -> Option<Half<E>> {
+        let mut journey = self.kicked(middle)?;
         self.close(&mut journey)?;
         let (exponent, turn) = (journey.exponent, journey.turn);
         let entries = journey.entries()?;
@@ -285,13 +313,8 @@ impl<T: Coefficient, E: Enclosure> Frame<T, E> {
         Some(Half { entries, exponent, nodes })
     }
 
-    /// From t = 0 through the first n kicks of the other clock, the last one whole.
-    fn kicked<P: Coefficient>(&self, n: u128) -> Option<Journey<'_, T, E>> {
-        let mut middle = Map::<P>::identity();
-        if n > 0 {
-            let [left, right] = self.branches()?;
-            middle = euclid::walk(left, right, n, middle, &mut Budget::of::<T>())?.product;
-        }
+    /// From t = 0 through the first kicks of the other clock, the last one whole.
+    fn kicked<P: Coefficient>(&self, middle: &Map<P>) -> Option<Journey<'_, T, E>> {
         let (zero, one) = (self.zero(), self.one());
         // Half a kick of the other clock at t = 0.
         let start = self.k.over(&self.unit)?.scale2(-1).negative();

@@ -23,10 +23,9 @@
 
 use super::coefficient::{Coefficient, near_ball};
 use super::enclosure::Enclosure;
-use super::lanes::Lanes;
+use super::product::{part, product, value};
 use super::turn::{Turn, angle, direction, principal};
 use number::Ball;
-use number::vector::instructions::{Instructions, Task};
 
 /// Some hundreds of roundings of positive numbers.
 pub const UP: f64 = 1.0 + 1e-12;
@@ -76,7 +75,7 @@ pub fn norm<T: Coefficient>(m: &Entries<T>) -> f64 {
 
 /// At least the spectral norm, and at most 1.09 times as much: |(x, y)| ≤ max + (√2 − 1) min, without a root.
 #[inline(always)]
-fn about<T: Coefficient>(m: &Entries<T>) -> f64 {
+pub fn about<T: Coefficient>(m: &Entries<T>) -> f64 {
     let [x, y, u, v] = parts(m).map(f64::abs);
     let length = |x: f64, y: f64| if x > y { x + 0.4143 * y } else { y + 0.4143 * x };
     0.5 * (length(x, y) + length(u, v)) * UP
@@ -86,7 +85,9 @@ fn about<T: Coefficient>(m: &Entries<T>) -> f64 {
 #[inline(always)]
 pub fn sizes<T: Coefficient, const N: usize>(terms: &[Entries<T>]) -> [f64; N] {
     let mut sizes = [0.0; N];
-    sizes.iter_mut().zip(terms).for_each(|(value, term)| *value = about(term));
+    for (value, term) in sizes.iter_mut().zip(terms) {
+        *value = about(term);
+    }
     sizes
 }
 
@@ -97,13 +98,19 @@ fn largest<T: Coefficient, const N: usize>(terms: &[Entries<T>], known: f64) -> 
     if known <= SHARPER_FROM * first {
         return known;
     }
-    let sum = (first + terms[1..].iter().map(about).sum::<f64>()) * UP;
+    let mut sum = first;
+    for term in &terms[1..] {
+        sum += about(term);
+    }
+    sum *= UP;
     if sum <= SHARPER_FROM * first {
         return known.min(sum);
     }
     // r_k of z and of w, and those of their imaginary parts: in two lanes each.
     let mut values = [[0.0; 4]; N];
-    values.iter_mut().zip(terms).for_each(|(values, term)| *values = parts(term));
+    for (values, term) in values.iter_mut().zip(terms) {
+        *values = parts(term);
+    }
     let n = terms.len().min(N);
     let mut squares = [0.0; 2];
     for k in 0..2 * n - 1 {
@@ -289,11 +296,11 @@ impl<T: Coefficient> Map<T> {
 
     /// `self` after `earlier`, on the same interval.
     pub fn after(&self, earlier: &Self) -> Self {
-        Instructions::best().perform_alone(Product { later: self, earlier })
+        product(self, earlier)
     }
 
     #[inline(always)]
-    fn turn_after(&self, earlier: &Self, product: &Self) -> Option<Turn> {
+    pub fn turn_after(&self, earlier: &Self, product: &Self) -> Option<Turn> {
         let (first, then) = (earlier.turn?, self.turn?);
         self.direction()?;
         first.then(then, product.direction()?)
@@ -301,7 +308,7 @@ impl<T: Coefficient> Map<T> {
 
     /// On the part t = α + β t' of its interval, |α| + |β| ≤ 1.
     pub fn part(&self, alpha: &T, beta: &T) -> Self {
-        Instructions::best().perform_alone(Part { whole: self, alpha, beta })
+        part(self, alpha, beta)
     }
 
     /// The direction of the image of (1, 0) at t = 0, where it is known.
@@ -312,22 +319,14 @@ impl<T: Coefficient> Map<T> {
 
     /// At the point t = α.
     pub fn at(&self, alpha: &T) -> Self {
-        let (last, rest) = self.terms.split_last().expect("at least one term");
-        let horner = |sum: Entries<T>, term: &Entries<T>| {
-            let mut sum = sum;
-            sum.iter_mut().zip(term).for_each(|(x, c)| *x = x.times(alpha).plus(c));
-            sum
-        };
-        let value = rest.iter().rev().fold(*last, horner);
-        let value = self.moved(vec![value]);
-        Map { turn: self.turn_moved(alpha.near(), value.direction()), ..value }
+        value(self, alpha)
     }
 
-    /// With the coefficients on a part, but for the turn.
+    /// With the coefficients on a part, but for the turn; Σ |M_j| and Σ j |M_j|, and what numbers that are
+    /// shorter than these lose.
     #[inline(always)]
-    fn moved(&self, mut terms: Vec<Entries<T>>) -> Self {
-        let [sum, rank] = sums(self.terms.iter().map(about));
-        let rounding = 1.42 * T::UNIT * 6.0 * (sum + rank);
+    pub fn moved(&self, mut terms: Vec<Entries<T>>, [sum, rank]: [f64; 2], lost: f64) -> Self {
+        let rounding = 1.42 * T::UNIT * 6.0 * (sum + rank) + lost;
         let (mut dropped, least) = (0.0, self.least * about(&terms[0]));
         while let [_, .., last] = &terms[..]
             && dropped + about(last) < least
@@ -345,10 +344,20 @@ impl<T: Coefficient> Map<T> {
     #[inline(always)]
     pub fn turn_moved(&self, alpha: f64, towards: Option<f64>) -> Option<Turn> {
         let mut turn = self.turn?;
-        let images = || self.terms.iter().map(image);
-        let at = |t: f64| images().rev().fold([0.0; 2], |[x, y], [a, b]| [x * t + a, y * t + b]);
+        let at = |t: f64| {
+            let [mut x, mut y] = [0.0; 2];
+            for term in self.terms.iter().rev() {
+                let [a, b] = image(term);
+                [x, y] = [x * t + a, y * t + b];
+            }
+            [x, y]
+        };
         // |images|, and |d/dt of the image|, at most; what doubles round is far below the half that is left.
-        let [sum, slope] = sums(images().map(|[x, y]| x.abs() + y.abs()));
+        let (mut sum, mut slope) = (0.0, 0.0);
+        for (term, j) in self.terms.iter().zip(0u32..) {
+            let [x, y] = image(term).map(f64::abs);
+            (sum, slope) = (sum + x + y, slope + f64::from(j) * (x + y));
+        }
         for steps in [1u32, 8, 64] {
             let change = slope * alpha.abs() / f64::from(steps);
             let moved = (0..steps).try_fold(turn, |turn, k| {
@@ -386,99 +395,6 @@ impl<T: Coefficient> Map<T> {
     }
 }
 
-/// A product.
-struct Product<'a, T> {
-    later: &'a Map<T>,
-    earlier: &'a Map<T>,
-}
-
-impl<T: Coefficient> Product<'_, T> {
-    #[inline(always)]
-    fn with_room<const N: usize>(&self) -> Map<T> {
-        let Product { later, earlier } = self;
-        let (b, a): ([f64; N], [f64; N]) = (sizes(&later.terms), sizes(&earlier.terms));
-        let ends = (later.terms.len(), earlier.terms.len());
-        let ([sum_b, rank_b], [sum_a, rank_a]) =
-            (sums(b.into_iter().take(ends.0)), sums(a.into_iter().take(ends.1)));
-        let mut n = ends.0 + ends.1 - 1;
-        let relative = later.least.max(earlier.least);
-        let (mut dropped, least) = (0.0, relative * sum_b * sum_a);
-        while n > 1 {
-            // Σ |B_i| |A_j|, i + j = n − 1.
-            let pairs = n.saturating_sub(ends.1)..n.min(ends.0);
-            let last: f64 = pairs.map(|i| b[i] * a[n - 1 - i]).sum();
-            if n <= T::TERMS && dropped + last >= least {
-                break;
-            }
-            n -= 1;
-            dropped += last;
-        }
-        let rounding = 2.0 * T::UNIT * (4.0 * sum_b * sum_a + 2.0 * (rank_b * sum_a + sum_b * rank_a));
-        let carried = later.norm * earlier.error + earlier.norm * later.error + later.error * earlier.error;
-        let error = (carried + dropped + rounding) * UP + FLOOR;
-        let known = (later.norm * earlier.norm + dropped + rounding) * UP;
-        let exponent = later.exponent.saturating_add(earlier.exponent);
-        Map { least: relative, ..Map::bounded(self.terms(n), error, known, exponent) }
-    }
-
-    /// The first n coefficients.
-    #[inline(always)]
-    fn terms(&self, n: usize) -> Vec<Entries<T>> {
-        let of = T::Lanes::of;
-        // The rows of the later matrices meet the columns of the earlier ones.
-        let spread = |[e, f, g, h]: &Entries<T>| [of([e, f, e, f]), of([g, h, g, h])];
-        let earlier: Vec<_> = self.earlier.terms.iter().take(n).map(spread).collect();
-        let zero = T::Lanes::splat(&T::zero());
-        let mut terms: Vec<_> = std::iter::repeat_n(zero, n).collect();
-        for (i, [a, b, c, d]) in self.later.terms.iter().enumerate().take(n) {
-            let (first, second) = (of([a, a, c, c]), of([b, b, d, d]));
-            for (sum, [upper, lower]) in terms[i..].iter_mut().zip(&earlier) {
-                *sum = sum.plus_times(&first, upper).plus_times(&second, lower);
-            }
-        }
-        terms.into_iter().map(T::Lanes::entries).collect()
-    }
-}
-
-impl<T: Coefficient> Task for Product<'_, T> {
-    type Output = Map<T>;
-
-    #[inline(always)]
-    fn run(self) -> Map<T> {
-        let product = if T::TERMS <= FEW { self.with_room::<FEW>() } else { self.with_room::<MOST>() };
-        Map { turn: self.later.turn_after(self.earlier, &product), ..product }
-    }
-}
-
-/// A function in t' of t = α + β t'.
-struct Part<'a, T> {
-    whole: &'a Map<T>,
-    alpha: &'a T,
-    beta: &'a T,
-}
-
-impl<T: Coefficient> Task for Part<'_, T> {
-    type Output = Map<T>;
-
-    #[inline(always)]
-    fn run(self) -> Map<T> {
-        let mut terms: Vec<_> = self.whole.terms.iter().map(|term| T::Lanes::of(term.each_ref())).collect();
-        let [alpha, beta] = [self.alpha, self.beta].map(T::Lanes::splat);
-        for i in 0..terms.len() {
-            for j in (i..terms.len() - 1).rev() {
-                terms[j] = terms[j].plus_times(&alpha, &terms[j + 1]);
-            }
-        }
-        let mut power = beta;
-        for term in &mut terms[1..] {
-            *term = term.times(&power);
-            power = power.times(&beta);
-        }
-        let part = self.whole.moved(terms.into_iter().map(T::Lanes::entries).collect());
-        Map { turn: self.whole.turn_moved(self.alpha.near(), part.direction()), ..part }
-    }
-}
-
 /// 2^e as far as doubles reach.
 fn power_of_two(e: i128) -> f64 {
     2f64.powi(e.clamp(-2000, 2000) as i32)
@@ -486,8 +402,10 @@ fn power_of_two(e: i128) -> f64 {
 
 /// Σ m_j and Σ j m_j.
 #[inline(always)]
-fn sums(sizes: impl Iterator<Item = f64>) -> [f64; 2] {
-    let (sum, rank) =
-        sizes.zip(0u32..).fold((0.0, 0.0), |(sum, rank), (m, j)| (sum + m, rank + f64::from(j) * m));
+pub fn sums(sizes: &[f64]) -> [f64; 2] {
+    let (mut sum, mut rank) = (0.0, 0.0);
+    for (m, j) in sizes.iter().zip(0u32..) {
+        (sum, rank) = (sum + m, rank + f64::from(j) * m);
+    }
     [sum, rank]
 }

@@ -17,6 +17,7 @@
 
 mod branch;
 mod coefficient;
+mod cone;
 mod enclosure;
 mod euclid;
 mod fit;
@@ -24,19 +25,21 @@ mod frame;
 mod lanes;
 mod long;
 mod map;
+mod product;
 mod row;
 mod run;
 mod series;
 mod slow;
 mod turn;
 
+pub use frame::Found;
 pub use map::{FLOOR, UP, norm};
 
 use super::ends::Ends;
-use crate::propagator::{LongClocks, PartialSigns};
+use crate::propagator::LongClocks;
 use coefficient::{Coefficient, Long};
 use enclosure::{Close, Enclosure, Wide};
-use frame::{Found, Frame};
+use frame::Frame;
 use number::rational::to_f64;
 use number::{Ball, Ratio, Rational, Real, Twofold};
 
@@ -63,6 +66,8 @@ const MOST_LOG2_RATIO: u64 = 8;
 /// The results that a run is asked for.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Wanted {
+    /// Whether the period grows: the entries where it takes them.
+    Verdict,
     /// The four entries.
     Entries,
     /// The sign changes of x, too: half as much again.
@@ -77,9 +82,10 @@ pub fn run<S: Real>(clocks: &LongClocks<S>, bits: u32, wanted: Wanted) -> Option
     better(clocks, bits, wanted)?.ends
 }
 
-/// The signs alone: of entries, too, whose logarithms no exponent of a ball holds.
-pub fn signs<S: Real>(clocks: &LongClocks<S>, bits: u32) -> Option<PartialSigns> {
-    Some(better(clocks, bits, Wanted::Entries)?.signs)
+/// What a verdict needs: the signs of entries, too, whose logarithms no exponent of a ball holds, or growth that
+/// shows before the ends.
+pub fn decisive<S: Real>(clocks: &LongClocks<S>, bits: u32, wanted: Wanted) -> Option<Found> {
+    better(clocks, bits, wanted).filter(Found::decides)
 }
 
 /// As [`run`], over the clock that distorts more alone: another route to the same numbers.
@@ -90,13 +96,12 @@ pub fn run_over_other<S: Real>(clocks: &LongClocks<S>, bits: u32, wanted: Wanted
 /// Over the one base, and where that does not decide the verdict, over the other.
 fn better<S: Real>(clocks: &LongClocks<S>, bits: u32, wanted: Wanted) -> Option<Found> {
     let fast = prefers_fast(clocks);
-    let decides = |found: &Option<Found>| found.as_ref().is_some_and(|found| found.signs.verdict().is_some());
     let first = over(clocks, fast, bits, wanted);
-    if decides(&first) {
+    if first.as_ref().is_some_and(Found::decides) {
         return first;
     }
     let second = over(clocks, !fast, bits, wanted);
-    if decides(&second) { second } else { first.or(second) }
+    if second.as_ref().is_some_and(Found::decides) { second } else { first.or(second) }
 }
 
 /// A run with the fast or the slow clock as the base. The number of kicks of the rarer clock decides which
@@ -118,13 +123,12 @@ fn over_in<S: Real, T: Walk, E: Enclosure>(
     bits: u32,
     wanted: Wanted,
 ) -> Option<Found> {
-    let found =
-        |clocks: &LongClocks<S>| T::walked(&Frame::<T, E>::new(clocks, wanted == Wanted::Nodes)?, bits);
+    let found = |clocks: &LongClocks<S>| T::walked(&Frame::<T, E>::new(clocks, wanted)?, bits);
     if fast {
         return found(clocks);
     }
-    let Found { signs, ends } = found(&clocks.swapped())?;
-    Some(Found { signs, ends: ends.map(|ends| in_first_unit(ends, clocks.ratio(), T::BITS)) })
+    let found = found(&clocks.swapped())?;
+    Some(Found { ends: found.ends.map(|ends| in_first_unit(ends, clocks.ratio(), T::BITS)), ..found })
 }
 
 /// The numbers of a first level, and in them the walk with products of so many bits.
