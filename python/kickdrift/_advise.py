@@ -96,8 +96,8 @@ def advise(
         ones are on the slower clocks. A typical ``"fast"`` one has a name, as ``"protein,h-bonds"`` or
         ``"water,rigid"``. Without the fastest period nothing is called safe. Texts without a unit are plain numbers,
         where all times are. Or a molecule: a :class:`System`, the path of a system file, OpenMM's ``Simulation`` or
-        ``System``, ASE's ``Atoms``, an instance of LAMMPS, which is asked for :meth:`System.advise`; or the path of an archive
-        ``FILE.npz`` with ``fast``, ``slow`` (mass-weighted, 1/ps²), ``masses`` and ``positions``.
+        ``System``, ASE's ``Atoms``, an instance of LAMMPS, which is asked for :meth:`System.advise`; or the path of an
+        archive ``FILE.npz`` with ``fast``, ``slow`` (mass-weighted, 1/ps²), ``masses`` and ``positions``.
     steps : sequence of Time, or a sequence of such
         A scheme, from the innermost to the outermost step, fs; or several schemes. For OpenMM's ``System`` also
         a mapping of force groups to steps.
