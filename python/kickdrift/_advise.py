@@ -158,16 +158,18 @@ def advise(
     >>> kd.advise(["10fs", "40fs"], engine=gromacs).engine["rewritten"]
     ['mts-level2-factor = 6', 'nstlog = 1020', 'nstenergy = 1020', 'nstcalcenergy = 102']
     """
-    if is_path(periods, ".npz"):
-        known(made, advise, elsewhere=_OF_ENGINES)
-        scales = (band, length, friction, constraints, hmr)
-        return advise_archive(periods, listed(steps), engine, scales, levers=levers, harmonic=harmonic)
-    found, rest = molecule(periods, steps, made)
-    if found is not None:
+    is_archive = is_path(periods, ".npz")
+    found, rest = (None, listed(steps)) if is_archive else molecule(periods, steps, made)
+    if is_archive or found is not None:
         of_periods = {"bonds": bonds, "on": on, "temperature": temperature, "bond_count": bond_count}
         for field, value in (of_periods | {"all_modes": all_modes or None}).items():
             if value is not None:
                 raise KickdriftError(field, str(value), "is for periods: a system has its modes of its own")
+    if is_archive:
+        known(made, advise, elsewhere=_OF_ENGINES)
+        scales = (band, length, friction, constraints, hmr)
+        return advise_archive(periods, rest, engine, scales, levers=levers, harmonic=harmonic)
+    if found is not None:
         told: Advice | SystemAdvice = found.advise(
             rest,
             engine=engine,

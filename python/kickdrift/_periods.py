@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from os import PathLike, fspath
-from os.path import isfile
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -42,8 +41,8 @@ def advise_periods(
     named = mapping_of("periods", periods, _NAMED).items() if has_names else ((None, value) for value in alone)
     given: dict[str, list[str]] = {"period": [], "bond": [], "on": []}
     for name, value in named:
-        if isinstance(value, PathLike) or (name is None and isinstance(value, str) and isfile(value)):
-            raise KickdriftError("periods", shown(value), "is a file: give an engine's input as engine=, beside periods")
+        if isinstance(value, PathLike) or (name is None and isinstance(value, str) and _is_file(value)):
+            raise KickdriftError("periods", shown(value), _FILE)
         length = str(_time("periods", value))
         given["period"].append(length if name is None else f"{_name('periods', name)}={length}")
     bonded, clocks = mapping_of("bonds", bonds or {}, _BONDS), mapping_of("on", on or {}, _CLOCKS)
@@ -93,6 +92,7 @@ _SHAPES = (
     "bonds={'OH': 'morse:D=485.72kJ/mol,a=22.87/nm,15.999,1.008'}"
 )
 _CLOCKS = "give a mapping of names to clocks, as {'OH': 1}"
+_FILE = "is a file: give an engine's input as engine=, beside periods"
 _STEPS = "give the steps of a scheme, the inner one first, as '0.5fs,4fs' or [0.5, 4]; of one clock '2fs' or [2]"
 _INPUTS = "give the path of an input or its text, or several"
 
@@ -150,6 +150,14 @@ def _text(engine: str | PathLike[str]) -> str:
         return path
     # Letters in comments, which no engine reads, may be in Latin-1.
     return text_of(path, "name an engine's input", "latin-1")
+
+
+def _is_file(period: str) -> bool:
+    """Whether a period is the name of a file; long texts are none."""
+    try:
+        return Path(period).is_file()
+    except (OSError, ValueError):
+        return False
 
 
 def _time(field: str, value: Time | None) -> str | None:

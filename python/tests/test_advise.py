@@ -190,6 +190,8 @@ def test_an_archive_is_advised_about_as_the_program_does(program: Callable[..., 
     flags = [str(path), "--steps=0.5fs,4fs", "--no-levers", "--format", "json"]
     assert advice.to_json() == program("advise", *flags)
     assert advice.safe is not None and advice.safe < 4
+    with pytest.raises(kd.KickdriftError, match="is for periods"):
+        kd.advise(path, steps="0.5fs,4fs", on={"OH": 1})
 
 
 def test_keywords_stand_where_the_program_names_flags() -> None:

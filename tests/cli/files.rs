@@ -220,7 +220,9 @@ fn an_error_leaves_the_old_file_as_it_was() {
 
 #[test]
 fn an_unwritable_output_is_named_and_nothing_is_left() {
-    for (output, remedy) in [("no/such/folder.json", "create the directory"), (".", "name a file in it")] {
+    for (output, remedy) in
+        [("no/such/folder.json", "there is no folder no/such: make it first"), (".", "name a file in it")]
+    {
         let desk = Desk::new();
         let ended = desk.run(&words(VERDICT, &["--output", output]));
         assert_eq!((ended.code, ended.stdout.as_str()), (Some(2), ""));

@@ -425,7 +425,7 @@ fn reasons(advice: &Advice) -> Vec<String> {
         let own = published(&named(fastest, unit), answer.scheme.steps().len(), inner, |place| {
             unit.of(nearest(fastest.at(place), 4))
         });
-        if unit == TimeUnit::Plain { own.replace(&format!(": {PRACTICE}"), "") } else { own }
+        if unit == TimeUnit::Plain { own.replace(&format!(", {PRACTICE}"), "") } else { own }
     };
     lines.extend((!advice.lacks_fast).then(limits));
     let is_of_bonds = !advice.lacks_fast
