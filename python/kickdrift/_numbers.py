@@ -239,7 +239,7 @@ def mapping_of(field: str, value: Any, remedy: str) -> Mapping[str, Any]:
     """A mapping from names to their values; pairs of a name and a value are one, too."""
     if isinstance(value, Mapping):
         return value
-    pairs = [] if isinstance(value, str | bytes) or not isinstance(value, Iterable) else list(value)
+    pairs = [] if isinstance(value, str | bytes) else items(field, value, remedy)
     is_named = all(isinstance(pair, list | tuple) and len(pair) == 2 and isinstance(pair[0], str) for pair in pairs)
     found = {pair[0]: pair[1] for pair in pairs} if is_named else {}
     if not found or len(found) != len(pairs):
@@ -255,10 +255,11 @@ def pair_of(field: str, value: Any, remedy: str) -> tuple[Any, Any]:
     return parts[0], parts[1]
 
 
-def level_of(field: str, value: Any, remedy: str) -> tuple[Any, Any]:
-    """The step of a level and what acts there, which stand in either order."""
-    first, second = pair_of(field, value, remedy)
-    return (second, first) if _is_number(second) and not _is_number(first) else (first, second)
+def level_of(field: str, value: Any, remedy: str, step_at: int = 0) -> tuple[Any, Any]:
+    """The step of a level and what acts there, which stand in either order; in doubt the step is at this place."""
+    pair = pair_of(field, value, remedy)
+    at = 1 - step_at if _is_number(pair[1 - step_at]) and not _is_number(pair[step_at]) else step_at
+    return pair[at], pair[1 - at]
 
 
 def _is_number(value: Any) -> bool:

@@ -153,7 +153,7 @@ def _groups(atoms: Any, groups: Mapping[str, tuple[Any, Exact]]) -> Groups:
     forces: dict[str, Force] = {}
     steps: list[Fraction] = []
     for name, pair in mapping_of("groups", groups, "give a mapping of names to (calculator, step)").items():
-        step, calculator = level_of(f"groups[{name}]", pair, "give (calculator, step), as (EMT(), '0.5fs')")
+        step, calculator = level_of(f"groups[{name}]", pair, "give (calculator, step), as (EMT(), '0.5fs')", step_at=1)
         forces[name] = _force(atoms, calculator, f"groups[{name}]")
         steps.append(duration(f"groups[{name}]", step, "fs"))
     return Groups(

@@ -65,7 +65,7 @@ pub struct Flags<Q> {
     question: PhantomData<Q>,
 }
 
-/// The flags of a question, not built yet: a built one alone can be shown.
+/// The flags of a question.
 fn flags<Q: Args>() -> Command {
     Q::augment_args(Command::new(""))
 }
@@ -87,10 +87,13 @@ impl<Q: Fields + Args> Flags<Q> {
     pub fn question(&self) -> Result<Q> {
         Q::read(&self.given).map_err(|error| {
             let flag = error.field().replace('_', "-");
-            let mut command = flags::<Q>();
-            command.build();
-            match command.get_arguments().find(|arg| arg.get_long() == Some(&flag)) {
-                Some(arg) if error.remedy() == NEEDED => Error::missing(&flag, format!("add {arg}")),
+            let is_it = |arg: &&Arg| arg.get_long() == Some(&flag);
+            match flags::<Q>().get_arguments().find(is_it) {
+                Some(arg) if error.remedy() == NEEDED => {
+                    let values = arg.get_value_names().into_iter().flatten();
+                    let values: String = values.map(|value| format!(" <{value}>")).collect();
+                    Error::missing(&flag, format!("add --{flag}{values}"))
+                }
                 _ => error.at(&flag),
             }
         })

@@ -176,17 +176,21 @@ pub fn program(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     };
     match run(&cli) {
         Ok(code) => code,
-        Err(error) => {
-            failure(&by_its_flag(error).explain(|needed| format!("allow it with --budget {needed}")))
-        }
+        Err(error) => failure(
+            &by_its_flag(error, &cli.common.command)
+                .explain(|needed| format!("allow it with --budget {needed}")),
+        ),
     }
 }
 
-/// The error of a field by the name of its flag: `rho-range` for `rho_range`.
-fn by_its_flag(error: Error) -> Error {
+/// The error of a field by the name of its flag, `rho-range` for `rho_range`, where the command has one; keys
+/// of files keep their names.
+fn by_its_flag(error: Error, command: &str) -> Error {
     let flag = error.field().replace('_', "-");
     let has_it = |command: &clap::Command| command.get_arguments().any(|arg| arg.get_long() == Some(&flag));
-    if flag != error.field() && whole().get_subcommands().any(has_it) { error.at(&flag) } else { error }
+    let is_flag =
+        || command.split(' ').nth(1).is_some_and(|name| whole().find_subcommand(name).is_some_and(has_it));
+    if flag != error.field() && is_flag() { error.at(&flag) } else { error }
 }
 
 /// A process that a signal ends leaves no unfinished file behind, and ends as one without this would; a file

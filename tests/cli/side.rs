@@ -73,7 +73,7 @@ fn what_is_no_integrator_or_no_grid_is_refused_in_a_line() {
     let desk = Desk::new();
     for (line, part) in [
         ("--methods rk4 --h-range 0..1 --h-step 1/4 --rho-range 0..1 --rho-step 1/4", "methods = rk4"),
-        ("--methods impulse --h-range 0..1 --h-step 0 --rho-range 0..1 --rho-step 1/4", "h_step = 0"),
+        ("--methods impulse --h-range 0..1 --h-step 0 --rho-range 0..1 --rho-step 1/4", "h-step = 0"),
         (
             "--methods impulse --h-range 1..1 --h-step 2 --rho-range 0..1 --rho-step 1/4",
             "no positive multiple",
@@ -84,7 +84,7 @@ fn what_is_no_integrator_or_no_grid_is_refused_in_a_line() {
         ),
         ("--methods pefrl --h-range 0..1 --h-step 1/9999 --rho-range 0..1 --rho-step 1/9999", "--budget"),
         ("--methods impulse", "h-range"),
-        ("--methods impulse --h-range 0..1 --h-step 1/4", "rho_range missing"),
+        ("--methods impulse --h-range 0..1 --h-step 1/4", "rho-range missing"),
     ] {
         let told = desk.run(&words(&format!("compare {line}")));
         assert!(

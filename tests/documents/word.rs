@@ -431,7 +431,7 @@ fn errors_name_the_place() {
     let line = |text: &str| text.parse::<Word>().unwrap_err().to_string();
     assert_eq!(
         line("K(1/2) E(1)"),
-        "word = K(1/2) E(1): character 8: unexpected 'E'; the letters are K, K1, K2, D, C, C1, C2, R, R1, R2, O, F, I and n*(...)"
+        "word = K(1/2) E(1): character 8: unexpected 'E'; K(c) is a kick, D(c) a drift; other letters are K1, K2, C, C1, C2, R, R1, R2, O, F, I and n*(...)"
     );
     assert!(line("K(1/2").contains("character 6: expected ')'"), "{}", line("K(1/2"));
     assert!(line("K(sqrt(2)) D(sqrt(3))").contains("one root"), "{}", line("K(sqrt(2)) D(sqrt(3))"));
