@@ -444,5 +444,5 @@ fn resolutions_and_levels_that_make_no_sense() {
     let text = text.replace("../hessians", &format!("{here}/data/hessians"));
     let fine = text.split(r#"{"fine": "#).nth(1).unwrap().split('}').next().unwrap().to_string() + "}";
     desk.write("fine.json", &text.replace(&fine, "[-1]"));
-    refused(&desk, &["system", "fine.json"], &["levels[0].fine = ", "counted from 0"]);
+    refused(&desk, &["system", "fine.json"], &["levels[0].fine = ", "indices are 0 to 99"]);
 }

@@ -266,7 +266,7 @@ fn scans_vary_any_number_of_the_file() {
     refused("a=0..1:1e-9", "scan = a=0..1:1e-9: at most");
     for (path, message) in [
         ("potentials.7.step", "scan = potentials.7.step: 7 is not in the file"),
-        ("potentials.0.colour", "system = this file: unknown field `colour`"),
+        ("potentials.0.colour", "potentials[0] = this file: unknown field `colour`"),
         ("masses", "scan = masses: such a number is not in the file"),
     ] {
         let wrong = Scan::new(

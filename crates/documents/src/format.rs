@@ -32,36 +32,16 @@ impl Format {
     pub const FIGURE: [Format; 3] = [Format::Svg, Format::Pdf, Format::Png];
 
     /// The forms of a result that is a document or drawn.
-    pub const DOCUMENT_OR_FIGURE: [Format; 7] =
-        [Format::Json, Format::Csv, Format::Latex, Format::Text, Format::Svg, Format::Pdf, Format::Png];
+    pub const DOCUMENT_OR_FIGURE: [Format; 7] = joined(&Format::DOCUMENT, &Format::FIGURE);
 
     /// The forms of modes in space, which viewers of molecules and of meshes read.
     pub const MODES: [Format; 2] = [Format::Xyz, Format::Vtu];
 
     /// The forms of a system's answer.
-    pub const SYSTEM: [Format; 9] = [
-        Format::Json,
-        Format::Csv,
-        Format::Latex,
-        Format::Text,
-        Format::Svg,
-        Format::Pdf,
-        Format::Png,
-        Format::Xyz,
-        Format::Vtu,
-    ];
+    pub const SYSTEM: [Format; 9] = joined(&Format::DOCUMENT_OR_FIGURE, &Format::MODES);
 
     /// The forms of maps, and of what scenes want.
-    pub const MAP: [Format; 8] = [
-        Format::Json,
-        Format::Csv,
-        Format::Latex,
-        Format::Text,
-        Format::Svg,
-        Format::Pdf,
-        Format::Png,
-        Format::Npz,
-    ];
+    pub const MAP: [Format; 8] = joined(&Format::DOCUMENT_OR_FIGURE, &[Format::Npz]);
 
     /// The extension of its files.
     pub fn extension(self) -> &'static str {
@@ -95,6 +75,16 @@ impl Format {
             _ => dotted.concat(),
         }
     }
+}
+
+/// The forms of both lists.
+const fn joined<const N: usize>(first: &[Format], second: &[Format]) -> [Format; N] {
+    let (mut all, mut k) = ([Format::Json; N], 0);
+    while k < N {
+        all[k] = if k < first.len() { first[k] } else { second[k - first.len()] };
+        k += 1;
+    }
+    all
 }
 
 /// The formats that can be asked for by name; figures and arrays are asked for by the file's extension.

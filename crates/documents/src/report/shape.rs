@@ -22,6 +22,8 @@ pub enum Shape {
     OrNull(&'static Shape),
     /// An array of such values.
     List(&'static Shape),
+    /// An array of one value of each shape.
+    Row(&'static [Shape]),
     /// An object with these keys alone.
     Object(fn() -> Keys),
     /// Of this shape, with further keywords of a schema.
@@ -118,7 +120,8 @@ pub const QUANTITY: Shape = Shape::Named(
         "description": "An exact number, as \"3/10\", \"pi^2/25\" or 0.3, which is 3/10: a JSON number is read from its text, no double between."
     }"#,
 );
-const COUNT_WRITTEN: Shape =
+/// A number of things as a person may write it.
+pub const COUNT_WRITTEN: Shape =
     Shape::Named("count", r#"{"type": ["integer", "string"], "minimum": 0, "pattern": "^[0-9]+$"}"#);
 const RANGE_WRITTEN: Shape = Shape::Named(
     "range",
@@ -388,6 +391,11 @@ impl Shape {
             }
             Shape::OrNull(shape) => json!({"anyOf": [shape.schema(defs), {"type": "null"}]}),
             Shape::List(shape) => json!({"type": "array", "items": shape.schema(defs)}),
+            Shape::Row(shapes) => {
+                let (all, n): (Vec<Value>, _) =
+                    (shapes.iter().map(|shape| shape.schema(defs)).collect(), shapes.len());
+                json!({"type": "array", "prefixItems": all, "minItems": n, "maxItems": n})
+            }
             Shape::Object(keys) => keys().schema(defs).into(),
             Shape::With(shape, more) => {
                 let (Value::Object(mut schema), Value::Object(more)) = (shape.schema(defs), read(more))
@@ -411,13 +419,13 @@ pub struct Schema {
     /// The keys beside the head and the `input`.
     body: Keys,
     /// Further keywords, for what no single key can say; `{}` where there are none.
-    rules: &'static str,
+    rules: Cow<'static, str>,
 }
 
 impl Schema {
     /// Documents with these keys beside their head and their `input`; the title is one line on them.
     pub fn new(title: &'static str, body: Keys) -> Schema {
-        Schema { title, about: "", body, rules: "{}" }
+        Schema { title, about: "", body, rules: "{}".into() }
     }
 
     /// Adds a sentence or two on the documents.
@@ -428,8 +436,8 @@ impl Schema {
 
     /// Adds keywords for what no single key can say.
     #[must_use]
-    pub fn rules(self, rules: &'static str) -> Schema {
-        Schema { rules, ..self }
+    pub fn rules(self, rules: impl Into<Cow<'static, str>>) -> Schema {
+        Schema { rules: rules.into(), ..self }
     }
 
     /// The schema of `kickdrift/NAME/1` as JSON, whose `input` has these keys.
@@ -470,7 +478,7 @@ impl Schema {
             schema.insert("description".into(), self.about.into());
         }
         schema.extend(self.body.group("", own, &mut defs));
-        let Value::Object(rules) = read(self.rules) else { unreachable!("rules are keywords") };
+        let Value::Object(rules) = read(&self.rules) else { unreachable!("rules are keywords") };
         schema.extend(rules);
         if !defs.is_empty() {
             defs.sort_keys();

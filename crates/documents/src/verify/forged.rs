@@ -277,24 +277,8 @@ fn forged_advice_on_periods_is_found() {
             |safe| more(&mut advice(safe).schemes[0].safe_bias.as_mut().unwrap().1),
             |safe| advice(safe).schemes[0].safe_bias = None,
             |safe| advice(safe).schemes[0].needs = Some(20.0),
-            |safe| {
-                advice(safe)
-                    .levers
-                    .as_mut()
-                    .unwrap()
-                    .rows
-                    .iter_mut()
-                    .for_each(|lever| lever.first.iter_mut().for_each(more))
-            },
-            |safe| {
-                advice(safe)
-                    .levers
-                    .as_mut()
-                    .unwrap()
-                    .rows
-                    .iter_mut()
-                    .for_each(|lever| lever.band_edge.iter_mut().for_each(more))
-            },
+            |safe| levers(safe).iter_mut().flat_map(|lever| &mut lever.first).for_each(more),
+            |safe| levers(safe).iter_mut().flat_map(|lever| &mut lever.band_edge).for_each(more),
         ],
     );
     // Nothing is known of the slow clock.
@@ -329,6 +313,10 @@ fn edge(safe: &mut Safe, kind: usize) -> &mut molecules::aperture::Edge {
 
 fn advice(safe: &mut Safe) -> &mut molecules::Advice {
     if let Safe::Periods(advice) = safe { advice } else { panic!("advice on periods") }
+}
+
+fn levers(safe: &mut Safe) -> &mut [molecules::Lever] {
+    &mut advice(safe).levers.as_mut().unwrap().rows
 }
 
 fn row(safe: &mut Safe, scheme: usize) -> &mut molecules::Row {

@@ -15,6 +15,8 @@ use serde::Deserialize;
 use serde_json::{Map, Value};
 
 use super::market;
+use super::part::Part;
+use crate::report::shape::Shape;
 use number::error::{Error, Result, room};
 use number::file;
 
@@ -48,6 +50,23 @@ pub(crate) enum Reference {
         npz: String,
         csr: String,
     },
+}
+
+impl Part for Reference {
+    const SHAPE: Shape = Shape::Named(
+        "reference",
+        r#"{
+            "description": "An array of NumPy's or a matrix of Matrix Market's, by the name of its file, relative to the folder of this one; csr: a sparse matrix by compressed rows, CSR.data, CSR.indices and CSR.indptr, or without a name those of scipy.sparse.save_npz.",
+            "type": "object",
+            "additionalProperties": {"type": "string"},
+            "oneOf": [
+                {"required": ["npy"], "properties": {"npy": true}, "additionalProperties": false},
+                {"required": ["mm"], "properties": {"mm": true}, "additionalProperties": false},
+                {"required": ["npz", "array"], "properties": {"npz": true, "array": true}, "additionalProperties": false},
+                {"required": ["npz", "csr"], "properties": {"npz": true, "csr": true}, "additionalProperties": false}
+            ]
+        }"#,
+    );
 }
 
 impl TryFrom<Value> for Reference {

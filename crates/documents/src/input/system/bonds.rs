@@ -1,7 +1,8 @@
 //! Bonds of named forms, and the linear system at their equilibrium.
 
-use super::document::{BondDocument, Document, Number, PotentialDocument, ends};
+use super::document::{BondDocument, Document, PotentialDocument, Spring, ends};
 use super::linear::numbers;
+use super::part::{Index, Number};
 use clocks::schedule::Schedule;
 use number::Rational;
 use number::error::{Error, Result};
@@ -96,7 +97,7 @@ impl PotentialDocument {
             Some(scale) => to_f64(&scale.read(&format!("potentials[{k}].scale"))?),
             None => 1.0,
         };
-        let join = |field: &str, i: &Number, j: Option<&Number>, form: Form| {
+        let join = |field: &str, i: &Index, j: Option<&Index>, form: Form| {
             Ok(match ends(field, i, j, n)? {
                 (i, Some(j)) => Bond::between(i, j, form.scaled(scale)),
                 (i, None) => Bond::wall(i, form.scaled(scale)),
@@ -106,7 +107,7 @@ impl PotentialDocument {
             let field = field("bonds", b);
             join(&field, &bond.i, bond.j.as_ref(), bond.form(&field)?)
         };
-        let spring = |(b, (i, j, value)): (usize, &(Number, Option<Number>, Number))| {
+        let spring = |(b, (i, j, value)): (usize, &Spring)| {
             let field = field("springs", b);
             join(&field, i, j.as_ref(), Form::Harmonic { k: to_f64(&value.read(&field)?) })
         };

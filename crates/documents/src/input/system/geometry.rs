@@ -1,10 +1,7 @@
 //! Where the degrees of freedom of a file are in space: its atoms, or the nodes of its mesh.
 
-use serde::Deserialize;
-
 use super::SystemScene;
-use super::document::{Document, no_system};
-use super::measured;
+use super::document::{Document, is_by_reference};
 use number::error::{Error, Result};
 use number::rational::to_f64;
 use systems::Geometry;
@@ -15,10 +12,10 @@ impl SystemScene {
     /// # Errors
     /// A file without `positions` and without a `mesh`.
     pub fn geometry(&self) -> Result<Geometry> {
-        if measured::is_by_reference(&self.source) {
+        if is_by_reference(&self.source) {
             return self.atoms();
         }
-        let document = Document::deserialize(&self.source).map_err(no_system)?;
+        let document = Document::parse(&self.source, None)?;
         let mesh = document.mesh.ok_or_else(missing)?;
         let (nodes, elements, moved) = mesh.placed()?;
         let point = |values: Vec<_>| std::array::from_fn(|axis| values.get(axis).map_or(0.0, to_f64));
@@ -27,7 +24,7 @@ impl SystemScene {
     }
 
     fn atoms(&self) -> Result<Geometry> {
-        let document = measured::parse(&self.source)?;
+        let document = Document::parse(&self.source, None)?;
         let n = self.model.size();
         let points = document.positions(n, &self.arrays)?.ok_or_else(missing)?;
         let words = |i: usize| self.labels.as_ref().and_then(|all| all.get(3 * i)).map(String::as_str);

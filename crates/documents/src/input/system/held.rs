@@ -9,6 +9,8 @@ use nalgebra::{DMatrix, DVector};
 use serde::Deserialize;
 use serde_json::Value;
 
+use super::part::Part;
+use crate::report::shape::Shape;
 use number::error::{Error, Result};
 
 /// Atoms up to this mass are hydrogens (deuterium is none).
@@ -20,6 +22,13 @@ const HYDROGEN: f64 = 1.1;
 pub(super) enum Constraints {
     Word(String),
     Pairs(Vec<[usize; 2]>),
+}
+
+impl Part for Constraints {
+    const SHAPE: Shape = Shape::Any(&[
+        Shape::OneOf(&["h-bonds"]),
+        Shape::With(&<Vec<[usize; 2]>>::SHAPE, r#"{"minItems": 1}"#),
+    ]);
 }
 
 impl TryFrom<Value> for Constraints {

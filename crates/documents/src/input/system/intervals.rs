@@ -12,7 +12,8 @@ use num_traits::Zero;
 use serde_json::Value;
 
 use super::SystemScene;
-use super::document::{Number as Written, SIZES};
+use super::document::SIZES;
+use super::part::Number as Written;
 use super::scan::{MOST_POINTS, found};
 use number::Rational;
 use number::error::{Error, Result};

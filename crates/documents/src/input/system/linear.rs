@@ -1,6 +1,10 @@
 //! Masses and stiffnesses from a file, and the usual systems by name.
 
-use super::document::{Build, Document, LARGEST, Number, PotentialDocument, at_most, ends};
+use super::document::{
+    Build, Chain, Document, GradedBar, LARGEST, PotentialDocument, Rows, StiffSoft, TetheredPair, at_most,
+    ends,
+};
+use super::part::{Given, Number};
 use nalgebra::DMatrix;
 use number::Rational;
 use number::error::{Error, Result};
@@ -21,7 +25,9 @@ fn matrix(field: &str, rows: &[Vec<Number>]) -> Result<Symmetric> {
 impl Document {
     /// M, checked for its size alone.
     pub fn mass(&self) -> Result<Symmetric> {
-        match (&self.masses, &self.mass_matrix) {
+        let (masses, rows) =
+            (Given::here(&self.masses, "masses")?, Given::here(&self.mass_matrix, "mass_matrix")?);
+        match (masses, rows) {
             (Some(masses), None) => Ok(Symmetric::diagonal(&numbers("masses", masses)?)),
             (None, Some(rows)) => matrix("mass_matrix", rows),
             _ => Err(Error::input("masses", "missing", "give masses or mass_matrix, one of them")),
@@ -38,7 +44,7 @@ impl Document {
 impl Document {
     /// Forces that are no gradient: `stiffness` by rows is minus the derivative of the force.
     pub fn jacobians(&self) -> Result<Jacobians> {
-        let masses = self.masses.as_ref().ok_or_else(|| {
+        let masses = Given::here(&self.masses, "masses")?.ok_or_else(|| {
             Error::missing("masses", "a force that is no gradient needs them, one for each degree of freedom")
         })?;
         let masses = numbers("masses", masses)?;
@@ -52,6 +58,12 @@ impl Document {
 }
 
 impl PotentialDocument {
+    /// The rows of the k-th potential's stiffness.
+    pub fn rows(&self, k: usize) -> Result<Option<&[Vec<Number>]>> {
+        Given::here(&self.stiffness, &format!("potentials[{k}].stiffness"))
+            .map(|rows| rows.map(Rows::as_slice))
+    }
+
     /// Springs and matrix on n degrees of freedom, which need not be symmetric, with step and phase.
     fn jacobian(&self, k: usize, n: usize) -> Result<(DMatrix<Rational>, Rational, Rational)> {
         let field = |name: &str| format!("potentials[{k}].{name}");
@@ -66,7 +78,7 @@ impl PotentialDocument {
         (springs.stiffness, springs.scale) = (None, None);
         let springs = springs.linear(k, n)?;
         let mut matrix = springs.stiffness.to_dense();
-        if let Some(rows) = &self.stiffness {
+        if let Some(rows) = self.rows(k)? {
             at_most(&field("stiffness"), rows.len())?;
             let read =
                 |(i, row): (usize, &Vec<Number>)| numbers(&format!("{}[{i}]", field("stiffness")), row);
@@ -87,7 +99,7 @@ impl PotentialDocument {
     /// Springs and matrix on n degrees of freedom, with the clock; bonds stand elsewhere.
     pub fn linear(&self, k: usize, n: usize) -> Result<Potential> {
         let field = |name: &str| format!("potentials[{k}].{name}");
-        let mut stiffness = match &self.stiffness {
+        let mut stiffness = match self.rows(k)? {
             Some(rows) => matrix(&field("stiffness"), rows)?,
             None => Symmetric::zero(n),
         };
@@ -120,22 +132,22 @@ impl Build {
             Ok([pair[0].read(&format!("{field}[0]"))?, pair[1].read(&format!("{field}[1]"))?])
         };
         match self {
-            Build::Chain { masses, stiffness, steps } => {
-                let masses = masses.count("build.masses", LARGEST)?;
+            Build::Chain(Chain { masses, stiffness, steps }) => {
+                let masses = masses.read("build.masses", LARGEST)?;
                 let stiffness = numbers("build.stiffness", stiffness)?;
                 builders::periodic_chain(masses, &stiffness, &numbers("build.steps", steps)?)
             }
-            Build::StiffSoft { pairs, stiff, steps } => {
-                let pairs = pairs.count("build.pairs", LARGEST / 2)?;
+            Build::StiffSoft(StiffSoft { pairs, stiff, steps }) => {
+                let pairs = pairs.read("build.pairs", LARGEST / 2)?;
                 let [h_stiff, h_soft] = pair("build.steps", steps)?;
                 builders::stiff_soft_chain(pairs, &stiff.read("build.stiff")?, [&h_stiff, &h_soft])
             }
-            Build::GradedBar { elements, classes, courant } => {
-                let elements = elements.count("build.elements", LARGEST)?;
-                let classes = classes.count("build.classes", LARGEST)?;
+            Build::GradedBar(GradedBar { elements, classes, courant }) => {
+                let elements = elements.read("build.elements", LARGEST)?;
+                let classes = classes.read("build.classes", LARGEST)?;
                 builders::graded_bar(elements, classes, &courant.read("build.courant")?)
             }
-            Build::TetheredPair { masses, stiffness, steps } => {
+            Build::TetheredPair(TetheredPair { masses, stiffness, steps }) => {
                 let [m1, m2] = pair("build.masses", masses)?;
                 let [bond, tether] = pair("build.stiffness", stiffness)?;
                 let [h_bond, h_tether] = pair("build.steps", steps)?;

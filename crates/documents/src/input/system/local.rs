@@ -5,17 +5,13 @@
 //! "levels": [{"fine": [4, 5, 6], "substeps": 2}, {"fine": [5], "substeps": 3}]
 //! ```
 //!
-//! * `scheme`: `lts`, leapfrog whose forces on what is not fine stand still; `avi`, each element a clock of
-//!   its own.
-//! * All potentials have one step, dt, and masses are diagonal.
-//! * `levels`, the coarsest first: `fine`, the degrees of freedom that take `substeps` in a step of the level
-//!   above, or `elements` of a mesh, with all their nodes, in `avi` these alone. Each level is a part of the
-//!   one above.
+//! In `avi` each element is a clock of its own, and levels are of `elements` alone.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use super::document::{Document, LevelDocument, MeshDocument, Number};
+use super::document::{Document, LevelDocument, MeshDocument};
+use super::part::{Given, Index};
 use number::error::{Error, Result};
 use systems::{ElementSteps, Level, LocalSteps, Model, Scheme, System};
 
@@ -71,7 +67,11 @@ impl Document {
         moving: &[(usize, usize)],
     ) -> Result<Level> {
         let field = |name: &str| format!("levels[{l}].{name}");
-        let fine = match (&level_document.fine, &level_document.elements, &self.mesh) {
+        let fine = match (
+            Given::here(&level_document.fine, &field("fine"))?,
+            &level_document.elements,
+            &self.mesh,
+        ) {
             (Some(fine), None, _) => indices(&field("fine"), fine, plain.size())?,
             (None, Some(elements), Some(mesh)) => {
                 let elements = indices(&field("elements"), elements, mesh.elements.len())?;
@@ -87,14 +87,16 @@ impl Document {
     }
 }
 
-fn indices(field: &str, all: &[Number], n: usize) -> Result<BTreeSet<usize>> {
-    all.iter().map(|i| i.index(field, n)).collect()
+/// Indices below n.
+pub(super) fn indices(field: &str, all: &[Index], n: usize) -> Result<BTreeSet<usize>> {
+    all.iter().map(|i| i.read(field, n)).collect()
 }
 
 impl LevelDocument {
-    fn count(&self, l: usize) -> Result<u32> {
+    /// Its substeps.
+    pub fn count(&self, l: usize) -> Result<u32> {
         let field = format!("levels[{l}].substeps");
-        Ok(self.substeps.count(&field, LocalSteps::MOST_SUBSTEPS as usize)? as u32)
+        Ok(self.substeps.read(&field, LocalSteps::MOST_SUBSTEPS as usize)? as u32)
     }
 }
 
@@ -121,7 +123,7 @@ impl MeshDocument {
     ) -> Result<BTreeSet<usize>> {
         let nodes = elements.iter().flat_map(|&e| &self.elements[e]);
         let nodes = nodes
-            .map(|node| node.index("mesh.elements", self.nodes.len()))
+            .map(|node| node.read("mesh.elements", self.nodes.len()))
             .collect::<Result<BTreeSet<_>>>()?;
         Ok((0..moving.len()).filter(|&k| nodes.contains(&moving[k].0)).collect())
     }

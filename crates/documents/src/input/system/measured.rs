@@ -14,40 +14,27 @@
 //! }
 //! ```
 //!
-//! `masses` are a number for each degree of freedom or for each three, or a diagonal matrix of these;
-//! `mass_matrix` is another name for that.
-//!
 //! Rigid motions are projected out: by `positions` three translations and three rotations, with `"periodic":
 //! true` the translations alone, else the common null space of all stiffnesses, if it is no larger than that.
 //! What a stiffness holds is not rigid, each by its own accuracy: then the file is refused, or the motion
 //! stays (see [`Removed`](systems::Removed)).
 //!
-//! `"hydrogen_mass": 3.024` makes hydrogens (up to 1.1) heavier at the cost of the nearest heavy particle.
-//! `"constraints": "h-bonds"`, or pairs, holds distances; then each potential has a `force` by reference, at
-//! the positions and not mass-weighted (see `held`). `"method": "molly-short"` integrates two levels
-//! otherwise than by kicks and drifts: the force of the shorter step is followed exactly, or by the midpoint
-//! rule, over the whole longer one, and the other force kicks, filtered (see
-//! [`Method`](systems::levels::Method)). `"symmetric": false` says that a force is no gradient, as one that
-//! is learned and predicted directly: then its Jacobian, minus the derivative of the force, is no Hessian,
-//! and its asymmetry no error. Of particles in space `labels` may be of three words, as `H1 HOH 4`;
-//! `elements` are their symbols, `bonded` pairs of them: by these, or by masses and distances, the motions of
-//! a molecule are named. `"along_orbit": true` says that the Hessians are those along half a period of the
-//! integrator's own orbit, which is at rest at t = 0 and at T/2: each `stiffness` is an array (k, n, n), one
-//! matrix for each kick of its clock from t = 0 to T/2, both counted, not mass-weighted. A free molecule has
-//! `positions` at t = 0 and `turned`, those at T/2, by which its rigid motions are set apart. In other
-//! coordinates than those of atoms `rigid` has these motions, an array (2, n, r): mass-weighted columns at
-//! both ends. `"keep_rigid": true` projects no rigid motions out: there are none, as of atoms among others
-//! that stand still.
+//! Constraints hold distances (see `held`). A `method` integrates two levels otherwise than by kicks and
+//! drifts: the force of the shorter step is followed exactly, or by the midpoint rule, over the whole longer
+//! one, and the other force kicks, filtered (see [`Method`](systems::levels::Method)). With `"symmetric":
+//! false` a stiffness is the Jacobian, minus the derivative of the force. By the words of `labels`, by
+//! `elements` and `bonded`, or by masses and distances, the motions of a molecule are named. Along an orbit,
+//! which is at rest at t = 0 and at T/2, a free molecule has `positions` at t = 0 and `turned`, those at T/2,
+//! by which its rigid motions are set apart; in other coordinates than those of atoms `rigid` has them.
 
 use std::sync::Arc;
 
 use nalgebra::DMatrix;
-use serde::Deserialize;
-use serde_json::Value;
 
 use super::array::{Arrays, Reference};
-use super::document::{LARGEST, Number, no_system};
-use super::held::{Constraints, Particles, reweigh};
+use super::document::{Document, LARGEST, PotentialDocument};
+use super::held::{Particles, reweigh};
+use super::part::{Given, Number};
 use number::Rational;
 use number::error::{Error, Result};
 use number::rational::to_f64;
@@ -56,130 +43,6 @@ use systems::{Along, Body, Jacobians, MeasuredSystem, Model};
 /// How well a measured stiffness is known unless its file says so: a Hessian by differences is good to some
 /// 10^-6 of its norm.
 const USUAL_ACCURACY: f64 = 1e-6;
-
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct Document {
-    #[serde(rename = "schema")]
-    _schema: String,
-    #[serde(rename = "title")]
-    _title: Option<String>,
-    #[serde(rename = "time_unit")]
-    _time_unit: Option<String>,
-    #[serde(default)]
-    pub mass_weighted: bool,
-    pub masses: Option<MassesDocument>,
-    pub mass_matrix: Option<MassesDocument>,
-    pub positions: Option<Reference>,
-    #[serde(default)]
-    pub periodic: bool,
-    pub accuracy: Option<Number>,
-    pub constraints: Option<Constraints>,
-    pub hydrogen_mass: Option<Number>,
-    #[serde(default)]
-    pub keep_rigid: bool,
-    #[serde(default)]
-    pub along_orbit: bool,
-    pub turned: Option<Reference>,
-    pub rigid: Option<Reference>,
-    #[serde(default = "yes")]
-    pub symmetric: bool,
-    pub method: Option<String>,
-    pub scheme: Option<String>,
-    pub levels: Option<Vec<LevelDocument>>,
-    pub potentials: Vec<PotentialDocument>,
-    pub labels: Option<Vec<String>>,
-    pub elements: Option<Vec<String>>,
-    pub bonded: Option<Vec<[usize; 2]>>,
-}
-
-fn yes() -> bool {
-    true
-}
-
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct PotentialDocument {
-    #[serde(rename = "name")]
-    _name: Option<String>,
-    pub step: Number,
-    pub scale: Option<Number>,
-    pub stiffness: Reference,
-    pub force: Option<Reference>,
-}
-
-/// A level of local time steps; see `local`.
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct LevelDocument {
-    pub fine: FineDocument,
-    pub substeps: Number,
-}
-
-/// Degrees of freedom, counted from 0: as they are, or an array of them.
-#[derive(Debug, Deserialize)]
-#[serde(
-    untagged,
-    expecting = "this is no list of degrees of freedom, counted from 0, and no array of them, as [3, 4] or {\"npz\": \"h.npz\", \"array\": \"fine\"}"
-)]
-pub(super) enum FineDocument {
-    List(Vec<usize>),
-    Array(Reference),
-}
-
-/// Masses: numbers in the file, or an array of them.
-#[derive(Debug, Deserialize)]
-#[serde(try_from = "Value")]
-pub(super) enum MassesDocument {
-    List(Vec<Number>),
-    Array(Reference),
-}
-
-impl TryFrom<Value> for MassesDocument {
-    type Error = String;
-
-    fn try_from(value: Value) -> std::result::Result<Self, String> {
-        match value {
-            Value::Array(all) if all.iter().any(Value::is_array) => {
-                Err("by rows it stands beside stiffnesses by rows: here name the file of a diagonal matrix, or give masses".into())
-            }
-            Value::Array(all) => Ok(MassesDocument::List(all.into_iter().map(Number::from).collect())),
-            other => Reference::try_from(other).map(MassesDocument::Array),
-        }
-    }
-}
-
-impl MassesDocument {
-    /// A mass for each of n degrees of freedom, from as many numbers, one for each three, or a diagonal
-    /// matrix of either.
-    pub fn read(&self, field: &str, n: usize, arrays: &Arrays) -> Result<Vec<f64>> {
-        let masses = match self {
-            MassesDocument::Array(at) => at.read(field, arrays)?.into_diagonal(field)?,
-            MassesDocument::List(all) => {
-                let number = |(i, number): (usize, &Number)| {
-                    number.read(&format!("{field}[{i}]")).map(|value| to_f64(&value))
-                };
-                all.iter().enumerate().map(number).collect::<Result<_>>()?
-            }
-        };
-        spread(masses, n)
-    }
-}
-
-/// Whether some stiffness of the file stands by reference.
-pub(super) fn is_by_reference(source: &Value) -> bool {
-    let potentials = source.get("potentials").and_then(Value::as_array);
-    potentials.is_some_and(|all| all.iter().any(|value| value.get("stiffness").is_some_and(Value::is_object)))
-}
-
-/// The file, its arrays unread.
-pub(super) fn parse(source: &Value) -> Result<Document> {
-    serde_path_to_error::deserialize(source).map_err(|fault| {
-        let field = fault.path().to_string();
-        let error = no_system(fault.into_inner());
-        if field == "." { error } else { error.at(field) }
-    })
-}
 
 /// From a file of dense stiffnesses.
 pub(super) fn read(document: &Document, arrays: &Arrays) -> Result<Arc<dyn Model>> {
@@ -195,12 +58,9 @@ pub(super) fn read(document: &Document, arrays: &Arrays) -> Result<Arc<dyn Model
             return Err(Error::input(field, "given", "is for \"along_orbit\": true: leave it out"));
         }
     }
-    let read = document
-        .potentials
-        .iter()
-        .enumerate()
-        .map(|(k, potential_document)| potential_document.read(k, arrays));
-    let mut read = read.collect::<Result<Vec<_>>>()?;
+    let potentials = document.potentials()?.iter().enumerate();
+    let mut read =
+        potentials.map(|(k, potential)| potential.measured(k, arrays)).collect::<Result<Vec<_>>>()?;
     let n = read.first().map_or(0, |read| read.stiffness.nrows());
     if n == 0 || n > LARGEST {
         return Err(Error::input("potentials", n, format!("give 1 to {LARGEST} degrees of freedom")));
@@ -220,7 +80,7 @@ pub(super) fn read(document: &Document, arrays: &Arrays) -> Result<Arc<dyn Model
     document.transform(&mut body, &mut read, arrays)?;
     let accuracy = document.accuracy()?;
     let potentials: Vec<_> = read.into_iter().map(|read| (read.step, read.stiffness)).collect();
-    let model: Arc<dyn Model> = if document.symmetric {
+    let model: Arc<dyn Model> = if document.symmetric != Some(false) {
         let measured_system = MeasuredSystem::new(body, potentials, accuracy)?;
         Arc::new(if document.keep_rigid { measured_system.keeping_rigid() } else { measured_system })
     } else {
@@ -237,20 +97,20 @@ impl Document {
             ("constraints", self.constraints.is_some()),
             ("hydrogen_mass", self.hydrogen_mass.is_some()),
             ("method", self.method.is_some()),
-            ("symmetric", !self.symmetric),
+            ("symmetric", self.symmetric == Some(false)),
         ];
         if let Some((field, _)) = refused.iter().find(|(_, is_given)| *is_given) {
             return Err(Error::input(field, "given", "has no place along an orbit: leave it out"));
         }
         let (mut steps, mut kicks) = (Vec::new(), Vec::new());
-        for (k, potential_document) in self.potentials.iter().enumerate() {
+        for (k, potential_document) in self.potentials()?.iter().enumerate() {
             let field = format!("potentials[{k}].stiffness");
             steps.push(potential_document.step(k)?);
             if potential_document.scale.is_some() || potential_document.force.is_some() {
                 let remedy = "scale and force have no place along an orbit: leave them out";
                 return Err(Error::input(&format!("potentials[{k}]"), "given", remedy));
             }
-            let matrixes = potential_document.stiffness.read(&field, arrays)?.matrices(&field)?;
+            let matrixes = potential_document.array(k)?.read(&field, arrays)?.matrices(&field)?;
             check_symmetric(&field, &matrixes, self.accuracy()?)?;
             kicks.push(matrixes);
         }
@@ -295,19 +155,34 @@ struct Read {
 impl Document {
     /// Whether some stiffness is sparse.
     pub fn is_sparse(&self) -> bool {
-        self.potentials.iter().any(|potential| matches!(potential.stiffness, Reference::Csr { .. }))
+        let is_sparse = |potential: &PotentialDocument| {
+            matches!(potential.stiffness, Some(Given::Array(Reference::Csr { .. })))
+        };
+        self.potentials.iter().flatten().any(is_sparse)
     }
 
     /// The mass of each degree of freedom, where masses are given.
     pub fn masses(&self, n: usize, arrays: &Arrays) -> Result<Option<Vec<f64>>> {
-        match (&self.masses, &self.mass_matrix) {
+        let masses = match (&self.masses, &self.mass_matrix) {
+            (None, None) => return Ok(None),
             (Some(_), Some(_)) => {
-                Err(Error::input("mass_matrix", "given", "stands in place of masses: give one of them"))
+                let remedy = "stands in place of masses: give one of them";
+                return Err(Error::input("mass_matrix", "given", remedy));
             }
-            (Some(masses_document), None) => masses_document.read("masses", n, arrays).map(Some),
-            (None, Some(masses_document)) => masses_document.read("mass_matrix", n, arrays).map(Some),
-            (None, None) => Ok(None),
-        }
+            (None, Some(Given::Here(_))) => {
+                let remedy = "stands beside stiffnesses by rows: here name the file of a diagonal matrix, or give masses";
+                return Err(Error::input("mass_matrix", "by rows", remedy));
+            }
+            (Some(Given::Here(all)), None) => {
+                let number = |(i, number): (usize, &Number)| {
+                    number.read(&format!("masses[{i}]")).map(|value| to_f64(&value))
+                };
+                all.iter().enumerate().map(number).collect::<Result<_>>()?
+            }
+            (Some(Given::Array(at)), None) => at.read("masses", arrays)?.into_diagonal("masses")?,
+            (None, Some(Given::Array(at))) => at.read("mass_matrix", arrays)?.into_diagonal("mass_matrix")?,
+        };
+        spread(masses, n).map(Some)
     }
 
     /// The positions of the particles, where they are given. Elements and bonds are checked against the
@@ -360,7 +235,7 @@ impl Document {
         body.is_weighted = true;
         let Some(pairs) = pairs else { return Ok(()) };
         let particles = Particles { masses, positions };
-        for (k, (potential_document, read)) in self.potentials.iter().zip(read).enumerate() {
+        for (k, (potential_document, read)) in self.potentials()?.iter().zip(read).enumerate() {
             let field = format!("potentials[{k}].force");
             let remedy = "give the force of each potential at the positions: its tension bends the bonds that are held";
             let force = potential_document.force.as_ref().ok_or_else(|| Error::missing(&field, remedy))?;
@@ -384,10 +259,25 @@ impl PotentialDocument {
         Ok(step)
     }
 
-    fn read(&self, k: usize, arrays: &Arrays) -> Result<Read> {
+    /// The array of the k-th potential's stiffness.
+    pub fn array(&self, k: usize) -> Result<&Reference> {
+        let refused = |value: &str, remedy: &str| {
+            Err(Error::input(&format!("potentials[{k}].stiffness"), value, remedy))
+        };
+        match &self.stiffness {
+            Some(Given::Array(at)) => Ok(at),
+            Some(Given::Here(_)) => refused("by rows", "give all stiffnesses by reference, or all by rows"),
+            None => refused(
+                "missing",
+                "name its array, as {\"npy\": \"h.npy\"}: those of others are by reference, too",
+            ),
+        }
+    }
+
+    fn measured(&self, k: usize, arrays: &Arrays) -> Result<Read> {
         let field = |name: &str| format!("potentials[{k}].{name}");
         let step = self.step(k)?;
-        let stiffness = self.stiffness.read(&field("stiffness"), arrays)?.matrix(&field("stiffness"))?;
+        let stiffness = self.array(k)?.read(&field("stiffness"), arrays)?.matrix(&field("stiffness"))?;
         let scale = self.scale.as_ref().map(|scale| scale.read(&field("scale"))).transpose()?;
         let scale = scale.map_or(1.0, |value| to_f64(&value));
         Ok(Read { step, scale, stiffness: stiffness * scale })

@@ -10,19 +10,16 @@
 //! }
 //! ```
 //!
-//! * `nodes`: 1 to 3 coordinates each. `elements`: 2 nodes a bar, 3 a triangle in the plane, 4 a tetrahedron.
-//! * `fixed`: nodes, or \[node, axis\] pairs.
-//! * `young`, `density`; `poisson` (0 unless given) and `thickness` (the cross-section of bars; 1 unless
-//!   given); `plane`: stress (unless given) or strain.
-//! * The steps: `step` for all; or `steps`, one an element; or `steps` one a class with `classes`, the class
-//!   of each element; or `courant`, for bars: the step of each is that times l/c, c = √(young/density).
+//! The steps: `step` for all; or `steps`, one an element; or `steps` one a class with `classes`, the class of
+//! each element; or `courant`, for bars: the step of each is that times l/c, c = √(young/density).
 
 use std::collections::BTreeSet;
 
 use num_traits::{One, Zero};
 
-use super::document::{Fixed, LARGEST, MeshDocument, Number, Plane, at_most};
+use super::document::{Fixed, LARGEST, MeshDocument, Plane, at_most};
 use super::linear::numbers;
+use super::part::{Index, Number};
 use number::Rational;
 use number::error::{Error, Result};
 use systems::System;
@@ -66,8 +63,8 @@ impl MeshDocument {
         };
         at_most("mesh.nodes", self.nodes.len())?;
         let nodes = read("nodes", &self.nodes)?;
-        let element = |(e, numbers): (usize, &Vec<Number>)| {
-            let index = |i: &Number| i.index(&format!("mesh.elements[{e}]"), nodes.len());
+        let element = |(e, numbers): (usize, &Vec<Index>)| {
+            let index = |i: &Index| i.read(&format!("mesh.elements[{e}]"), nodes.len());
             numbers.iter().map(index).collect::<Result<Vec<_>>>()
         };
         let elements: Vec<_> = self.elements.iter().enumerate().map(element).collect::<Result<_>>()?;
@@ -87,10 +84,10 @@ impl MeshDocument {
             let field = format!("mesh.fixed[{k}]");
             match own {
                 Fixed::Axis([node, axis]) => {
-                    fixed.insert((node.index(&field, nodes.len())?, axis.index(&field, axes)?));
+                    fixed.insert((node.read(&field, nodes.len())?, axis.read(&field, axes)?));
                 }
                 Fixed::Node(node) => {
-                    let node = node.index(&field, nodes.len())?;
+                    let node = node.read(&field, nodes.len())?;
                     fixed.extend((0..axes).map(|axis| (node, axis)));
                 }
             }
@@ -119,8 +116,8 @@ impl MeshDocument {
             }
             (None, Some(steps), Some(classes), None) if classes.len() == n => {
                 let steps = numbers("mesh.steps", steps)?;
-                let class = |(e, number): (usize, &Number)| {
-                    Ok(steps[number.index(&format!("mesh.classes[{e}]"), steps.len())?].clone())
+                let class = |(e, number): (usize, &Index)| {
+                    Ok(steps[number.read(&format!("mesh.classes[{e}]"), steps.len())?].clone())
                 };
                 classes.iter().enumerate().map(class).collect()
             }

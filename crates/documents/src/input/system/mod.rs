@@ -15,35 +15,22 @@
 //! }
 //! ```
 //!
+//! [`document`] says what each field is, to the reader and to the schema `data/schema/system.json`.
+//!
 //! * All quantities are exact, texts or JSON numbers (0.1 is 1/10); indices count from 0. Stiffnesses,
 //!   springs and scales may involve π, as `"pi^2/25"`; of one mass alone (K clocks on one oscillator) its
 //!   mass and its steps, too.
-//! * `time_unit`, if given, is the name of the unit of steps and periods, as "ps": answers name it.
-//! * `masses`, or `mass_matrix` by rows.
-//! * A potential has a `step`, a `phase` (0 unless given, or 1/2), and at least one of `springs` (i, j, k; j
-//!   null for a wall), `stiffness` (by rows), `bonds` (a named form between i and j, without j to a wall
-//!   at 0). They add up, times `scale` (1 unless given).
-//! * Forms: `harmonic` (k), `quartic` (k, beta), `lennard-jones` (epsilon, sigma). With bonds other than
-//!   harmonic the system is the linear one at the equilibrium found near the positions `near`: exact for the
-//!   Hessian in doubles, which is itself rounded.
+//! * With bonds other than harmonic the system is the linear one at the equilibrium found near the positions
+//!   `near`: exact for the Hessian in doubles, which is itself rounded.
 //! * A `stiffness` by reference, `{"npy": "h.npy"}` or `{"npz": "data.npz", "array": "h"}`, makes it a system
-//!   of measured doubles: then all stiffnesses are references, `masses` and `positions` too; `mass_weighted`
-//!   says that the matrices are, `accuracy` how well they are known.
-//! * `labels` name the degrees of freedom, or the particles of three each; `friction` is a rate γ per unit
-//!   time: O, v → exp(−γ t) v, in the middle of every drift of the whole schedule, also for what only some of
-//!   the clocks act on.
-//! * `symmetric`: `false` says that a force is no gradient: `stiffness` by rows is minus its derivative,
-//!   whatever that is.
+//!   of measured doubles: then all stiffnesses are references, and some fields stand there alone.
 //! * `scheme`: `"lts"` or `"avi"` with `levels` are local time steps, see `local`.
-//! * In place of masses and potentials a `mesh` of finite elements, see `mesh`; or `build`: `{"kind":
-//!   "chain", "masses": 200, "stiffness": [...], "steps": [...]}`, `{"kind": "stiff-soft", "pairs": 4,
-//!   "stiff": "100", "steps": [stiff, soft]}`, `{"kind": "graded-bar", "elements": 100, "classes": 10,
-//!   "courant": "1/4"}`, `{"kind": "tethered-pair", "masses": [...], "stiffness": [bond, tether], "steps":
-//!   [bond, tether]}`.
+//! * In place of masses and potentials a `mesh` of finite elements, see `mesh`; or `build`, as `{"kind":
+//!   "chain", "masses": 200, "stiffness": [...], "steps": [...]}`.
 //!
 //! | file | what |
 //! |---|---|
-//! | `document` | the fields |
+//! | `document`, `part` | the fields, for the reader and the schema; what they are made of |
 //! | `linear`, `bonds` | rational systems, named forms at an equilibrium |
 //! | `oscillator`, `pi` | one oscillator over ℚ\[π\], several degrees of freedom with such stiffnesses |
 //! | `mesh` | finite elements |
@@ -68,20 +55,20 @@ mod measured;
 mod mesh;
 mod molecule;
 mod oscillator;
+mod part;
 mod pi;
 mod scan;
 mod sparse;
 
 use std::sync::Arc;
 
-use serde::Deserialize;
 use serde_json::Value;
 
 use crate::input::json;
 use crate::input::kind::of_another_kind;
 pub use array::{Array, Arrays};
 use bonds::Nonlinear;
-use document::{Document, SIZES, check_lengths, no_system};
+use document::{Document, SIZES, check_lengths, is_by_reference, no_system};
 pub use intervals::{NEAREST, Span};
 pub use molecule::of_archive;
 use number::Rational;
@@ -141,7 +128,15 @@ impl SystemFile {
             return Err(Error::input("system", format!("{} bytes", text.len()), remedy));
         }
         check_lengths(text.strip_prefix('\u{feff}').unwrap_or(text))?;
-        Ok(SystemFile { source: json::from_str(text).map_err(no_system)?, text: Some(text.into()) })
+        Ok(SystemFile {
+            source: json::from_str(text).map_err(|cause| no_system(&cause, &json::plain(&cause)))?,
+            text: Some(text.into()),
+        })
+    }
+
+    /// The schema of its files, by their name.
+    pub fn file_schema() -> (&'static str, Value) {
+        Document::schema()
     }
 
     /// This file with other texts in some of its fields, where they are given.
@@ -214,9 +209,8 @@ impl SystemScene {
 
     fn parsed(arrays: Arrays, source: Value, text: Option<&str>) -> Result<SystemScene> {
         source.get("schema").and_then(Value::as_str).map_or(Ok(()), check_schema)?;
-        if measured::is_by_reference(&source) {
-            check_schema(source["schema"].as_str().unwrap_or_default())?;
-            let document = measured::parse(&source)?;
+        let document = Document::parse(&source, text)?;
+        if is_by_reference(&source) {
             let model: Arc<dyn Model> = if document.is_sparse() {
                 Arc::new(sparse::read(&document, &arrays)?)
             } else {
@@ -226,11 +220,6 @@ impl SystemScene {
             let (bonds, friction) = (None, None);
             return Ok(SystemScene { source, arrays, model, bonds, labels, friction });
         }
-        // Once more from the text, for the error to name its line.
-        let document =
-            Document::deserialize(&source).or_else(|error| text.map_or(Err(error), json::from_str));
-        let document = document.map_err(no_system)?;
-        check_schema(&document.schema)?;
         let Described { model, bonds, labels } = document.model()?;
         if let Some(step) = model.steps().into_iter().find(|step| !SIZES.contains(&to_f64(step))) {
             let remedy = "choose a unit of time in which steps are 1e-150 to 1e150";

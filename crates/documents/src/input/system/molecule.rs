@@ -1,10 +1,9 @@
 //! Measured levels as a molecule to be advised on.
 
-use serde::Deserialize;
 use serde_json::{Value, json};
 
 use super::SystemScene;
-use super::measured::MassesDocument;
+use super::document::Document;
 use molecules::unit::{self, Dimension};
 use molecules::{Direct, Molecule, Names, Scheme, Told};
 use number::Rational;
@@ -48,29 +47,17 @@ impl SystemScene {
 
     /// The names of atoms, from the labels, elements and bonds of the file.
     fn names(&self, body: &Body) -> Result<Names> {
-        #[derive(Deserialize)]
-        struct Document {
-            labels: Option<Vec<String>>,
-            elements: Option<Vec<String>>,
-            bonded: Option<Vec<[usize; 2]>>,
-            masses: Option<MassesDocument>,
-            mass_matrix: Option<MassesDocument>,
-        }
-        let Ok(Document { labels, elements, bonded, masses, mass_matrix }) =
-            Document::deserialize(self.source())
-        else {
-            return Ok(Names::default());
+        let document = Document::parse(self.source(), None)?;
+        let labels = document.labels.clone().unwrap_or_default();
+        let (Some(positions), Some(moving)) = (&body.positions, &body.masses) else {
+            return Ok(Names::of_labels(labels));
         };
-        let labels = labels.unwrap_or_default();
-        let (Some(positions), Some(moving), Some(masses)) =
-            (&body.positions, &body.masses, masses.or(mass_matrix))
-        else {
+        let Some(given) = document.masses(moving.len(), &self.arrays)? else {
             return Ok(Names::of_labels(labels));
         };
         let of_atoms = |masses: &[f64]| masses.chunks_exact(3).map(|values| values[0]).collect::<Vec<_>>();
-        let given = masses.read("masses", moving.len(), &self.arrays)?;
-        let told =
-            Told { labels, elements: elements.unwrap_or_default(), bonds: bonded, masses: of_atoms(&given) };
+        let (elements, bonds) = (document.elements.unwrap_or_default(), document.bonded);
+        let told = Told { labels, elements, bonds, masses: of_atoms(&given) };
         Ok(Names::new(told, positions, of_atoms(moving)))
     }
 

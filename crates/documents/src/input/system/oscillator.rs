@@ -3,6 +3,7 @@
 use num_traits::Zero;
 
 use super::document::{Document, PotentialDocument, ends};
+use super::part::Given;
 use number::error::{Error, Result};
 use number::{ExactSign, Laurent, Rational, Sign};
 use systems::Oscillator;
@@ -10,9 +11,10 @@ use systems::Oscillator;
 impl Document {
     /// `None` unless the file is of one mass and some number of it is irrational.
     pub fn oscillator(&self) -> Result<Option<Oscillator>> {
-        let (Some([mass]), Ok(potentials)) = (self.masses.as_deref(), self.potentials()) else {
+        let (Some(Given::Here(masses)), Ok(potentials)) = (&self.masses, self.potentials()) else {
             return Ok(None);
         };
+        let [mass] = &masses[..] else { return Ok(None) };
         if potentials.iter().any(|p| !p.bonds.is_empty()) {
             return Ok(None);
         }
@@ -31,7 +33,7 @@ impl PotentialDocument {
     /// Step, phase and stiffness on one degree of freedom.
     fn clock(&self, k: usize) -> Result<(Laurent, Rational, Laurent)> {
         let field = |name: &str| format!("potentials[{k}].{name}");
-        let mut stiffness = match self.stiffness.as_deref() {
+        let mut stiffness = match self.rows(k)? {
             None => Laurent::zero(),
             Some([row]) if row.len() == 1 => row[0].read_laurent(&field("stiffness[0][0]"))?,
             Some(rows) => {

@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use super::document::{Document, Number, PotentialDocument, ends};
+use super::document::{Document, PotentialDocument, ends};
+use super::part::Number;
 use number::Laurent;
 use number::error::Result;
 use systems::{BesidePi, PiPotential, Symmetric, beside_pi};
@@ -37,10 +38,9 @@ impl PotentialDocument {
         let mut add = |i: usize, j: usize, x: Laurent| {
             *stiffness.entry((i.max(j), i.min(j))).or_insert_with(Laurent::default) += x;
         };
-        let size = self.stiffness.as_ref().map_or(n, Vec::len);
-        for (i, row) in
-            numbers(&field("stiffness"), self.stiffness.as_deref().unwrap_or_default())?.iter().enumerate()
-        {
+        let rows = self.rows(k)?;
+        let size = rows.map_or(n, <[_]>::len);
+        for (i, row) in numbers(&field("stiffness"), rows.unwrap_or_default())?.iter().enumerate() {
             row[..=i].iter().enumerate().for_each(|(j, x)| add(i, j, x.clone()));
         }
         // A matrix of another size is refused with the system.

@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 use serde_json::Value;
 
-use super::document::Number;
+use super::part::Number;
 use super::{SystemScene, sparse, with_method};
 use number::Rational;
 use number::error::{Error, Result};

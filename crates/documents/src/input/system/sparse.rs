@@ -24,12 +24,14 @@ use faer::Mat;
 use serde_json::Value;
 
 use super::array::{Arrays, Reference};
-use super::measured::{self, Document, FineDocument, LevelDocument};
+use super::document::{Document, LevelDocument};
+use super::local::indices;
+use super::part::Given;
 use number::Rational;
 use number::error::{Error, Result, room};
 use systems::levels::sparse::{SparseLevels, symmetric};
 use systems::levels::{rigid_motions, translations};
-use systems::{Level, LocalSteps, Removed, Scheme, SparseSteps, SparseSystem};
+use systems::{Level, Removed, Scheme, SparseSteps, SparseSystem};
 
 /// The most degrees of freedom.
 const LARGEST: usize = 1 << 20;
@@ -41,11 +43,9 @@ pub(super) fn read(document: &Document, arrays: &Arrays) -> Result<SparseSystem>
         return local_steps(document, arrays);
     }
     let mut levels = Vec::new();
-    for (k, potential_document) in document.potentials.iter().enumerate() {
-        levels.push((
-            potential_document.step(k)?,
-            rows(&potential_document.stiffness, &format!("potentials[{k}].stiffness"), arrays)?,
-        ));
+    for (k, potential) in document.potentials()?.iter().enumerate() {
+        let field = format!("potentials[{k}].stiffness");
+        levels.push((potential.step(k)?, rows(potential.array(k)?, &field, arrays)?));
     }
     levels.sort_by(|a, b| a.0.cmp(&b.0));
     let [(inner, (n, fast)), (outer, (m, slow))] = &levels[..] else {
@@ -76,8 +76,8 @@ pub(super) fn read(document: &Document, arrays: &Arrays) -> Result<SparseSystem>
 /// are not read again. `None` where the fast one is no longer the fast one, or there are no two levels.
 pub(super) fn with_steps(sparse_system: &SparseSystem, files: [&Value; 2]) -> Result<Option<SparseSystem>> {
     let steps = |file: &Value| -> Result<Vec<Rational>> {
-        let document = measured::parse(file)?;
-        document.potentials.iter().enumerate().map(|(k, potential)| potential.step(k)).collect()
+        let document = Document::parse(file, None)?;
+        document.potentials()?.iter().enumerate().map(|(k, potential)| potential.step(k)).collect()
     };
     let own_steps = match (&steps(files[0])?[..], &steps(files[1])?[..]) {
         ([a, b], [c, d]) if a < b && c < d => [c.clone(), d.clone()],
@@ -91,7 +91,7 @@ pub(super) fn with_steps(sparse_system: &SparseSystem, files: [&Value; 2]) -> Re
 fn local_steps(document: &Document, arrays: &Arrays) -> Result<SparseSystem> {
     let refused = |field: &str, value: String, remedy: &str| Err(Error::input(field, value, remedy));
     let scheme = document.scheme.as_deref().map(str::parse).transpose()?;
-    let (levels, potential) = match (scheme, &document.levels, &document.potentials[..]) {
+    let (levels, potential) = match (scheme, &document.levels, document.potentials()?) {
         (Some(Scheme::Avi), ..) => {
             let remedy = "is two stiffnesses here, each with its step: leave out scheme and levels";
             return refused("scheme", "avi".into(), remedy);
@@ -119,32 +119,36 @@ fn local_steps(document: &Document, arrays: &Arrays) -> Result<SparseSystem> {
     if document.accuracy.is_some() {
         return refused("accuracy", "given".into(), "has no meaning with local steps: leave it out");
     }
-    let (n, stiffness) = rows(&potential.stiffness, "potentials[0].stiffness", arrays)?;
+    let (n, stiffness) = rows(potential.array(0)?, "potentials[0].stiffness", arrays)?;
     if n == 0 || n > LARGEST {
         return refused("potentials", format!("{n} rows"), &format!("give 1 to {LARGEST}"));
     }
     let masses = document.masses(n, arrays)?.ok_or_else(|| Error::missing("masses", "give them"))?;
-    let levels = levels.iter().enumerate().map(|(l, level_document)| level_document.read(l, n, arrays));
+    let levels = levels.iter().enumerate().map(|(l, level_document)| level_document.sparse(l, n, arrays));
     let (levels, step) = (levels.collect::<Result<_>>()?, potential.step(0)?);
     SparseSystem::with_local_steps(SparseSteps::new(&masses, &stiffness, levels)?, &step)
 }
 
 impl LevelDocument {
-    fn read(&self, l: usize, n: usize, arrays: &Arrays) -> Result<Level> {
-        let field = |name: &str| format!("levels[{l}].{name}");
-        let fine: BTreeSet<usize> = match &self.fine {
-            FineDocument::List(indexes) => indexes.iter().copied().collect(),
-            FineDocument::Array(at) => {
-                let values = at.read(&field("fine"), arrays)?.into_values();
+    fn sparse(&self, l: usize, n: usize, arrays: &Arrays) -> Result<Level> {
+        let field = format!("levels[{l}].fine");
+        let fine: BTreeSet<usize> = match (&self.fine, &self.elements) {
+            (Some(Given::Here(all)), None) => indices(&field, all, n)?,
+            (Some(Given::Array(at)), None) => {
+                let values = at.read(&field, arrays)?.into_values();
                 let is_index = |x: &&f64| **x >= 0.0 && x.fract() == 0.0 && **x < n as f64;
                 if let Some(x) = values.iter().find(|x| !is_index(x)) {
-                    return Err(Error::input(&field("fine"), x, format!("indices are 0 to {}", n - 1)));
+                    return Err(Error::input(&field, x, format!("indices are 0 to {}", n - 1)));
                 }
                 values.into_iter().map(|x| x as usize).collect()
             }
+            _ => {
+                let remedy =
+                    "give fine, the degrees of freedom: elements are parts of a mesh, and there is none";
+                return Err(Error::input(&format!("levels[{l}]"), "elements, or no fine", remedy));
+            }
         };
-        let substeps = self.substeps.count(&field("substeps"), LocalSteps::MOST_SUBSTEPS as usize)? as u32;
-        Ok(Level { fine, substeps })
+        Ok(Level { fine, substeps: self.count(l)? })
     }
 }
 
@@ -155,12 +159,12 @@ impl Document {
             ("mass_weighted", self.mass_weighted),
             ("constraints", self.constraints.is_some()),
             ("hydrogen_mass", self.hydrogen_mass.is_some()),
-            ("symmetric", !self.symmetric),
+            ("symmetric", self.symmetric == Some(false)),
             ("method", self.method.is_some()),
         ];
         let of_potential =
             |(k, name, given): (usize, &str, bool)| given.then(|| format!("potentials[{k}].{name}"));
-        let potentials = self.potentials.iter().enumerate();
+        let potentials = self.potentials.iter().flatten().enumerate();
         let potentials = potentials
             .flat_map(|(k, potential_document)| {
                 [
