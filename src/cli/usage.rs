@@ -113,7 +113,10 @@ impl<'a> Given<'a> {
             Some((flag, name, value)) if matches!(flag.get_action(), clap::ArgAction::Append) => {
                 format!("write the flag again before it, as {name} {value} {name} {text}")
             }
-            _ => format!("follows no flag: --help lists all{}; a text with spaces stands in quotes", self.example()),
+            _ => format!(
+                "follows no flag: --help lists all{}; a text with spaces stands in quotes",
+                self.example()
+            ),
         }
     }
 }

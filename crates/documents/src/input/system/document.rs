@@ -457,6 +457,9 @@ pub(super) fn no_system(cause: &serde_json::Error, words: &str) -> Error {
     Error::input(
         "system",
         place,
-        format!("{}; write one JSON object as in data/scenes/diatomic-tether.json", words.trim_end_matches('?')),
+        format!(
+            "{}; write one JSON object as in data/scenes/diatomic-tether.json",
+            words.trim_end_matches('?')
+        ),
     )
 }
