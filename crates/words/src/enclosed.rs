@@ -7,7 +7,7 @@
 //! |T| > q (e + d) or d > e. Over an interval of steps q (e + d) ∓ T is enclosed by its value in the middle and the balls of its derivative over the whole, so that the width
 //! of cells falls with the distance from an edge, and not with its square where the trace only touches ±2.
 
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 
 use num_traits::One;
 
@@ -60,6 +60,15 @@ struct Steps {
     friction: Ball,
     /// Cleared where a filter has a pole, and where exponents are too large.
     defined: Cell<bool>,
+    /// Flows that are known: a palindrome has each twice.
+    flows: RefCell<Vec<Flow>>,
+}
+
+/// The first row of an exact flow.
+struct Flow {
+    force: Force,
+    time: Radical,
+    moved: [Jet; 2],
 }
 
 impl Steps {
@@ -122,23 +131,29 @@ impl Steps {
         x.div(by, BITS).unwrap_or_else(|| self.undefined())
     }
 
-    /// cos x.
-    fn cos(x: &Jet) -> Jet {
-        x.chained(x.value.cos(BITS), &x.value.sin(BITS).neg())
+    /// cos x and sin x / x; about 0 the latter by the bounds 1 − x²/6 ≤ sinc x ≤ 1, −x/3 ≤ sinc' x ≤ 0 for x ≥ 0.
+    fn circular(&self, x: &Jet) -> [Jet; 2] {
+        let ball = &x.value;
+        let (cos, sin) = (ball.cos(BITS), ball.sin(BITS));
+        let (sinc, slope) = if ball.is_away_from_zero() {
+            let sinc = self.over(&sin, ball);
+            let slope = self.over(&cos.sub(&sinc, BITS), ball);
+            (sinc, slope)
+        } else {
+            let sixth = Ball::from_rational(&Rational::new(1.into(), 6.into()), BITS);
+            let least = Ball::one().sub(&ball.square(BITS).mul(&sixth, BITS), BITS);
+            let slope = ball.mul(&sixth, BITS).scale2(1).neg();
+            (least.union(&Ball::one(), BITS), slope.union(&Ball::zero(), BITS))
+        };
+        [x.chained(cos, &sin.neg()), x.chained(sinc, &slope)]
     }
 
-    /// sin x / x, and about 0 the bounds 1 − x²/6 ≤ sinc x ≤ 1, −x/3 ≤ sinc' x ≤ 0 for x ≥ 0.
-    fn sinc(&self, x: &Jet) -> Jet {
-        let ball = &x.value;
-        if ball.is_away_from_zero() {
-            let sinc = self.over(&ball.sin(BITS), ball);
-            let slope = self.over(&ball.cos(BITS).sub(&sinc, BITS), ball);
-            return x.chained(sinc, &slope);
-        }
-        let sixth = Ball::from_rational(&Rational::new(1.into(), 6.into()), BITS);
-        let least = Ball::one().sub(&ball.square(BITS).mul(&sixth, BITS), BITS);
-        let slope = ball.mul(&sixth, BITS).scale2(1).neg();
-        x.chained(least.union(&Ball::one(), BITS), &slope.union(&Ball::zero(), BITS))
+    fn moved(&self, force: Force, c: &Radical) -> [Jet; 2] {
+        let (c, (frequency, repels)) = (c.enclosure(BITS), self.frequency(force));
+        // Both are even in c.
+        let x = Jet::product(&self.h, &self.constant(frequency.mul(&c.abs(), BITS)));
+        let [cos, sinc] = if repels { self.repelled(&x) } else { self.circular(&x) };
+        [cos, Jet::product(&sinc, &self.constant(c))]
     }
 }
 
@@ -152,11 +167,13 @@ impl Setting<Jet> for Steps {
     }
 
     fn flow(&self, force: Force, c: &Radical) -> [Jet; 2] {
-        let (c, (frequency, repels)) = (c.enclosure(BITS), self.frequency(force));
-        // Both are even in c.
-        let x = Jet::product(&self.h, &self.constant(frequency.mul(&c.abs(), BITS)));
-        let [cos, sinc] = if repels { self.repelled(&x) } else { [Steps::cos(&x), self.sinc(&x)] };
-        [cos, Jet::product(&sinc, &self.constant(c))]
+        let is_known = |known: &&Flow| known.force == force && known.time == *c;
+        if let Some(known) = self.flows.borrow().iter().find(is_known) {
+            return known.moved.clone();
+        }
+        let moved = self.moved(force, c);
+        self.flows.borrow_mut().push(Flow { force, time: c.clone(), moved: moved.clone() });
+        moved
     }
 
     fn filter(&self, filter: Filter) -> Jet {
@@ -173,7 +190,8 @@ impl Setting<Jet> for Steps {
             let slope = inverse.square(BITS).neg();
             jet.chained(inverse, &slope)
         };
-        Jet::product(&power(Steps::cos(&half), filter.cos), &power(self.sinc(&half), filter.sinc))
+        let [cos, sinc] = self.circular(&half);
+        Jet::product(&power(cos, filter.cos), &power(sinc, filter.sinc))
     }
 
     fn damping(&self, c: &Radical) -> Jet {
@@ -221,6 +239,7 @@ impl<'a> Enclosed<'a> {
             stiffness: self.stiffness.clone(),
             friction: self.friction.clone(),
             defined: Cell::new(true),
+            flows: RefCell::default(),
         };
         let product = self.word.product(&steps);
         steps.defined.get().then_some(product)
