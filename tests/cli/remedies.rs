@@ -177,7 +177,7 @@ const REMEDIES: &[(&str, &str, &str)] = &[
     ),
     (
         "compare --methods pefrl forest-ruth --h-range 0..4 --h-step 1",
-        "commas without spaces",
+        "join the values of a list by commas, as --methods pefrl,forest-ruth",
         "compare --methods pefrl,forest-ruth --h-range 0..4 --h-step 1",
     ),
     (

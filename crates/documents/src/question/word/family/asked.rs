@@ -169,8 +169,8 @@ question! {
         word: String,
         /// A row for each value of a name in the word, as b=0.15..0.25:1/100 in K(b)D(1/2)K(1-2*b)D(1/2)K(b).
         ///
-        /// Further names stand behind commas, one more with a range, others with a value. Where none has a
-        /// range, the program puts the values in, and answers about one word.
+        /// Further names stand behind commas, with values or one more range. Where none has a range, the
+        /// answer is about one word.
         #[arg(long, value_name = "B=LO..HI:STEP", required = false, value_parser = flag::<Parameters>)]
         parameter: Parameters,
         /// With --parameter, the value with the greatest: edge (the longest stable step) or efficiency (the
