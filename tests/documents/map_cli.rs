@@ -401,7 +401,7 @@ fn bad_flags_are_told_in_one_line() {
         ("--shard 3/2 --resume nowhere", "shard = 3/2"),
         ("--shard half --resume nowhere", "write part and parts as 2/16"),
         ("--shard 1/2 --resume nowhere --output map.npz", "kickdrift merge"),
-        ("--output no/such/folder/map.npz", "create the directory"),
+        ("--output no/such/folder/map.npz", "there is no folder no/such/folder: make it first"),
     ] {
         let line = refused(&format!("{GRID} {flags}"), &[]);
         assert!(line.contains(says), "{flags}: {line}");

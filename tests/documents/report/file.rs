@@ -41,7 +41,7 @@ fn content_that_fails_leaves_the_old_file_and_no_fragment() {
 fn an_unwritable_place_is_named_with_a_remedy() {
     let folder = tempfile::tempdir().unwrap();
     let missing = write_output(Some(&folder.path().join("no/such/file")), b"x").unwrap_err().to_string();
-    assert!(missing.contains("no/such/file") && missing.contains("create the directory"), "{missing}");
+    assert!(missing.contains("no/such/file") && missing.contains("make it first"), "{missing}");
     let directory = write_output(Some(folder.path()), b"x").unwrap_err().to_string();
     assert!(directory.contains("name a file in it"), "{directory}");
     assert!(names(folder.path()).is_empty());

@@ -30,7 +30,8 @@ Two rows.
 
 #[test]
 fn a_narrow_table_loses_digits_and_empty_columns_before_others() {
-    let columns = ["lower", "exact", "upper"].map(Column::new).to_vec();
+    let edge = |name| Column::new(name).enclosure();
+    let columns = vec![edge("lower"), Column::new("exact"), edge("upper")];
     let mut table = Table::new("t", "", columns);
     let edge = |x: f64| Cell::Enclosure { lo: x, hi: x + 2e-15 };
     table.push(vec![edge(0.190_516_204_998_483_89), Cell::Missing, edge(0.190_742_711_064_138_47)]);
