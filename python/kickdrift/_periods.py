@@ -34,7 +34,7 @@ def advise_periods(
     """Advice on periods, as :func:`kickdrift.advise` takes them."""
     alone = items(
         "periods",
-        [periods] if isinstance(periods, str) else periods,
+        [periods] if isinstance(periods, str | PathLike) else periods,
         "give a list of periods in fs, or texts as '10fs'; or periods by name",
     )
     has_names = isinstance(periods, Mapping) or any(isinstance(value, list | tuple) for value in alone)

@@ -51,7 +51,8 @@ def test_a_step_and_what_acts_at_it_stand_in_either_order() -> None:
 
 
 def test_how_many_bonds_there_are_and_how_hot_reach_the_question() -> None:
-    few = kd.advise({"slow": "40fs"}, steps=STEPS, bonds=MORSE, bond_count=3, temperature=310, length="1ns")
+    hot = {"bonds": MORSE, "bond_count": 3, "temperature": 310, "length": "1ns"}
+    few = kd.advise({"slow": "40fs"}, steps=STEPS, levers=False, **hot)
     assert few.data["input"]["bonds"] == "3" and few.data["input"]["temperature"].startswith("310")
     with pytest.raises(kd.KickdriftError, match="bond_count"):
         kd.advise({"slow": "40fs"}, steps=STEPS, bonds=1700)

@@ -139,7 +139,7 @@ fn what_openmm_refuses_or_cannot_be_read_is_refused() {
             "integrator",
             "different steps",
         ),
-        ("import openmm\n", "integrator", "a system alone has no steps"),
+        ("import openmm\n", "integrator", "makes no integrator"),
         ("x = 1.0\ndt = 0.1\ny = x + dt\n", "engine", "no engine"),
         // Another library's.
         ("i = VerletIntegrator(0.001)\n", "engine", "no engine"),

@@ -17,13 +17,13 @@
 //! rounding. So the levels above, of many passes, want more bits than those below, and a branch is rounded as
 //! soon as what is left is known well enough so.
 
-use super::Wanted;
 use super::branch::{Branch, Budget};
 use super::coefficient::Coefficient;
 use super::cone;
 use super::fit;
 use super::map::Map;
 use super::run::Run;
+use super::wanted::Wanted;
 use number::Sign;
 
 /// The two branches of one level; the longer one is the one that runs.
@@ -53,7 +53,7 @@ const ROUNDINGS: f64 = 1.0 / 32768.0;
 /// The terms left out of a level's products may add up to this share of the error that long products may
 /// have, or to that of what rounding costs the result.
 const LEFT_OUT: f64 = 1e-3;
-const LEFT_OUT_BESIDE_ROUNDING: f64 = 1.0 / 32.0;
+const LEFT_OUT_BESIDE_ROUNDING: f64 = 1.0 / 1024.0;
 
 /// What the terms left out of a level's products may add up to, of an orbit over q places.
 pub fn left_out<T: Coefficient, P: Coefficient>(q: u128) -> f64 {

@@ -7,13 +7,13 @@ use num_bigint::BigUint;
 use num_integer::Integer;
 use num_traits::ToPrimitive;
 
-use super::Wanted;
 use super::branch::{Branch, Budget};
 use super::coefficient::{Coefficient, exact};
 use super::enclosure::{Enclosure, Matrix, balanced, power, product};
 use super::euclid::{self, Reached, Walked};
 use super::map::Map;
 use super::turn::{Turn, direction, principal};
+use super::wanted::Wanted;
 use crate::orbit::ends::{End, Ends};
 use crate::propagator::{LongClocks, PartialSigns};
 use number::{Ball, Rational, Real, Sign};

@@ -23,7 +23,6 @@
 
 use super::coefficient::{Coefficient, near_ball};
 use super::enclosure::Enclosure;
-use super::product::{part, product, value};
 use super::turn::{Turn, angle, direction, principal};
 use number::Ball;
 
@@ -294,11 +293,6 @@ impl<T: Coefficient> Map<T> {
         self.error < 0.1 * about(&self.terms[0])
     }
 
-    /// `self` after `earlier`, on the same interval.
-    pub fn after(&self, earlier: &Self) -> Self {
-        product(self, earlier)
-    }
-
     #[inline(always)]
     pub fn turn_after(&self, earlier: &Self, product: &Self) -> Option<Turn> {
         let (first, then) = (earlier.turn?, self.turn?);
@@ -306,20 +300,10 @@ impl<T: Coefficient> Map<T> {
         first.then(then, product.direction()?)
     }
 
-    /// On the part t = α + β t' of its interval, |α| + |β| ≤ 1.
-    pub fn part(&self, alpha: &T, beta: &T) -> Self {
-        part(self, alpha, beta)
-    }
-
     /// The direction of the image of (1, 0) at t = 0, where it is known.
     #[inline(always)]
     pub fn direction(&self) -> Option<f64> {
         direction(image(&self.terms[0]), self.error)
-    }
-
-    /// At the point t = α.
-    pub fn at(&self, alpha: &T) -> Self {
-        value(self, alpha)
     }
 
     /// With the coefficients on a part, but for the turn; Σ |M_j| and Σ j |M_j|, and what numbers that are

@@ -31,9 +31,11 @@ mod run;
 mod series;
 mod slow;
 mod turn;
+mod wanted;
 
 pub use frame::Found;
 pub use map::{FLOOR, UP, norm};
+pub use wanted::Wanted;
 
 use super::ends::Ends;
 use crate::propagator::LongClocks;
@@ -62,17 +64,6 @@ pub fn is_worth(ratio: Ratio, bits: u32) -> bool {
 /// log₂ of the ratio of the steps, at most, where two doubles know the constants: a step of the base to the power 2^8
 /// costs them 12 bits, and a period of 2^70 kicks is known well enough with the others.
 const MOST_LOG2_RATIO: u64 = 8;
-
-/// The results that a run is asked for.
-#[derive(Clone, Copy, PartialEq)]
-pub enum Wanted {
-    /// Whether the period grows: the entries where it takes them.
-    Verdict,
-    /// The four entries.
-    Entries,
-    /// The sign changes of x, too: half as much again.
-    Nodes,
-}
 
 /// The half period to the digits of numbers of so many bits; `None` where the bound loses all digits, where a
 /// partial quotient asks for too many products, and where the work was stopped.

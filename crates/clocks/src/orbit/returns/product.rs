@@ -10,19 +10,21 @@ use super::lanes::Lanes;
 use super::map::{Entries, FEW, FLOOR, MOST, Map, UP, sizes, sums};
 use number::vector::instructions::{Instructions, Task};
 
-/// `later` after `earlier`, on the same interval.
-pub fn product<T: Coefficient>(later: &Map<T>, earlier: &Map<T>) -> Map<T> {
-    Instructions::best().perform_alone(Product { later, earlier })
-}
+impl<T: Coefficient> Map<T> {
+    /// `self` after `earlier`, on the same interval.
+    pub fn after(&self, earlier: &Self) -> Self {
+        Instructions::best().perform_alone(Product { later: self, earlier })
+    }
 
-/// On the part t = α + β t' of its interval, |α| + |β| ≤ 1.
-pub fn part<T: Coefficient>(whole: &Map<T>, alpha: &T, beta: &T) -> Map<T> {
-    Instructions::best().perform_alone(Part { whole, alpha, beta })
-}
+    /// On the part t = α + β t' of its interval, |α| + |β| ≤ 1.
+    pub fn part(&self, alpha: &T, beta: &T) -> Self {
+        Instructions::best().perform_alone(Part { whole: self, alpha, beta })
+    }
 
-/// At the point t = α.
-pub fn value<T: Coefficient>(whole: &Map<T>, alpha: &T) -> Map<T> {
-    Instructions::best().perform_alone(Value { whole, alpha })
+    /// At the point t = α.
+    pub fn at(&self, alpha: &T) -> Self {
+        Instructions::best().perform_alone(Value { whole: self, alpha })
+    }
 }
 
 /// The unit of the next shorter numbers.
@@ -310,15 +312,15 @@ mod tests {
             let [a, b] = [n, 1 + case % 7].map(|n| function(n, &mut random));
             let [mut one, other] = [&a, &b].map(|terms| Map::<Twofold>::of(terms.clone()));
             one.least = one.least.max(least);
-            let made = product(&other, &one);
-            let exact = product(&long(&b), &long(&a));
+            let made = other.after(&one);
+            let exact = long(&b).after(&long(&a));
             // Both are rounded for the comparison, at the point.
             let room = 1e-29;
             assert!(apart(&made, &exact) <= 1.42 * made.error() + room, "{case}");
             assert!(made.error() <= 1e-27 + 8.0 * least, "{case}: {}", made.error());
             let (alpha, beta) = (0.6 * random(), 0.3);
-            let made = part(&one, &<Twofold>::of(alpha), &<Twofold>::of(beta));
-            let exact = part(&long(&a), &Long::of(alpha), &Long::of(beta));
+            let made = one.part(&<Twofold>::of(alpha), &<Twofold>::of(beta));
+            let exact = long(&a).part(&Long::of(alpha), &Long::of(beta));
             assert!(apart(&made, &exact) <= 1.42 * made.error() + room, "{case}");
             assert!(made.error() <= 1e-27 + 8.0 * least, "{case}: {}", made.error());
         }

@@ -7,8 +7,9 @@ use serde::de::IgnoredAny;
 use serde_json::{Value, json};
 
 use super::array::Reference;
+use super::given::Given;
 use super::held::Constraints;
-use super::part::{Count, Given, Index, Number, Part, parts};
+use super::part::{Count, Index, Number, Part, parts};
 use crate::input::json;
 use crate::report::shape::{COUNT, COUNT_WRITTEN, Keys, Schema, Shape};
 use number::error::{Error, Result};

@@ -4,7 +4,8 @@ use super::document::{
     Build, Chain, Document, GradedBar, LARGEST, PotentialDocument, Rows, StiffSoft, TetheredPair, at_most,
     ends,
 };
-use super::part::{Given, Number};
+use super::given::Given;
+use super::part::Number;
 use nalgebra::DMatrix;
 use number::Rational;
 use number::error::{Error, Result};

@@ -11,7 +11,8 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use super::document::{Document, LevelDocument, MeshDocument};
-use super::part::{Given, Index};
+use super::given::Given;
+use super::part::Index;
 use number::error::{Error, Result};
 use systems::{ElementSteps, Level, LocalSteps, Model, Scheme, System};
 

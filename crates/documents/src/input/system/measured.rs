@@ -33,8 +33,9 @@ use nalgebra::DMatrix;
 
 use super::array::{Arrays, Reference};
 use super::document::{Document, LARGEST, PotentialDocument};
+use super::given::Given;
 use super::held::{Particles, reweigh};
-use super::part::{Given, Number};
+use super::part::Number;
 use number::Rational;
 use number::error::{Error, Result};
 use number::rational::to_f64;

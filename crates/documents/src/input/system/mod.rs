@@ -46,6 +46,7 @@ mod array;
 mod bonds;
 mod document;
 mod geometry;
+mod given;
 mod held;
 mod intervals;
 mod linear;

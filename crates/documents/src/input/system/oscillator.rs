@@ -3,7 +3,7 @@
 use num_traits::Zero;
 
 use super::document::{Document, PotentialDocument, ends};
-use super::part::Given;
+use super::given::Given;
 use number::error::{Error, Result};
 use number::{ExactSign, Laurent, Rational, Sign};
 use systems::Oscillator;

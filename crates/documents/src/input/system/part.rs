@@ -1,14 +1,8 @@
 //! The parts of a system file, each as a reader has it and as the schema says it.
 
-use std::fmt;
-use std::marker::PhantomData;
-
 use num_traits::ToPrimitive;
-use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
-use serde::de::{Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
 use serde_json::Value;
 
-use super::array::Reference;
 use crate::report::shape::{COUNT, COUNT_WRITTEN, FLAG, QUANTITY, Shape, TEXT};
 use number::error::{Error, Result};
 use number::parse::{parse, parse_rational};
@@ -82,55 +76,6 @@ impl<T: Part> Part for Vec<T> {
 
 impl<T: Part> Part for [T; 2] {
     const SHAPE: Shape = Shape::Row(&[T::SHAPE, T::SHAPE]);
-}
-
-impl<T: Part> Part for Given<T> {
-    const SHAPE: Shape = Shape::Any(&[T::SHAPE, Reference::SHAPE]);
-}
-
-/// What stands in the file, or an array by reference.
-#[derive(Clone, Debug)]
-pub(super) enum Given<T> {
-    Here(T),
-    Array(Reference),
-}
-
-impl<'de, T: Deserialize<'de>> Deserialize<'de> for Given<T> {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
-        deserializer.deserialize_any(Either(PhantomData))
-    }
-}
-
-struct Either<T>(PhantomData<T>);
-
-impl<'de, T: Deserialize<'de>> Visitor<'de> for Either<T> {
-    type Value = Given<T>;
-
-    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str("a list, or an array as {\"npy\": \"h.npy\"},")
-    }
-
-    fn visit_seq<A: SeqAccess<'de>>(self, all: A) -> std::result::Result<Given<T>, A::Error> {
-        T::deserialize(SeqAccessDeserializer::new(all)).map(Given::Here)
-    }
-
-    fn visit_map<A: MapAccess<'de>>(self, all: A) -> std::result::Result<Given<T>, A::Error> {
-        Reference::deserialize(MapAccessDeserializer::new(all)).map(Given::Array)
-    }
-}
-
-impl<T> Given<T> {
-    /// What stands in a file whose stiffnesses stand in it, too.
-    pub fn here<'a>(given: &'a Option<Given<T>>, field: &str) -> Result<Option<&'a T>> {
-        match given {
-            None => Ok(None),
-            Some(Given::Here(value)) => Ok(Some(value)),
-            Some(Given::Array(_)) => {
-                let remedy = "stands beside stiffnesses by reference alone: write it in the file, as these";
-                Err(Error::input(field, "an array by reference", remedy))
-            }
-        }
-    }
 }
 
 /// An exact number: a text, or a JSON number, whose digits are taken as they stand. Anything else is kept

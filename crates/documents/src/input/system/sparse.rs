@@ -25,8 +25,8 @@ use serde_json::Value;
 
 use super::array::{Arrays, Reference};
 use super::document::{Document, LevelDocument};
+use super::given::Given;
 use super::local::indices;
-use super::part::Given;
 use number::Rational;
 use number::error::{Error, Result, room};
 use systems::levels::sparse::{SparseLevels, symmetric};
