@@ -17,16 +17,7 @@
 pub mod arithmetic;
 mod grammar;
 
-/// A sign as keyboards have it: papers print `−` for `-`, and `×` or `·` for `*`.
-pub fn typed(c: char) -> char {
-    match c {
-        '−' => '-',
-        '×' | '·' => '*',
-        c => c,
-    }
-}
-
-pub use grammar::{MAX_BITS, MAX_CHARACTERS, MAX_PI_EXPONENT};
+pub use grammar::{MAX_BITS, MAX_CHARACTERS, MAX_PI_EXPONENT, typed};
 
 use num_traits::ToPrimitive;
 

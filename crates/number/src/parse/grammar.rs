@@ -4,8 +4,16 @@ use num_bigint::BigInt;
 use num_traits::{One, ToPrimitive, Zero};
 
 use super::arithmetic::{Arithmetic, Operation};
-use super::typed;
 use crate::{Laurent, Rational};
+
+/// A sign as keyboards have it: papers print `−` for `-`, and `×` or `·` for `*`.
+pub fn typed(c: char) -> char {
+    match c {
+        '−' => '-',
+        '×' | '·' => '*',
+        c => c,
+    }
+}
 
 /// The longest text that is read, in characters.
 pub const MAX_CHARACTERS: usize = 20_000;

@@ -1,6 +1,6 @@
 //! Advice as text: a line for each scheme, then which step to take, then why.
 
-use super::words::{Choice, cap, down, length, named, nearest, percent, within};
+use super::words::{Choice, cap, down, length, named, nearest, percent, typical, within};
 use super::{answer, silent};
 use crate::report::decimal::few;
 use crate::report::friction;
@@ -9,7 +9,7 @@ use molecules::engine::{Engine, Reading, nested_beside, not_nested};
 use molecules::unit::{TimeUnit, decimal};
 use molecules::{
     Advice, Answer, Beads, Bound, GROMPP, Mode, Origin, PRACTICE, Pair, Place, Row, SEEN, Scheme, Status,
-    Typical, Unstable,
+    Unstable,
 };
 use number::Rational;
 use number::rational::to_f64;
@@ -340,17 +340,6 @@ pub(super) fn friction(rate: &Rational, unit: TimeUnit) -> String {
     let rate = unit.rate(decimal(&(rate * Rational::from_integer(unit.in_rates().into()))));
     format!(
         "  friction   {rate} in the middle of every drift (BAOAB): it can hide a linear resonance, no advice rests on it"
-    )
-}
-
-/// A period that is known by name, and where it comes from.
-pub(super) fn typical(typical: &Typical) -> String {
-    format!(
-        "{} is {} fs, the shortest period {} ({})",
-        typical.asked(),
-        typical.period,
-        typical.what,
-        typical.source
     )
 }
 

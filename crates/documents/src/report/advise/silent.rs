@@ -1,7 +1,6 @@
 //! Clocks that no period was given for.
 
-use super::lines::typical;
-use super::words::length;
+use super::words::{length, typical};
 use crate::report::decimal::few;
 use molecules::unit::TimeUnit;
 use molecules::{Advice, Answer, FAST, SLOW, Scheme, Typical, shortest_of};

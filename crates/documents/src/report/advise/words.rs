@@ -2,7 +2,7 @@
 
 use crate::report::decimal::few;
 use molecules::unit::{TimeUnit, decimal};
-use molecules::{Bound, Caps, Mode, Origin, PRACTICE, Scheme, Status};
+use molecules::{Bound, Caps, Mode, Origin, PRACTICE, Scheme, Status, Typical};
 use number::Rational;
 
 /// A number known to an enclosure, rounded to at most so many significant digits, fewer where the enclosure
@@ -221,4 +221,15 @@ impl Choice<'_> {
             length(scheme.last_but_one(), unit)
         )
     }
+}
+
+/// A period that is known by name, and where it comes from.
+pub(super) fn typical(typical: &Typical) -> String {
+    format!(
+        "{} is {} fs, the shortest period {} ({})",
+        typical.asked(),
+        typical.period,
+        typical.what,
+        typical.source
+    )
 }
