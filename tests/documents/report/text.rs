@@ -34,7 +34,7 @@ fn a_narrow_table_loses_digits_and_empty_columns_before_others() {
     let columns = vec![edge("lower"), Column::new("exact"), edge("upper")];
     let mut table = Table::new("t", "", columns);
     let edge = |x: f64| Cell::Enclosure { lo: x, hi: x + 2e-15 };
-    table.push(vec![edge(0.190_516_204_998_483_89), Cell::Missing, edge(0.190_742_711_064_138_47)]);
+    table.push(vec![edge(0.190_516_204_998_483_9), Cell::Missing, edge(0.190_742_711_064_138_47)]);
     let shorter = "        lower  exact          upper\n-------------  -----  -------------\n0.19051620(1)      -  0.19074271(1)\n";
     let narrow = document(&table, Some(40));
     assert_eq!(
