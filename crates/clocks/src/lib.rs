@@ -7,11 +7,11 @@
 //!
 //! | type | what it is |
 //! |---|---|
-//! | [`TwoClocks`](propagator::TwoClocks) | the pair p/q with its two strengths, over any exact numbers |
-//! | [`Verdict`](verdict::Verdict) | stable, unstable, or the kind of edge; [`decide`](verdict::decide) finds it |
-//! | [`Tongues`](tongue::Tongues) | every unstable interval of one ratio, in order and with its label |
-//! | [`Map`](map::Map) | the verdicts of a grid of steps |
-//! | [`Families`](resonance::Families) | the curves (a, b) of the Proposition, on which resonance is predicted |
+//! | [`TwoClocks`] | the pair p/q with its two strengths, over any exact numbers |
+//! | [`Verdict`] | stable, unstable, or the kind of edge; [`decide`] finds it |
+//! | [`Tongues`] | every unstable interval of one ratio, in order and with its label |
+//! | [`Map`] | the verdicts of a grid of steps |
+//! | [`Families`] | the curves (a, b) of the Proposition, on which resonance is predicted |
 //!
 //! Rooms import downwards only: `schedule` (which clock kicks when), `propagator` (kick, drift, half period),
 //! `orbit` (orbits followed with a proven bound), `verdict`, `resonance`, then side by side `tongue`, `map`
