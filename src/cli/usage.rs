@@ -36,7 +36,7 @@ pub fn explained(error: &clap::Error, program: &clap::Command, arguments: &[OsSt
                 let remedy = format!("cannot be used with {other}: give one of them");
                 Error::input("argument", field, remedy)
             }
-            _ => Error::input("flag", names(&flag), once(&flag)),
+            _ => Error::input("flag", names(&flag), given.once(&names(&flag))),
         }),
         ErrorKind::TooManyValues => invalid().map(|flag| {
             let value = shown(error, ContextKind::InvalidValue).unwrap_or_default();
@@ -101,6 +101,17 @@ impl<'a> Given<'a> {
         example.map_or_else(String::new, |example| format!("; for example kickdrift {example}"))
     }
 
+    /// How to give a flag once: some take several values.
+    fn once(&self, name: &str) -> &'static str {
+        if name == "parameter" {
+            return "is given twice; give it once, further names behind commas, as b=0.1..0.2:1/100,c=1/3";
+        }
+        match self.flag(&format!("--{name}")) {
+            Some(flag) if is_list(flag) => "is given twice; give it once, with commas between values",
+            _ => "is given twice; give it once",
+        }
+    }
+
     /// Where a word belongs that follows no flag: with the value before it, where there is one.
     fn place_of(&self, text: &str) -> String {
         let at = self.words.iter().position(|word| word == text);
@@ -121,20 +132,13 @@ impl<'a> Given<'a> {
     }
 }
 
-/// Whether a flag's one value has parts, by the name that help has for it.
+/// Whether a flag's one value has parts of one kind, by the name that help has for it.
 fn is_list(flag: &clap::Arg) -> bool {
-    flag.get_value_names().into_iter().flatten().any(|name| name.contains(',') && !name.contains('='))
-}
-
-/// How to give a flag once: some take several values.
-fn once(flag: &str) -> &'static str {
-    match names(flag).as_str() {
-        "parameter" => "is given twice; give it once, further names behind commas, as b=0.1..0.2:1/100,c=1/3",
-        "methods" | "columns" | "constraints" | "on" => {
-            "is given twice; give it once, with commas between values"
-        }
-        _ => "is given twice; give it once",
-    }
+    flag.get_value_names().into_iter().flatten().any(|name| {
+        ["LIST", "WHICH"].contains(&name.as_str())
+            || name.ends_with(",...")
+            || name.contains(',') && !name.contains('=')
+    })
 }
 
 fn bad_value(error: &clap::Error, given: &Given) -> Option<Error> {

@@ -19,7 +19,7 @@ use std::collections::BTreeMap;
 use num_traits::{One, Zero};
 
 use super::operators::ring_operators;
-use super::{ExactSign, Rational, Sign, rational};
+use super::{ExactSign, Rational, Sign, reduced};
 
 /// An element Σ c_k π^k of ℚ[π, 1/π].
 ///
@@ -108,7 +108,7 @@ impl Laurent {
     pub fn ratio(a: &Laurent, b: &Laurent) -> Option<Rational> {
         let (_, leading) = b.terms.first()?;
         let Some((_, value)) = a.terms.first() else { return Some(Rational::zero()) };
-        let ratio = rational::quotient(value, leading);
+        let ratio = reduced::product(value, &leading.recip());
         let proportional = a.terms.len() == b.terms.len()
             && a.terms.iter().zip(&b.terms).all(|((j, _), (k, _))| j == k)
             && a.terms.iter().zip(&b.terms).skip(1).all(|((_, c), (_, d))| *c == &ratio * d);
@@ -146,7 +146,7 @@ impl Laurent {
 
     fn times(&self, other: &Laurent) -> Laurent {
         if let (Some((j, c)), Some((k, d))) = (self.as_monomial(), other.as_monomial()) {
-            return Laurent::monomial(rational::product(c, d), j.checked_add(k).expect("exponent of π"));
+            return Laurent::monomial(reduced::product(c, d), j.checked_add(k).expect("exponent of π"));
         }
         let mut products: BTreeMap<i32, Rational> = BTreeMap::new();
         for (j, c) in &self.terms {

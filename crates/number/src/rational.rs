@@ -10,7 +10,7 @@
 
 use num_bigint::BigInt;
 use num_integer::Integer;
-use num_traits::{One, Signed, ToPrimitive, Zero};
+use num_traits::{One, Zero};
 
 use super::{Rational, float};
 
@@ -20,39 +20,6 @@ use super::{Rational, float};
 #[inline]
 pub fn ratio(p: i64, q: i64) -> Rational {
     Rational::new(p.into(), q.into())
-}
-
-/// log₂ of the denominator, where it is a power of two, as those of doubles are.
-fn binary(x: &Rational) -> Option<u64> {
-    x.denom().trailing_zeros().filter(|zeros| zeros + 1 == x.denom().bits())
-}
-
-/// n/d 2^k in lowest terms, n and d odd and without a common divisor, or n = 0.
-fn scaled(n: BigInt, d: BigInt, k: i128) -> Rational {
-    let bits = k.unsigned_abs() as u64;
-    if k < 0 { Rational::new_raw(n, d << bits) } else { Rational::new_raw(n << bits, d) }
-}
-
-/// a b: of doubles without a greatest common divisor, which costs as much as some products of matrices.
-pub fn product(a: &Rational, b: &Rational) -> Rational {
-    let (Some(j), Some(k)) = (binary(a), binary(b)) else { return a * b };
-    let numerator = a.numer() * b.numer();
-    let zeros = numerator.trailing_zeros().unwrap_or(j + k);
-    scaled(numerator >> zeros, BigInt::one(), i128::from(zeros) - i128::from(j + k))
-}
-
-/// a/b, b not zero: of doubles by the greatest common divisor of numbers of one register.
-pub fn quotient(a: &Rational, b: &Rational) -> Rational {
-    let odd = |x: &Rational| {
-        let (zeros, k) = (x.numer().trailing_zeros()?, binary(x)?);
-        let size = (x.numer().magnitude() >> zeros).to_u64()?;
-        Some((size, i128::from(zeros) - i128::from(k)))
-    };
-    let (Some((n, j)), Some((d, k))) = (odd(a), odd(b)) else { return a / b };
-    let shared = n.gcd(&d);
-    let size = BigInt::from(n / shared);
-    let is_negative = a.is_negative() != b.is_negative();
-    scaled(if is_negative { -size } else { size }, (d / shared).into(), j - k)
 }
 
 /// The double nearest to a b, ties to even, without reducing the product.
@@ -159,25 +126,4 @@ pub fn simplest_beside(x: f64) -> Option<Rational> {
     let half = (above - &own) / Rational::from_integer(2.into());
     let beside = if own.is_zero() { own } else { simplest(&(&own - &half), &(&own + &half)) };
     Some(if x < 0.0 { -beside } else { beside })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn products_and_quotients_are_in_lowest_terms() {
-        let doubles = [0.0, 1.0, -0.75, 6.0, 0.3, -1e300, 5e-324, 0.123_456_789];
-        let others = [ratio(1, 3), ratio(-6, 35), ratio(12, 1)];
-        let all: Vec<_> = doubles.into_iter().filter_map(from_f64_exact).chain(others).collect();
-        for a in &all {
-            for b in &all {
-                assert_eq!(product(a, b), a * b);
-                if !b.is_zero() {
-                    let (found, exact) = (quotient(a, b), a / b);
-                    assert_eq!((found.numer(), found.denom()), (exact.numer(), exact.denom()), "{a}, {b}");
-                }
-            }
-        }
-    }
 }

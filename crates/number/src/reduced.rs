@@ -42,9 +42,15 @@ fn without(n: &BigInt, divisor: &BigInt) -> BigInt {
     if divisor.is_one() { n.clone() } else { n / divisor }
 }
 
+/// The greatest common divisor of two numbers that are not zero.
 fn common(a: &BigInt, b: &BigInt) -> BigInt {
     if a.magnitude().is_one() || b.magnitude().is_one() {
         return BigInt::one();
+    }
+    // The denominators of doubles: a divisor would cost as much as some products of matrices.
+    let zeros = [a, b].map(|n| n.trailing_zeros().unwrap_or_default());
+    if a.bits() == zeros[0] + 1 || b.bits() == zeros[1] + 1 {
+        return BigInt::one() << zeros[0].min(zeros[1]);
     }
     BigInt::from_biguint(Sign::Plus, gcd(a.magnitude().clone(), b.magnitude().clone()))
 }
@@ -97,6 +103,7 @@ fn combined(p: i64, a: &BigUint, q: i64, b: &BigUint) -> BigUint {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::rational::{from_f64_exact, ratio};
     use proptest::prelude::*;
 
     /// Numbers of up to some 700 bits, of both signs.
@@ -104,6 +111,21 @@ mod tests {
         (prop::collection::vec(any::<u32>(), 0..22), any::<bool>()).prop_map(|(digits, negative)| {
             BigInt::from_slice(if negative { Sign::Minus } else { Sign::Plus }, &digits)
         })
+    }
+
+    #[test]
+    fn fractions_of_doubles_are_those_of_the_library() {
+        let doubles = [1.0, -0.75, 6.0, 0.3, -1e300, 5e-324, 0.123_456_789];
+        let mut all: Vec<_> = doubles.into_iter().filter_map(from_f64_exact).collect();
+        all.extend([ratio(1, 3), ratio(-6, 35), ratio(12, 1), ratio(3, 64)]);
+        for a in &all {
+            for b in &all {
+                let results = [(product(a, b), a * b), (product(a, &b.recip()), a / b), (sum(a, b), a + b)];
+                for (found, right) in results {
+                    assert_eq!((found.numer(), found.denom()), (right.numer(), right.denom()), "{a}, {b}");
+                }
+            }
+        }
     }
 
     proptest! {

@@ -99,8 +99,7 @@ const NARROW: f64 = 1.01;
 /// and its name.
 pub(crate) fn masking(own: &Masked, unit: f64, name: &str) -> String {
     if own.stays() {
-        let [above, _] = inward(unit * own.least(), 2.0 * unit * own.least());
-        return format!("a friction above {above}{name} masks");
+        return format!("a friction above {}{name} masks", above(unit * own.least()));
     }
     if let [(lo, hi)] = own.ranges[..]
         && hi <= NARROW * lo
@@ -113,7 +112,7 @@ pub(crate) fn masking(own: &Masked, unit: f64, name: &str) -> String {
             let [lo, hi] = inward(lo, hi);
             format!("of {lo} to {hi}{name}")
         } else {
-            format!("above {}{name}", inward(lo, 2.0 * lo)[0])
+            format!("above {}{name}", above(lo))
         }
     };
     format!("frictions {} mask", own.ranges.iter().map(range).collect::<Vec<_>>().join(" and "))
@@ -122,6 +121,12 @@ pub(crate) fn masking(own: &Masked, unit: f64, name: &str) -> String {
 /// What is told of other frictions than those that `masking` names.
 pub fn others(own: &Masked) -> &'static str {
     if own.stays() { ", and so does any larger one" } else { "; of others that is not proven" }
+}
+
+/// A few digits of a number that is no less.
+pub(crate) fn above(x: f64) -> String {
+    let [above, _] = inward(x, 2.0 * x);
+    above
 }
 
 /// Two ends as few digits as lie between them with a tenth of what is between to spare, else all of them.

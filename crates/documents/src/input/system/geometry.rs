@@ -12,10 +12,10 @@ impl SystemScene {
     /// # Errors
     /// A file without `positions` and without a `mesh`.
     pub fn geometry(&self) -> Result<Geometry> {
-        if is_by_reference(&self.source) {
-            return self.atoms();
-        }
         let document = Document::parse(&self.source, None)?;
+        if is_by_reference(&self.source) {
+            return self.atoms(&document);
+        }
         let mesh = document.mesh.ok_or_else(missing)?;
         let (nodes, elements, moved) = mesh.placed()?;
         let point = |values: Vec<_>| std::array::from_fn(|axis| values.get(axis).map_or(0.0, to_f64));
@@ -23,8 +23,7 @@ impl SystemScene {
         Ok(Geometry { symbols: vec!["X".into(); points.len()], points, cells: elements, moved })
     }
 
-    fn atoms(&self) -> Result<Geometry> {
-        let document = Document::parse(&self.source, None)?;
+    fn atoms(&self, document: &Document) -> Result<Geometry> {
         let n = self.model.size();
         let points = document.positions(n, &self.arrays)?.ok_or_else(missing)?;
         let words = |i: usize| self.labels.as_ref().and_then(|all| all.get(3 * i)).map(String::as_str);

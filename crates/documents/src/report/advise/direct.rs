@@ -3,9 +3,10 @@
 use super::answer;
 use super::lines::{self, advised, read_from};
 use super::tables::{self, Told, enclosed, for_people};
-use super::words::{fs, nearest, percent, up, within};
+use super::words::{fs, nearest, percent, within};
 use crate::report::decimal::is_nothing;
 use crate::report::document::Document;
+use crate::report::friction::above;
 use crate::report::record::Record;
 use crate::report::shape::{
     ALL_ROUNDED, ENCLOSED_OR_NULL, FLAG_OR_NULL, POSITIVE, RATIONAL, RATIONAL_OR_NULL, ROUNDED,
@@ -217,10 +218,10 @@ fn line(findings: &DirectFindings, direct_finding: &DirectFinding) -> String {
     let masks = match (direct_finding.is_damped, direct_finding.masking) {
         (Some(true), _) => "; masked by the friction given (proven)".into(),
         (Some(false), Some(mask)) => {
-            format!("; a friction of {}/ps masks it (proven), the one given does not", up(1000.0 * mask))
+            format!("; a friction of {}/ps masks it (proven), the one given does not", above(1000.0 * mask))
         }
         (_, Some(mask)) => {
-            format!("; a friction of {}/ps masks it (proven)", up(1000.0 * mask))
+            format!("; a friction of {}/ps masks it (proven)", above(1000.0 * mask))
         }
         _ => String::new(),
     };

@@ -3,8 +3,9 @@
 use super::answer;
 use super::lines::{self, advised, read_from};
 use super::tables::{self, Told, enclosed, for_people};
-use super::words::{Choice, cap, down, fs, nearest, percent, up, within};
+use super::words::{Choice, cap, down, fs, nearest, percent, within};
 use crate::report::document::Document;
+use crate::report::friction::above;
 use crate::report::record::Record;
 use crate::report::shape::{
     ENCLOSED_OR_NULL, FLAG_OR_NULL, POSITIVE, RATIONAL, RATIONAL_OR_NULL, ROUNDED, ROUNDED_OR_NULL, Shape,
@@ -274,10 +275,13 @@ fn grows(finding: &Finding) -> String {
     let friction = match (finding.is_damped, finding.masking) {
         (Some(true), _) => "masked by the friction given, which hides it and does not cure it".into(),
         (Some(false), Some(mask)) => {
-            format!("a friction of {}/ps masks it (proven), the one given does not", up(1000.0 * mask))
+            format!("a friction of {}/ps masks it (proven), the one given does not", above(1000.0 * mask))
         }
         (None, Some(mask)) => {
-            format!("a friction of {}/ps masks it; for the one given this is not proven", up(1000.0 * mask))
+            format!(
+                "a friction of {}/ps masks it; for the one given this is not proven",
+                above(1000.0 * mask)
+            )
         }
         _ => format!("a friction of some {}/ps would mask it, to first order", rounded(2000.0 * rate, 2)),
     };

@@ -84,12 +84,6 @@ pub(super) fn down(x: f64) -> String {
     few((x * size).floor() / size, 3)
 }
 
-/// Three digits, rounded up.
-pub(super) fn up(x: f64) -> String {
-    let size = 10f64.powi(2 - x.abs().log10().floor() as i32);
-    few((x * size).ceil() / size, 3)
-}
-
 /// A bound on a step, three digits, rounded down.
 pub(super) fn cap(x: &Rational, unit: TimeUnit) -> String {
     unit.of(down(number::rational::to_f64(x)))
