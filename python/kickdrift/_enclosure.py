@@ -5,12 +5,24 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 
+class _ByName(tuple[Any, ...]):
+    """A tuple whose parts are found by their names, too."""
+
+    __slots__ = ()
+
+    def __getitem__(self, key: Any) -> Any:
+        return getattr(self, key) if key in getattr(self, "_fields", ()) else super().__getitem__(key)
+
+    def __repr__(self) -> str:
+        return repr(tuple(self))
+
+
 class _Ends(NamedTuple):
     lo: float
     hi: float
 
 
-class Enclosure(_Ends):
+class Enclosure(_ByName, _Ends):
     """Doubles that enclose a number: ``found.lo``, ``found["lo"]`` as in rows, or ``lo, hi = found``.
 
     Examples
@@ -23,19 +35,13 @@ class Enclosure(_Ends):
 
     __slots__ = ()
 
-    def __getitem__(self, key: Any) -> Any:
-        return getattr(self, key) if key in self._fields else super().__getitem__(key)
-
-    def __repr__(self) -> str:
-        return repr(tuple(self))
-
 
 class _Parts(NamedTuple):
     at_kicks: Enclosure
     in_drifts: Enclosure
 
 
-class Bias(_Parts):
+class Bias(_ByName, _Parts):
     """R where velocities are thermal at the kicks, and where they are in the drifts.
 
     Examples
@@ -47,9 +53,3 @@ class Bias(_Parts):
     """
 
     __slots__ = ()
-
-    def __getitem__(self, key: Any) -> Any:
-        return getattr(self, key) if key in self._fields else super().__getitem__(key)
-
-    def __repr__(self) -> str:
-        return repr(tuple(self))
