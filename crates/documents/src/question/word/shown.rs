@@ -151,7 +151,9 @@ impl Linted {
             let (most, least) = (enclosed(most), enclosed(least));
             lines.push((
                 "efficiency",
-                format!("{unit} up to {most} for each of these; at least {least} of these per {unit} = 1"),
+                format!(
+                    "at the longest step each operation covers {unit} = {most}; {unit} = 1 takes {least} operations"
+                ),
             ));
         }
         lines
