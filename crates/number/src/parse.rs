@@ -2,7 +2,7 @@
 //!
 //! The grammar: sums, differences, products `*`, quotients `/` and integer powers `^` of decimals
 //! (`3`, `0.3`, `.5`, `1e-3`), of `pi` (or `π`) and of parentheses. A product needs its `*` (or `·`, `×`),
-//! and a minus may be printed as `−`. The sign binds
+//! a minus may be printed as `−`, and a power as `π²` or `2⁻¹`. The sign binds
 //! weaker than the power: `-2^2` is −4. Every quotient must stay in ℚ[π, 1/π], so a divisor is c π^k.
 //!
 //! ```

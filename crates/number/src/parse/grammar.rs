@@ -15,6 +15,16 @@ pub fn typed(c: char) -> char {
     }
 }
 
+/// Exponents as papers print them, and what they mean.
+const RAISED: [char; 11] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹', '⁻'];
+const LOWERED: [char; 11] = ['0', '1', '2', '3', '4', '5', '6', '7', '8', '9', '-'];
+
+const INTEGER_POWER: &str = "a power must be an integer";
+
+fn is_raised(c: char) -> bool {
+    RAISED.contains(&c)
+}
+
 /// The longest text that is read, in characters.
 pub const MAX_CHARACTERS: usize = 20_000;
 
@@ -123,14 +133,18 @@ impl Arithmetic for Parser<'_> {
         found
     }
 
-    /// power = atom ("^" exponent)?
+    /// power = atom ("^" exponent | raised)?
     fn power(&mut self) -> Parsed<Laurent> {
         let base = self.atom()?;
-        if !self.skip('^') {
-            return Ok(base);
-        }
-        let exponent = self.exponent()?;
-        if self.peek() == Some('^') {
+        let exponent = match self.peek() {
+            Some('^') => {
+                self.at += 1;
+                self.exponent()?
+            }
+            Some(c) if is_raised(c) => self.raised()?,
+            _ => return Ok(base),
+        };
+        if self.peek().is_some_and(|c| c == '^' || is_raised(c)) {
             return Err("has two powers in a row; write parentheses".into());
         }
         self.raise(&base, exponent)
@@ -158,9 +172,20 @@ impl Parser<'_> {
             self.skip('+');
         }
         let value = self.atom()?.as_rational().filter(Rational::is_integer);
-        let value = value.ok_or("a power must be an integer")?;
+        let value = value.ok_or(INTEGER_POWER)?;
         let size = value.to_integer().to_i32().and_then(|n| if negative { n.checked_neg() } else { Some(n) });
         size.ok_or_else(too_large)
+    }
+
+    /// raised = "⁻"? ("⁰" | … | "⁹")+, an exponent as papers print it.
+    fn raised(&mut self) -> Parsed<i32> {
+        let rest = self.characters[self.at..].iter();
+        let place = |&c: &char| RAISED.iter().position(|&raised| raised == c);
+        let typed: String = rest.map_while(place).map(|place| LOWERED[place]).collect();
+        self.at += typed.len();
+        let digits = typed.strip_prefix('-').unwrap_or(&typed);
+        let is_integer = !digits.is_empty() && digits.bytes().all(|b| b.is_ascii_digit());
+        typed.parse().map_err(|_| if is_integer { too_large() } else { INTEGER_POWER.into() })
     }
 
     /// atom = number | "pi" | "π" | "(" sum ")"
