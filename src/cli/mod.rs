@@ -60,8 +60,8 @@ struct Cli {
 enum Command {
     /// Is this pair of steps stable?
     Verdict(verdict::Args),
-    /// The (a, b) families of resonance curves, as tables.
-    Curves(Asked<Curves>),
+    /// The (a, b) families of resonance curves, as tables or a figure.
+    Curves(Drawn<Curves>),
     /// The trace verdict against the tan criterion and against resonance, with the disagreements listed.
     Compare(Box<compare::Args>),
     /// Checks the Proposition of Fong, Darve and Lew for all p and q up to a number, exactly, with witnesses.
@@ -112,7 +112,7 @@ impl Command {
     /// Whether its output may be more than a document: a figure, arrays, files of its own.
     fn draws(&self) -> bool {
         use Command::{
-            Advise, Aperture, Bands, Cite, Compare, Generate, Map, Merge, Run, System, Tongues, Word,
+            Advise, Aperture, Bands, Cite, Compare, Curves, Generate, Map, Merge, Run, System, Tongues, Word,
         };
         matches!(
             self,
@@ -120,6 +120,7 @@ impl Command {
                 | Aperture(_)
                 | Bands(_)
                 | Compare(_)
+                | Curves(_)
                 | Cite(_)
                 | Map(_)
                 | Merge(_)

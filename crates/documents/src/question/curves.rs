@@ -4,12 +4,14 @@ use super::asking::{Question, Work, question};
 use super::field::StepRange;
 use super::field::flag;
 use crate::report::document::Document;
+use crate::report::plane;
 use crate::report::record::Record;
 use crate::report::shape::{COUNT, INTEGER, Keys, ROUNDED, Schema, Shape};
 use crate::report::table::{Column, Table};
 use clocks::resonance::{Curve, CurvePoint, Families, Window};
 use number::error::{Error, Result};
 use number::{ExactSign, Laurent, Sign};
+use plot::{Figure, Foot};
 
 question! {
     /// The curves 1/T½ = a/h1 + b/h2 over closed ranges of h1 and h2.
@@ -41,10 +43,18 @@ question! {
     }
 }
 
+impl Curves {
+    fn window(&self) -> Window {
+        Window::nearest(&self.h1_range, &self.h2_range)
+    }
+}
+
 impl Question for Curves {
     const NAME: &'static str = "curves";
-    const EXAMPLES: &'static [&'static str] =
-        &["curves --lambda1 pi^2 --a 0..1 --b 1..3 --samples 20 --format csv"];
+    const EXAMPLES: &'static [&'static str] = &[
+        "curves --lambda1 pi^2 --a 0..1 --b 1..3 --samples 20 --format csv",
+        "curves --lambda1 pi^2 --output curves.svg",
+    ];
     type Answer = Vec<Curve>;
 
     fn schema() -> Option<Schema> {
@@ -62,7 +72,7 @@ impl Question for Curves {
             }
         }
         let families = Families { a: self.a, b: self.b, samples: self.samples };
-        families.curves(&self.lambda1, &Window::nearest(&self.h1_range, &self.h2_range))
+        families.curves(&self.lambda1, &self.window())
     }
 
     fn show(&self, curves: &Vec<Curve>) -> Document {
@@ -73,6 +83,11 @@ impl Question for Curves {
             format!("{} curves 1/T½ = a/h1 + b/h2 in the window, {} points", curves.len(), points.len());
         let values = curve_record().all(curves);
         Document::new(Self::NAME).entry("curves", values).rows(table(&points)).summary(&[summary])
+    }
+
+    fn figure(&self, curves: &Vec<Curve>, _: &Work) -> Result<Option<Figure>> {
+        let foot = Foot::default().value("*Λ*_1", &self.lambda1);
+        Ok(Some(plane::families(&self.window(), curves).footed(&foot)))
     }
 }
 

@@ -24,7 +24,9 @@ pub fn figure(measured: &Measured) -> Figure {
     let chosen: Vec<&Step> = measured.steps.iter().filter(is_chosen).collect();
     let ends = [measured.steps.first(), measured.steps.last()]
         .map(|step| step.map_or(0.0, |step| to_f64(&step.step)));
-    let margin = if ends[1] > ends[0] { 0.01 * (ends[1] - ends[0]) } else { 0.3 * ends[1] };
+    // Curves end at the frame; steps that stand alone have their dots and words inside it.
+    let share = if is_range(measured) { 0.01 } else { 0.15 };
+    let margin = if ends[1] > ends[0] { share * (ends[1] - ends[0]) } else { 0.3 * ends[1] };
     let (left, right) = (ends[0] - margin, ends[1] + margin);
     let level = measured.level;
     let panel = Panel::new(
@@ -51,6 +53,11 @@ pub fn figure(measured: &Measured) -> Figure {
         .footed(&foot)
 }
 
+/// Whether there are more steps than those asked for one by one.
+fn is_range(measured: &Measured) -> bool {
+    measured.steps.iter().any(|step| !measured.chosen.contains(&step.step))
+}
+
 /// A line and its k where the method turns by a simple part of a full turn.
 fn with_resonances(panel: Panel, measured: &Measured, (left, right): (f64, f64), top: f64) -> Panel {
     let places = measured.resonances.iter().filter_map(|resonance| Some((resonance.k, resonance.step?)));
@@ -69,7 +76,7 @@ fn with_resonances(panel: Panel, measured: &Measured, (left, right): (f64, f64),
 
 /// E* and the half aperture of a range as lines; without a range there are the steps alone.
 fn with_curves(panel: Panel, measured: &Measured, top: f64) -> Panel {
-    if measured.steps.iter().all(|step| measured.chosen.contains(&step.step)) {
+    if !is_range(measured) {
         return panel;
     }
     let line = |value: fn(&Step) -> Option<f64>| {

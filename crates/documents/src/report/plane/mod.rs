@@ -7,6 +7,7 @@ mod lines;
 mod raster;
 
 pub use atlas::{Atlas, Segment};
+use chart::labels;
 pub use chart::{Chart, Colouring, window};
 use lines::{lines, lines_in};
 use plot::palette::{Colour, GREY};
@@ -27,11 +28,19 @@ pub struct Cloud {
 const UNSTABLE: Colour = Colour(20, 20, 20);
 const RED: Colour = Colour(178, 40, 30);
 
+const CURVES: &str = "Curves 1/*T*_{1/2} = *a*/*h*_1 + *b*/*h*_2";
+
 /// The paper's Figure 1: the unstable pairs on the left, the curves (a, b) on the right.
 pub fn side_by_side(window: &Window, cloud: &Cloud, curves: &[Curve], title: &str) -> Figure {
     let left = panel(window).titled("(a) Unstable pairs").with(cells(cloud, UNSTABLE));
-    let right = lines(panel(window).titled("(b) Curves 1/*T*_{1/2} = *a*/*h*_1 + *b*/*h*_2"), curves);
+    let right = lines(panel(window).titled(&format!("(b) {CURVES}")), curves);
     Figure::double_column(110.0).named(title).with(left).with(right)
+}
+
+/// The curves alone, those with a = 0 by their names.
+pub fn families(window: &Window, curves: &[Curve]) -> Figure {
+    let panel = labels(lines(panel(window).titled(CURVES), curves), curves, window);
+    Figure::new(130.0, 140.0).named("Resonance curves").with(panel)
 }
 
 /// The curves over the unstable pairs.
