@@ -42,11 +42,15 @@ const LATTICE: &str = "Schaefers, Finkenrath, Guenther, Knechtli, arXiv:2506.088
 const JULIA: &str = "OrdinaryDiffEq.jl, its documentation";
 const MOLLY: &str = "Garcia-Archilla, Sanz-Serna, Skeel, SIAM J. Sci. Comput. 20, 930 (1998)";
 
+const WEAK_FORCE: Option<&str> =
+    Some("the published limit is that of a weak slow force; an unstable interval ends there");
+
 /// All that are known here: no source that could be opened prints one of another method.
 pub const LIMITS: &[Limit] = &[
     limit("symplectic-euler", "2", BOOK),
     limit("velocity-verlet", "2", BOOK),
-    limit("midpoint", ALL, JULIA),
+    limit("position-verlet", "2", "Leimkuhler, Reich, Simulating Hamiltonian Dynamics, 2.6"),
+    limit("midpoint", ALL, BOOK),
     limit("newmark", ALL, JULIA),
     limit("bcss-3", "4.67", BLACKJAX),
     Limit {
@@ -58,9 +62,11 @@ pub const LIMITS: &[Limit] = &[
     limit("vefrl", "3.469636", LATTICE),
     limit("fg-adada", "2.926948", LATTICE),
     limit("fg-badadadab", "2.184445", LATTICE),
+    Limit { disagrees: WEAK_FORCE, ..limit("impulse", HALF_PERIOD, MOLLY) },
+    // The method of impulses is Deuflhard's where the slow force is linear.
     Limit {
-        disagrees: Some("the published limit is that of a weak slow force; an unstable interval ends there"),
-        ..limit("impulse", HALF_PERIOD, MOLLY)
+        disagrees: WEAK_FORCE,
+        ..limit("deuflhard", HALF_PERIOD, "Hairer, Lubich, Wanner, Geometric Numerical Integration, XIII.1.3")
     },
     limit("implicit-explicit", FREE, "Stern, Grinspun, Multiscale Model. Simul. 7, 1779 (2009)"),
     limit("rpmd-cayley", FREE, "Korol, Bou-Rabee, Miller, J. Chem. Phys. 151, 124103 (2019)"),
