@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from kickdrift import _plot
-from kickdrift._document import Table, answered
+from kickdrift._document import Told, answered
 from kickdrift._numbers import Exact, items, text, with_unit, written
 
 if TYPE_CHECKING:
@@ -17,7 +17,7 @@ _STEPS = "give steps in fs, as [1.4, 2], or a text, as '1.4fs,2fs'"
 _RANGE = "give a range of steps in fs, as (1.2, 2.6), or a text, as '1.2fs..2.6fs'"
 
 
-class Aperture(Table):
+class Aperture(Told):
     """How hot a bond may be at each step: a measurement of the method on one bond in doubles, no proof.
 
     Examples

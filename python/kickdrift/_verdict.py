@@ -110,7 +110,12 @@ class Verdict:
         return _ends(self.document.data["trace"])
 
     @property
-    def growth_rate(self) -> Enclosure:
+    def growth_rate(self) -> float:
+        """The middle of :attr:`growth_bounds`: per unit time, 0 where nothing grows exponentially."""
+        return sum(self.growth_bounds) / 2
+
+    @property
+    def growth_bounds(self) -> Enclosure:
         """Doubles that enclose the growth rate per unit time; zeros where nothing grows exponentially."""
         return _ends(self.document.data["growth_rate"])
 
@@ -286,7 +291,7 @@ def decide(
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Verdicts(Frozen):
-    """The verdicts of many pairs.
+    """The verdicts of many pairs. Indices and slices find parts of them, as in an array of their shape.
 
     Attributes
     ----------
@@ -301,6 +306,8 @@ class Verdicts(Frozen):
     >>> found = kd.verdicts(lambda1="pi^2", lambda2="pi^2/25", h1="1/100", h2=["0.9", "0.98", "1"])
     >>> found.stable.tolist(), found.names[found.code[1]]
     ([True, False, True], 'hyperbolic-')
+    >>> bool(found[1].stable), found[~found.stable]
+    (False, Verdicts(1 pairs of shape (1,): 1 unstable))
     """
 
     code: npt.NDArray[np.uint8]
@@ -341,6 +348,9 @@ class Verdicts(Frozen):
 
     def __len__(self) -> int:
         return len(self.code)
+
+    def __getitem__(self, index: Any) -> Self:
+        return type(self)(frozen(np.asarray(self.code[index])), frozen(np.asarray(self.tier[index])))
 
     def __repr__(self) -> str:
         unstable = int(self.code.size - np.count_nonzero(self.stable))

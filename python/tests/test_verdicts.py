@@ -46,14 +46,14 @@ def test_a_verdict_tells_all_that_its_document_does() -> None:
     assert verdict.family == (0, 1) and verdict.lambda1 == kd.number("pi^2") and verdict.h2 == Fraction(49, 50)
     assert verdict.h1 == Fraction(1, 100)
     lo, hi = verdict.trace
-    assert lo <= hi < -2 and 0 < verdict.growth_rate[0] <= verdict.growth_rate[1]
+    assert lo <= hi < -2 and 0 < verdict.growth_bounds.lo <= verdict.growth_rate <= verdict.growth_bounds.hi
     assert "unstable" in repr(verdict) and "Tr Q < -2" in verdict._repr_html_() and not verdict
     same = kd.decide(lambda1="pi^2", lambda2="pi^2/25", h1="1/100", h2="49/50")
     assert same == verdict and hash(same) == hash(verdict) and verdict != 1
     with pytest.raises(AttributeError):
         verdict.stable = True  # type: ignore[misc]
     calm = kd.decide(lambda1=1, lambda2=0, h1=1, h2="1/2")
-    assert calm.m is None and calm.family is None and calm.growth_rate == (0.0, 0.0) and calm.lambda2 == 0
+    assert calm.m is None and calm.family is None and calm.growth_bounds == (0.0, 0.0) and calm.lambda2 == 0
     assert bool(calm) and "stable" in repr(calm)
 
 
@@ -179,7 +179,7 @@ def test_a_period_beyond_every_machine_is_decided_alone_as_among_others() -> Non
     assert max(longest.ratio) > 2**63 and longest.document.data["p"] == str(longest.ratio[0])
     assert {one.stable for one in found} == {True, False}
     for one in found:
-        assert one.stable == (one.growth_rate == (0.0, 0.0))
+        assert one.stable == (one.growth_bounds == (0.0, 0.0))
     with pytest.raises(kd.BudgetError, match="18 digits"):
         kd.decide(lambda1="pi^2", lambda2="pi^2/25", h1=longest.h1, h2=longest.h2, exact=True)
 
@@ -201,4 +201,4 @@ def test_the_verdict_of_doubles_has_its_growth_and_label() -> None:
     x = (np.arange(1000) + 0.5) / 1000
     slow = np.moveaxis(np.array([[1 + k * x, k * x**2], [-k + 0 * x, 1 - k * x]]), -1, 0)
     rate = np.arccosh(np.abs(np.trace(slow @ fast, axis1=1, axis2=2)) / 2).mean() / 0.98
-    assert not beside.stable and beside.growth_rate[0] == pytest.approx(rate, rel=1e-6)
+    assert not beside.stable and beside.growth_rate == pytest.approx(rate, rel=1e-6)
