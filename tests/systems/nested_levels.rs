@@ -4,7 +4,7 @@
 use kickdrift::number::Rational;
 use kickdrift::number::rational::{from_f64_exact, ratio};
 use kickdrift::system::friction::Damping;
-use kickdrift::system::levels::{Hessians, Kernel, Nested, Outer, Search, Source};
+use kickdrift::system::levels::{Hessians, Kernel, Nested, Outer, Search};
 use kickdrift::system::{
     Body, Holds, Limits, MeasuredSystem, Model, Potential, Route, Symmetric, System, decide_system,
 };
@@ -168,7 +168,7 @@ fn growth_and_friction_are_those_of_the_rational_system() {
     let (levels, steps) = (numbers.levels(4), [ratio(1, 4), ratio(1, 2), ratio(1, 1)]);
     let own = nested(&levels);
     let at = own.at(&steps).unwrap();
-    let growing = &own.growing(&steps, at.first_unstable().unwrap().1, 1e-4).unwrap()[0];
+    let growing = &at.growing(at.first_unstable().unwrap().1, 1e-4).unwrap()[0];
     let (step, rate) = growing.worst;
     let found = at.decide(step, 1e-9);
     assert!(found.holds == Holds::Unstable && !found.is_in_first_region && found.growing.is_some());

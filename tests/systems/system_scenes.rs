@@ -544,7 +544,7 @@ fn a_system_on_three_clocks_stands_as_far_as_the_advice_on_it_says() {
     assert!(measured.margin.is_some_and(|margin| margin > 1e-5) && measured.margin == advised.margin);
     assert_eq!((measured.holds, measured.accuracy), (advised.holds, levels.accuracy));
     assert!(measured.first_unstable.is_some());
-    assert_eq!(measured.first_unstable, levels.source.first_unstable(&steps).unwrap());
+    assert_eq!(measured.first_unstable, levels.source.at(&steps).unwrap().first_unstable());
     assert_eq!(measured.removed.as_ref().map(|removed| removed.count), Some(6));
     // Known to a hundredth only, it is not proven of all.
     let roughly = scene.clone().asked(Some(1e-2), false, None, None).unwrap();

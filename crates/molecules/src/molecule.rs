@@ -21,7 +21,7 @@ use number::Rational;
 use number::error::{Error, Result};
 use number::rational::to_f64;
 use systems::friction::Damping;
-use systems::levels::{Growing, Method, Source};
+use systems::levels::{Growing, Method, Search, Source};
 use systems::{BiasedMode, Holds};
 
 /// Measured stiffnesses on their clocks, and what their coordinates are called.
@@ -142,7 +142,6 @@ impl Molecule {
         let mut known: Vec<(Vec<Rational>, AtRatio)> = Vec::new();
         let mut found = Vec::new();
         for scheme in schemes {
-            self.source.check(&self.steps(scheme))?;
             let ratios: Vec<Rational> = scheme.steps().iter().map(|step| step / scheme.inner()).collect();
             if known.iter().all(|(values, _)| *values != ratios) {
                 known.push((ratios.clone(), self.at_ratio(scheme, to_f64(band))?));
@@ -230,13 +229,13 @@ impl Molecule {
         steps.iter().map(|step| step / &self.unit).collect()
     }
 
-    /// The steps of a scheme with an outermost step of `count` times the step before it: that outermost step
-    /// in fs, and all steps in their unit.
-    fn with_multiple(&self, scheme: &Scheme, count: u64) -> (Rational, Vec<Rational>) {
+    /// The levels at the steps of a scheme with an outermost step of `count` times the step before it, and
+    /// that outermost step in fs.
+    fn at_multiple(&self, scheme: &Scheme, count: u64) -> Result<(Rational, Box<dyn Search + '_>)> {
         let outer = scheme.last_but_one() * Rational::from_integer(count.into());
         let mut steps = scheme.steps().to_vec();
         *steps.last_mut().expect("at least one step") = outer.clone();
-        (outer, self.in_units(&steps))
+        Ok((outer, self.source.at(&self.in_units(&steps))?))
     }
 
     fn find(
@@ -248,8 +247,9 @@ impl Molecule {
         at: &AtRatio,
     ) -> Result<Finding> {
         let (steps, part, unit) = (self.steps(scheme), to_f64(band), to_f64(&self.unit));
+        let levels = self.source.at(&steps)?;
         let decided = self.source.decide(&steps, self.accuracy)?;
-        let is_in_band = self.source.covers_band(&steps, part, self.accuracy)?;
+        let is_in_band = levels.covers_band(levels.outer_step(), part, self.accuracy);
         let status = match decided.holds {
             Holds::Unstable => Status::Unstable,
             Holds::Undecided => Status::Undecided,
@@ -270,8 +270,8 @@ impl Molecule {
             self.most_biased(&self.in_units(&steps))
         });
         let safe_bias = safe_bias.transpose()?.flatten();
-        let damping = |rate: &Rational| self.source.damping(&steps, to_f64(rate) * unit);
-        let masking = |_| self.source.masking_friction(&steps);
+        let damping = |rate: &Rational| levels.damping(levels.outer_step(), to_f64(rate) * unit);
+        let masking = |_| levels.masking_friction(levels.outer_step());
         let AtRatio { first, first_upper, growing, band_edge } = at.clone();
         Ok(Finding {
             scheme: scheme.clone(),
@@ -282,8 +282,8 @@ impl Molecule {
             first_upper,
             growing,
             rate,
-            is_damped: friction.map(damping).transpose()?.flatten().map(|damping| damping == Damping::Damped),
-            masking: friction.filter(|_| grows).map(masking).transpose()?.flatten().map(|value| value / unit),
+            is_damped: friction.and_then(damping).map(|damping| damping == Damping::Damped),
+            masking: friction.filter(|_| grows).and_then(masking).map(|value| value / unit),
             name: decided.growing.as_ref().and_then(|[re, im]| self.names.motion(&[vec![re, im]])),
             atoms: decided.growing.as_ref().map(|growing| self.names.atoms(&amplitudes(growing))),
             band_edge,
@@ -315,7 +315,7 @@ impl Molecule {
     /// As [`Molecule::advise`].
     pub fn lever(&self, name: String, way: Way, scheme: &Scheme, band: &Rational) -> Result<Lever> {
         let (steps, part) = (self.steps(scheme), to_f64(band));
-        let edge = self.source.band_edge(&steps, part, self.accuracy)?;
+        let edge = self.source.at(&steps)?.band_edge(part, self.accuracy);
         let largest = self.largest(scheme, part, edge.map(|edge| edge * to_f64(&self.unit)))?;
         let step = self.caps().safe(scheme, largest.as_ref());
         // The edges are those at the ratio of the step to take.
@@ -354,11 +354,12 @@ impl Molecule {
         step: Option<(Rational, Bound)>,
     ) -> Result<Lever> {
         let (in_units, unit) = (self.in_units(steps), to_f64(&self.unit));
-        let edge = self.source.band_edge(&in_units, to_f64(band), self.accuracy)?;
+        let levels = self.source.at(&in_units)?;
+        let edge = levels.band_edge(to_f64(band), self.accuracy);
         // The edge is found to a millionth; the step itself, and all that are smaller, are proven.
         let proven = step.as_ref().map_or(0.0, |(step, _)| to_f64(step));
         Ok(Lever {
-            first: self.outward(self.source.first_unstable(&in_units)?),
+            first: self.outward(levels.first_unstable()),
             band_edge: edge.map(|edge| rounded_edge((edge * unit).max(proven.next_up()))),
             step,
             inner: steps.first().cloned(),
@@ -403,8 +404,8 @@ impl Molecule {
         let unit = to_f64(&self.unit);
         let mut longest = None;
         for p in 2..=MOST_MASKED {
-            let (step, steps) = self.with_multiple(scheme, p);
-            if self.source.damping(&steps, to_f64(rate) * unit)? != Some(Damping::Damped) {
+            let (step, levels) = self.at_multiple(scheme, p)?;
+            if levels.damping(levels.outer_step(), to_f64(rate) * unit) != Some(Damping::Damped) {
                 break;
             }
             longest = Some(step);
@@ -427,12 +428,13 @@ impl Molecule {
     /// The results that belong to the ratios of a scheme's steps.
     fn at_ratio(&self, scheme: &Scheme, band: f64) -> Result<AtRatio> {
         let (steps, unit) = (self.steps(scheme), to_f64(&self.unit));
-        let band_edge = self.source.band_edge(&steps, band, self.accuracy)?.map(|edge| edge * unit);
-        let Some((stable, begins)) = self.source.first_unstable(&steps)? else {
+        let levels = self.source.at(&steps)?;
+        let band_edge = levels.band_edge(band, self.accuracy).map(|edge| edge * unit);
+        let Some((stable, begins)) = levels.first_unstable() else {
             return Ok(AtRatio { first: None, first_upper: None, growing: Vec::new(), band_edge });
         };
-        let upper = self.source.unstable_up_to(&steps, begins, LEAST)?;
-        let growing = self.source.growing(&steps, begins, (upper / begins - 1.0).max(LEAST_SAMPLE))?;
+        let upper = levels.unstable_up_to(begins, LEAST)?;
+        let growing = levels.growing(begins, (upper / begins - 1.0).max(LEAST_SAMPLE))?;
         let fs = |step: Option<f64>| step.map(|step| step * unit);
         let in_fs = |growing: Growing| Growing {
             lower: growing.lower * unit,
@@ -452,13 +454,15 @@ impl Molecule {
             let digits = |edge: f64| Rational::new(((edge * 1e5).floor() as i64).into(), 100_000.into());
             return Ok(edge.map(digits).filter(|value| *value > Rational::zero()));
         }
-        let holds =
-            |count: u64| self.source.covers_band(&self.with_multiple(scheme, count).1, band, self.accuracy);
+        let holds = |count: u64| -> Result<bool> {
+            let (_, levels) = self.at_multiple(scheme, count)?;
+            Ok(levels.covers_band(levels.outer_step(), band, self.accuracy))
+        };
         let mut found = 0;
         while found < MOST_INNER_STEPS && holds(found + 1)? {
             found += 1;
         }
-        Ok((found > 0).then(|| self.with_multiple(scheme, found).0))
+        Ok((found > 0).then(|| scheme.last_but_one() * Rational::from_integer(found.into())))
     }
 }
 

@@ -110,14 +110,10 @@ impl Outer {
 #[derive(Clone, Copy, Debug)]
 pub struct AtRatio<'a> {
     pub(super) kernel: &'a Kernel,
-    outer: Outer,
+    pub(super) outer: Outer,
 }
 
 impl AtRatio<'_> {
-    pub(super) fn inner_steps(&self) -> u64 {
-        self.outer.inner_steps
-    }
-
     /// That outer step itself, or another one of as many inner ones.
     ///
     /// # Errors

@@ -94,6 +94,9 @@ pub struct Decided {
 /// Levels at fixed ratios of their steps, over the outer step: what is proven and found at one, and the
 /// searches that are made of it.
 pub trait Search {
+    /// The outer step that they were given with.
+    fn outer_step(&self) -> f64;
+
     /// Two outer steps, 1e-8 apart, relative: every step in (0, lo] is proven stable, hi is not proven to be
     /// in the first region. `None` where the sum of all stiffnesses is not proven definite, so that the
     /// region does not begin at 0, and where its end is beyond what is known of it.

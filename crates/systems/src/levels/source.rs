@@ -5,20 +5,17 @@ use std::fmt::Debug;
 
 use faer::Mat;
 
-use super::growth::Growing;
 use super::kernel::{AtRatio, Kernel, Outer, highest_frequency};
 use super::nested::Nested;
 use super::search::{Decided, Search, bracket_below};
 use crate::bias::{self, BiasedMode, NoBias};
 use crate::columns::combined;
-use crate::friction::Damping;
 use crate::half::period::Stiffness;
 use crate::verdict::analysis::{Analysis, Instability};
 use crate::verdict::measured::Removed;
 use clocks::schedule::Schedule;
 use number::Rational;
 use number::error::{Error, Result};
-use number::rational::to_f64;
 
 /// Stiffnesses of levels, steps and rates in their unit of time; `steps` are those of all levels, innermost
 /// first. What is proven of an outer step is so with all others in their ratios to it.
@@ -28,14 +25,6 @@ pub trait Source: Debug + Send + Sync {
     /// # Errors
     /// Another number of them, ratios that are not answered for.
     fn at(&self, steps: &[Rational]) -> Result<Box<dyn Search + '_>>;
-
-    /// Checks that these steps can be asked about.
-    ///
-    /// # Errors
-    /// As [`Source::at`], here and below.
-    fn check(&self, steps: &[Rational]) -> Result<()> {
-        self.at(steps).map(|_| ())
-    }
 
     /// The motions that were projected out.
     fn removed(&self) -> Option<&Removed>;
@@ -55,43 +44,10 @@ pub trait Source: Debug + Send + Sync {
     fn slower_frequencies(&self) -> Vec<f64>;
 
     /// The verdict for all stiffnesses within `accuracy` of their norms, and what grows.
+    ///
+    /// # Errors
+    /// As [`Source::at`], here and below.
     fn decide(&self, steps: &[Rational], accuracy: f64) -> Result<Decided>;
-
-    /// \[lo, hi\]: every outer step up to lo is proven stable, hi is proven unstable.
-    fn first_unstable(&self, steps: &[Rational]) -> Result<Option<(f64, f64)>> {
-        Ok(self.at(steps)?.first_unstable())
-    }
-
-    /// The step up to which every one from an unstable step on is proven unstable, followed in relative steps
-    /// no shorter than `least`.
-    fn unstable_up_to(&self, steps: &[Rational], from: f64, least: f64) -> Result<f64> {
-        self.at(steps)?.unstable_up_to(from, least)
-    }
-
-    /// Growth from an unstable step on, the first samples `width` apart, relative.
-    fn growing(&self, steps: &[Rational], from: f64, width: f64) -> Result<Vec<Growing>> {
-        self.at(steps)?.growing(from, width)
-    }
-
-    /// Whether a band of periods is proven stable, at all smaller steps, too.
-    fn covers_band(&self, steps: &[Rational], band: f64, accuracy: f64) -> Result<bool> {
-        Ok(self.at(steps)?.covers_band(outermost(steps), band, accuracy))
-    }
-
-    /// The outer step up to which the band is covered.
-    fn band_edge(&self, steps: &[Rational], band: f64, accuracy: f64) -> Result<Option<f64>> {
-        Ok(self.at(steps)?.band_edge(band, accuracy))
-    }
-
-    /// Where the spectral radius of a period with friction lies; `None`: doubles cannot decide.
-    fn damping(&self, steps: &[Rational], friction: f64) -> Result<Option<Damping>> {
-        Ok(self.at(steps)?.damping(outermost(steps), friction))
-    }
-
-    /// A friction that is proven to mask what grows, about the least.
-    fn masking_friction(&self, steps: &[Rational]) -> Result<Option<f64>> {
-        Ok(self.at(steps)?.masking_friction(outermost(steps)))
-    }
 
     /// The bias of each normal mode where these steps are stable.
     fn biased_modes(&self, steps: &[Rational]) -> Result<std::result::Result<Vec<BiasedMode>, NoBias>>;
@@ -118,8 +74,12 @@ fn outer_of(steps: &[Rational]) -> Result<Outer> {
 }
 
 impl Search for AtRatio<'_> {
+    fn outer_step(&self) -> f64 {
+        self.outer.step
+    }
+
     fn region_end(&self) -> Option<(f64, f64)> {
-        self.kernel.first_region_end(self.inner_steps(), 0.0)
+        self.kernel.first_region_end(self.outer.inner_steps, 0.0)
     }
 
     fn is_stable(&self, step: f64) -> bool {
@@ -147,7 +107,7 @@ impl Search for AtRatio<'_> {
     }
 
     fn band_bracket(&self, holds: &dyn Fn(f64) -> bool) -> Option<(f64, f64)> {
-        let end = self.kernel.band_end(self.inner_steps());
+        let end = self.kernel.band_end(self.outer.inner_steps);
         bracket_below(end, |step| end.is_finite() && holds(step))
     }
 
@@ -244,7 +204,8 @@ impl Source for Nested {
     }
 
     fn decide(&self, steps: &[Rational], accuracy: f64) -> Result<Decided> {
-        Ok(self.at(steps)?.decide(outermost(steps), accuracy))
+        let at = self.at(steps)?;
+        Ok(at.decide(at.outer_step(), accuracy))
     }
 
     fn biased_modes(&self, steps: &[Rational]) -> Result<std::result::Result<Vec<BiasedMode>, NoBias>> {
@@ -260,10 +221,6 @@ impl Source for Nested {
 
 fn schedule(steps: &[Rational]) -> Result<Schedule> {
     Schedule::new(steps, &vec![Rational::default(); steps.len()])
-}
-
-fn outermost(steps: &[Rational]) -> f64 {
-    steps.iter().max().map_or(0.0, to_f64)
 }
 
 /// The largest growth rate, per unit of time, rounded; `None` where it is not decided whether anything grows.

@@ -138,6 +138,10 @@ impl Steps<'_> {
 }
 
 impl Search for Steps<'_> {
+    fn outer_step(&self) -> f64 {
+        self.outer
+    }
+
     fn region_end(&self) -> Option<(f64, f64)> {
         let stable = |step: f64| self.is_in_first_region(step, 0.0);
         Some(bisected(self.bracket(stable)?, EDGE, |step| Some(stable(step))))
