@@ -125,7 +125,7 @@ impl Along {
                 (half.lifted(&instability.shape), half.lifted(&instability.quadrature));
             instability.normalize();
         }
-        let mut part = Part::new(given.m, period, (kind, evidence), (multipliers, instabilities));
+        let mut part = Part::new(given.size(), period, (kind, evidence), (multipliers, instabilities));
         (part.dofs, part.roots) = ((0..n).collect(), asked.map(|(_, roots)| roots));
         let warnings = if kind.is_some() { Vec::new() } else { vec![NOT_DECIDED.into()] };
         let measured = self.accuracy.map(|accuracy| {
@@ -368,23 +368,14 @@ impl Half<'_> {
         let whole = self.propagated.blocks(self.scales.clone());
         let whole = FloatBlocks { error: self.propagated.error_within(times), ..whole };
         let Some(frames) = &self.frames else { return whole };
-        let (n, m) = (whole.m, frames.start.ncols());
-        let turned = |rows: &[Vec<f64>]| {
-            let block = |first: usize| {
-                let matrix = Mat::from_fn(n, n, |i, j| rows[i][first + j]);
-                frames.turned.transpose() * matrix * &frames.start
-            };
-            let (left, right) = (block(0), block(n));
-            let row =
-                |i: usize| (0..2 * m).map(|j| if j < m { left[(i, j)] } else { right[(i, j - m)] }).collect();
-            (0..m).map(row).collect::<Vec<Vec<f64>>>()
-        };
-        let squares = whole.y.iter().chain(&whole.p).flatten().map(|x| x * x).sum::<f64>();
+        let matrices =
+            whole.matrices.each_ref().map(|block| frames.turned.transpose() * block * &frames.start);
+        let squares = whole.matrices.iter().map(|block| norm::frobenius(block).powi(2)).sum::<f64>();
         let size = norm::frobenius(&frames.start) * norm::frobenius(&frames.turned);
-        let rounding = 2.2 * (n as f64 + 4.0) * U * size * 1.01 * squares.sqrt();
+        let rounding = 2.2 * (whole.size() as f64 + 4.0) * U * size * 1.01 * squares.sqrt();
         let error = whole.error.map(|e| 1.01 * (e + rounding + 1.01 * frames.off * (whole.norm + e)));
         let norm = whole.norm + error.unwrap_or(0.0);
-        FloatBlocks { m, y: turned(&whole.y), p: turned(&whole.p), error, norm, scales: vec![1.0; m] }
+        FloatBlocks { matrices, error, norm, scales: vec![1.0; frames.start.ncols()] }
     }
 
     /// That some Hessians within the accuracy leave the rigid motions free, C J₀ = 0 and J₁ᵀ C = 0: else what

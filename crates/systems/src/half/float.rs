@@ -32,15 +32,11 @@ use number::parallel::both;
 use number::rational::to_f64;
 use number::{Rational, U};
 
-/// The blocks of Ĥ in the frame's coordinates, row by row, and the bound on their error.
+/// The blocks of Ĥ in the frame's coordinates, and the bound on their error.
 #[derive(Clone, Debug)]
 pub(crate) struct FloatBlocks {
-    /// The number of columns and rows of a block.
-    pub m: usize,
-    /// m rows of 2m entries: A and B side by side.
-    pub y: Vec<Vec<f64>>,
-    /// m rows of 2m entries: C and D side by side.
-    pub p: Vec<Vec<f64>>,
+    /// A, B, C and D, m x m.
+    pub matrices: [Mat<f64>; 4],
     /// The spectral norm of the error of all together is at most this; `None` where the bound's condition
     /// fails.
     pub error: Option<f64>,
@@ -48,6 +44,13 @@ pub(crate) struct FloatBlocks {
     pub norm: f64,
     /// Positions are a_i y_i, momenta p_i/a_i.
     pub scales: Vec<f64>,
+}
+
+impl FloatBlocks {
+    /// m: the number of columns and rows of a block.
+    pub fn size(&self) -> usize {
+        self.matrices[0].nrows()
+    }
 }
 
 /// From how many degrees of freedom on shears are looked at as a whole, and those of how many rows: fewer
@@ -300,12 +303,14 @@ fn finish(rows: Rows, frame: &Frame, scales: Vec<f64>) -> FloatBlocks {
         let positions = frame.kept.iter().map(|&i| row[i]);
         positions.chain(frame.kept.iter().enumerate().map(momentum)).collect::<Vec<_>>()
     };
-    let (y, p) = (y.into_iter().map(project).collect(), p.into_iter().map(project).collect());
+    let sides: [Vec<Vec<f64>>; 2] = [y, p].map(|rows| rows.into_iter().map(project).collect());
+    let block = |side: usize, first: usize| Mat::from_fn(m, m, |i, j| sides[side][i][first + j]);
+    let matrices = [block(0, 0), block(0, m), block(1, 0), block(1, m)];
     let stretch = rigid.iter().map(|(_, n)| norm2(n)).sum::<f64>();
     let end = rows.spectral_norm();
     let error = rows.error(rigid.len(), stretch, end);
     let norm = 1.01 * end * (1.0 + stretch) + error.unwrap_or(0.0);
-    FloatBlocks { m, y, p, error, norm, scales }
+    FloatBlocks { matrices, error, norm, scales }
 }
 
 impl Rows {
@@ -393,10 +398,10 @@ mod tests {
         let (n, a) = (system.size(), &blocks.scales);
         let exact = compose::half_period::<Rational>(&system);
         let off = |k: usize, j: usize| {
-            let (row, values) =
-                if k < n { (a[k], &blocks.y[k]) } else { (a[k - n].recip(), &blocks.p[k - n]) };
+            let row = if k < n { a[k] } else { a[k - n].recip() };
             let column = if j < n { a[j].recip() } else { a[j - n] };
-            let rounded = Rational::from_float(values[j] / row / column).expect("powers of two are exact");
+            let value = blocks.matrices[2 * (k / n) + j / n][(k % n, j % n)];
+            let rounded = Rational::from_float(value / row / column).expect("powers of two are exact");
             to_f64(&(rounded - &exact[(k, j)])) * row * column
         };
         let largest = Mat::from_fn(2 * n, 2 * n, off).singular_values().unwrap()[0];

@@ -293,10 +293,10 @@ impl Propagated {
 
     /// As the blocks of a half period whose positions are a_i x_i.
     pub fn blocks(&self, scales: Vec<f64>) -> FloatBlocks {
-        let columns = 2 * self.n;
-        let rows = |from: &[f64]| (0..self.n).map(|i| Propagated::row(from, columns, i).to_vec()).collect();
+        let (n, x, p) = (self.n, &self.x, &self.p);
+        let matrices = [block(x, n, 0), block(x, n, n), block(p, n, 0), block(p, n, n)];
         let norm = self.norm() + self.error.unwrap_or(0.0);
-        FloatBlocks { m: self.n, y: rows(&self.x), p: rows(&self.p), error: self.error, norm, scales }
+        FloatBlocks { matrices, error: self.error, norm, scales }
     }
 }
 
@@ -313,8 +313,13 @@ fn bound(rows: &[f64], columns: usize) -> f64 {
 
 /// A sharper bound at the cost of products: ‖(A B)‖² ≤ ‖A‖² + ‖B‖².
 fn spectral(rows: &[f64], n: usize) -> f64 {
-    let block = |first: usize| norm::spectral(&Mat::from_fn(n, n, |i, j| rows[i * 2 * n + first + j]));
-    1.01 * block(0).hypot(block(n))
+    let size = |first: usize| norm::spectral(&block(rows, n, first));
+    1.01 * size(0).hypot(size(n))
+}
+
+/// The n columns from the given one on, of rows of 2n.
+fn block(rows: &[f64], n: usize, first: usize) -> Mat<f64> {
+    Mat::from_fn(n, n, |i, j| rows[i * 2 * n + first + j])
 }
 
 fn norm2(row: &[f64]) -> f64 {

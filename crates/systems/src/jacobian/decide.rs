@@ -181,7 +181,7 @@ impl Jacobians {
         let off = self.clocks.iter().map(|clock| clock.off).sum::<f64>()
             + self.clocks.len() as f64 * 1.1 * U * size;
         let spectrum = Spectrum::of(sum, Some(off))?;
-        let radius = 1.01 * spectrum.radius?;
+        let radius = 1.01 * spectrum.radius()?;
         let alone = |i: usize| {
             spectrum
                 .mu

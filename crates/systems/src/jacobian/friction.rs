@@ -35,7 +35,7 @@ impl Jacobians {
     pub fn damping(&self, friction: &Rational) -> Option<Damping> {
         let (period, error) = self.damped_period(friction);
         let found = Spectrum::of(period, error.is_finite().then_some(error))?;
-        let radius = 1.01 * found.radius?;
+        let radius = 1.01 * found.radius()?;
         if found.mu.iter().all(|z| z.norm() * (1.0 + 1e-15) + radius < 1.0) {
             return Some(Damping::Damped);
         }

@@ -125,7 +125,7 @@ impl Kernel {
         let vectors = Mat::from_fn(m, m, |i, j| c64::new(root[i] * eigen.U()[(i, j)], 0.0));
         let (s, error) = blocks.s();
         // Where some V is nearly 0 the basis is not one in doubles.
-        Spectrum::with(s, Some(error), mu, vectors).filter(|spectrum| spectrum.radius.is_some())
+        Spectrum::with(s, Some(error), mu, vectors).filter(|spectrum| spectrum.radius().is_some())
     }
 
     /// The largest ε, within a tenth, for which all F + E₁, S + E₂, ‖E₁‖₂ ≤ ε ‖F‖₂, ‖E₂‖₂ ≤ ε ‖S‖₂, are

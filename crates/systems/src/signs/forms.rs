@@ -58,35 +58,22 @@ fn counts_differ(ends: [Inertia; 2], others: [Option<Inertia>; 2]) -> bool {
 
 /// The kind, where a definite form of the half period in doubles proves it within their error.
 pub fn proven(blocks: &FloatBlocks) -> Option<Kind> {
-    judge(&mut Forms::new(blocks)?)
+    judge(&mut Forms { error: blocks.error?, blocks })
 }
 
 /// The forms of a half period in doubles, within the bound on its error.
 struct Forms<'a> {
-    a: Mat<f64>,
-    b: Mat<f64>,
-    c: Mat<f64>,
-    d: Mat<f64>,
-    /// The bound on the error of all blocks together, Frobenius.
-    error: f64,
     blocks: &'a FloatBlocks,
+    /// The bound on the error of all blocks together.
+    error: f64,
 }
 
-impl<'a> Forms<'a> {
-    /// `None` where the error of the half period is not bounded.
-    pub fn new(blocks: &'a FloatBlocks) -> Option<Self> {
-        let (m, error) = (blocks.m, blocks.error?);
-        let block = |rows: &[Vec<f64>], first: usize| Mat::from_fn(m, m, |i, j| rows[i][first + j]);
-        let (a, b) = (block(&blocks.y, 0), block(&blocks.y, m));
-        let (c, d) = (block(&blocks.p, 0), block(&blocks.p, m));
-        Some(Forms { a, b, c, d, error, blocks })
-    }
-
+impl Forms<'_> {
     /// The inertia of the symmetric matrix that `product` is but for rounding, `x` and `y` being its factors:
     /// each is off by at most e, so the product by e (‖x‖ + ‖y‖ + e), and by (m + 2) u ‖x‖_F ‖y‖_F in being
     /// computed.
     fn inertia(&self, product: Mat<f64>, (x, y): (&Mat<f64>, &Mat<f64>), sign: i8) -> Inertia {
-        let (m, e) = (self.blocks.m, self.error);
+        let (m, e) = (self.blocks.size(), self.error);
         let (size_x, size_y) = (norm::frobenius(x), norm::frobenius(y));
         let rounding = 1.01 * (m as f64 + 4.0) * U * size_x * size_y;
         let slack = e * (size_x.min(self.blocks.norm) + size_y.min(self.blocks.norm) + e) + rounding;
@@ -97,18 +84,22 @@ impl<'a> Forms<'a> {
 
 impl Inertias for Forms<'_> {
     fn p(&mut self) -> Inertia {
-        self.inertia(&self.a * self.b.transpose(), (&self.a, &self.b), 1)
+        let [a, b, ..] = &self.blocks.matrices;
+        self.inertia(a * b.transpose(), (a, b), 1)
     }
 
     fn r(&mut self) -> Inertia {
-        self.inertia(&self.c * self.d.transpose(), (&self.c, &self.d), -1)
+        let [.., c, d] = &self.blocks.matrices;
+        self.inertia(c * d.transpose(), (c, d), -1)
     }
 
     fn w(&mut self) -> Inertia {
-        self.inertia(self.b.transpose() * &self.d, (&self.b, &self.d), 1)
+        let [_, b, _, d] = &self.blocks.matrices;
+        self.inertia(b.transpose() * d, (b, d), 1)
     }
 
     fn z(&mut self) -> Inertia {
-        self.inertia(self.a.transpose() * &self.c, (&self.a, &self.c), -1)
+        let [a, _, c, _] = &self.blocks.matrices;
+        self.inertia(a.transpose() * c, (a, c), -1)
     }
 }

@@ -161,12 +161,12 @@ fn by_doubles<S: Decidable>(rounded: &System, clocks: &ManyClocks<S>) -> Option<
     let blocks = float::half_period(rounded, &Frame::whole(1));
     let error = blocks.error?;
     let certain = |x: f64| (x.abs() > error).then_some(if x > 0.0 { Sign::Positive } else { Sign::Negative });
-    let (y, p) = (blocks.y.first()?, blocks.p.first()?);
-    let signs = PartialSigns { a: certain(y[0]), b: certain(y[1]), c: certain(p[0]), d: certain(p[1]) };
-    let verdict = signs.verdict()?;
+    let entries = blocks.matrices.each_ref().map(|block| block[(0, 0)]);
+    let [a, b, c, d] = entries.map(certain);
+    let verdict = PartialSigns { a, b, c, d }.verdict()?;
     let exact = |x: f64| Some(Ball::from_rational(&Rational::from_float(x)?, BITS));
     let around = |x: f64| Some(exact((x - error).next_down())?.union(&exact((x + error).next_up())?, BITS));
-    let [a, b, c, d] = [around(y[0])?, around(y[1])?, around(p[0])?, around(p[1])?];
+    let [Some(a), Some(b), Some(c), Some(d)] = entries.map(around) else { return None };
     let (mu, label) = (b.mul(&c, BITS), labelled(clocks, verdict));
     let growth = growth(verdict, &mu, &a.mul(&d, BITS));
     // Beside an edge balls give more digits.

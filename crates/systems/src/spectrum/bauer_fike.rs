@@ -29,8 +29,6 @@ pub(crate) struct Residual {
     pub norm: f64,
     /// More than the Euclidean norm of each row of F.
     pub rows: Vec<f64>,
-    /// More than ‖V⁻¹‖₂.
-    pub inverse: f64,
 }
 
 /// L E R in doubles, ‖E‖₂ ≤ `size`: L and R are each within its `off` (2-norm).
@@ -57,19 +55,19 @@ fn row(m: &Mat<f64>, i: usize) -> f64 {
 
 impl Residual {
     /// For all S within `off` of the given one, entry by entry, too: they add V⁻¹ (S' − S) V to F.
-    pub fn widened(self, v: &Mat<f64>, off: &Mat<f64>) -> Option<Residual> {
+    pub fn widened(&self, v: &Mat<f64>, off: &Mat<f64>) -> Option<Residual> {
         let size = |m: &Mat<f64>| Mat::from_fn(m.nrows(), m.ncols(), |i, j| m[(i, j)].abs());
         self.moved(v, off, |w| size(w) * (off * size(v)))
     }
 
     /// For all S + x C, |x| ≤ 1, too: they add x V⁻¹ C V to F, one matrix, where entries cancel.
-    pub fn along(self, v: &Mat<f64>, change: &Mat<f64>) -> Option<Residual> {
+    pub fn along(&self, v: &Mat<f64>, change: &Mat<f64>) -> Option<Residual> {
         self.moved(v, change, |w| w * (change * v))
     }
 
     /// `moved` of an approximate inverse W of V is W C V, or more than that of every entry.
     fn moved(
-        self,
+        &self,
         v: &Mat<f64>,
         change: &Mat<f64>,
         moved: impl Fn(&Mat<f64>) -> Mat<f64>,
@@ -84,7 +82,7 @@ impl Residual {
 
     /// For all S + Σ L E R, too: they add V⁻¹ L E R V to F, whose i-th row is no longer than |row i of V⁻¹ L|
     /// ‖E‖ ‖R V‖.
-    pub fn with_terms(self, v: &Mat<f64>, terms: &[Term]) -> Option<Residual> {
+    pub fn with_terms(&self, v: &Mat<f64>, terms: &[Term]) -> Option<Residual> {
         let (w, y) = inverse(v)?;
         let (m, [nv, nw]) = (v.ncols(), [v, &w].map(norm::frobenius));
         let mut rows = vec![0.0; m];
@@ -102,10 +100,10 @@ impl Residual {
         self.plus(norm, rows)
     }
 
-    fn plus(self, norm: f64, rows: Vec<f64>) -> Option<Residual> {
+    fn plus(&self, norm: f64, rows: Vec<f64>) -> Option<Residual> {
         let norm = self.norm + norm;
         let rows = self.rows.iter().zip(rows).map(|(value, more)| value + more).collect();
-        norm.is_finite().then_some(Residual { norm, rows, ..self })
+        norm.is_finite().then_some(Residual { norm, rows })
     }
 }
 
@@ -125,6 +123,5 @@ pub(crate) fn bauer_fike(s: &Mat<f64>, delta: f64, v: &Mat<f64>, d: &Mat<f64>) -
     let off = residual + rounding + delta * v_size;
     let norm = 1.01 * w_size * off / (1.0 - y);
     let rows = (0..m).map(|i| 1.01 * (row(&w, i) + nw * y / (1.0 - y)) * off).collect();
-    let inverse = 1.01 * w_size / (1.0 - y);
-    norm.is_finite().then_some(Residual { norm, rows, inverse })
+    norm.is_finite().then_some(Residual { norm, rows })
 }

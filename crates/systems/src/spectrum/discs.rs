@@ -29,12 +29,8 @@ use number::U;
 #[derive(Clone, Debug)]
 pub(crate) struct Spectrum {
     pub mu: Vec<c64>,
-    /// The radius of the discs; `None` where the bound's conditions fail.
-    pub radius: Option<f64>,
-    /// Bounds on the rows of F.
-    rows: Vec<f64>,
-    /// More than ‖V⁻¹‖₂.
-    inverse: Option<f64>,
+    /// The bounds on F; `None` where their conditions fail.
+    residual: Option<Residual>,
     /// One column for each, in the coordinates of [`FloatBlocks`].
     pub vectors: Mat<c64>,
     /// S, and how far the true one can be.
@@ -71,70 +67,67 @@ impl Spectrum {
     pub fn with(s: Mat<f64>, s_error: Option<f64>, mu: Vec<c64>, vectors: Mat<c64>) -> Option<Spectrum> {
         let finite = mu.iter().all(|z| z.re.is_finite() && z.im.is_finite());
         let residual = s_error.filter(|_| finite).and_then(|delta| residual(&s, delta, &mu, &vectors));
-        let radius = residual.as_ref().map(|residual| residual.norm);
-        let inverse = residual.as_ref().map(|residual| residual.inverse);
-        let rows = residual.map_or(Vec::new(), |residual| residual.rows);
-        finite.then_some(Spectrum { mu, radius, rows, inverse, vectors, s, s_error })
+        finite.then_some(Spectrum { mu, residual, vectors, s, s_error })
+    }
+
+    /// The radius of the discs, but for rounding; `None` where there are none.
+    pub fn radius(&self) -> Option<f64> {
+        self.residual.as_ref().map(|residual| residual.norm)
     }
 
     /// The discs for matrices within another distance of S.
     pub fn with_error(&self, s_error: f64) -> Option<Spectrum> {
-        let residual = residual(&self.s, s_error, &self.mu, &self.vectors)?;
-        Some(Spectrum {
-            radius: Some(residual.norm),
-            rows: residual.rows,
-            s_error: Some(s_error),
-            ..self.clone()
-        })
+        let residual = Some(residual(&self.s, s_error, &self.mu, &self.vectors)?);
+        Some(Spectrum { residual, s_error: Some(s_error), ..self.clone() })
     }
 
     /// The discs where the half period is known as well as these blocks, which differ from its own in their
     /// error alone. There are none where the error of the blocks is unbounded.
     pub fn known_to(&self, blocks: &FloatBlocks) -> Spectrum {
         let found = product(blocks).1.and_then(|error| self.with_error(error));
-        found.unwrap_or_else(|| Spectrum { radius: None, rows: Vec::new(), s_error: None, ..self.clone() })
+        found.unwrap_or_else(|| Spectrum { residual: None, s_error: None, ..self.clone() })
     }
 
     /// Every multiplier with an enclosure of its growth: that of all discs which meet its own, and of the
     /// largest one no more than the rows of F allow.
     pub fn multipliers(&self) -> Vec<Multiplier> {
-        let Some(radius) = self.radius.map(|radius| 1.01 * radius) else {
+        let Some(Residual { norm, rows }) = &self.residual else {
             return self.mu.iter().map(|&mu| Multiplier::new(mu, None, None)).collect();
         };
+        let radius = 1.01 * norm;
         let pairs: Vec<_> = self.mu.iter().map(|&mu| rate::about(mu, radius)).collect();
-        let above = self.largest_growth();
+        let above = self.largest_growth(rows);
         let mut growth = pairs.clone();
         for component in components(&self.mu, radius) {
             let lo = component.iter().map(|&i| pairs[i].0).fold(f64::INFINITY, f64::min);
             let hi = component.iter().map(|&i| pairs[i].1).fold(0.0, f64::max);
             component.iter().for_each(|&i| growth[i] = (lo, hi.min(above)));
         }
-        let multiplier = |(&mu, growth)| Multiplier::new(mu, self.radius, Some(growth));
+        let multiplier = |(&mu, growth)| Multiplier::new(mu, Some(*norm), Some(growth));
         self.mu.iter().zip(growth).map(multiplier).collect()
     }
 
     /// No ln |λ| is larger: as (D − z) y = −F y has |d_j − z| |y_j| ≤ ρ_j, each eigenvalue z is within √m ρ_j
     /// of some d_j.
-    fn largest_growth(&self) -> f64 {
+    fn largest_growth(&self, rows: &[f64]) -> f64 {
         let root = (self.mu.len() as f64).sqrt();
         let of = |(&mu, row): (&c64, &f64)| rate::about(mu, 1.01 * root * row).1;
-        self.mu.iter().zip(&self.rows).map(of).fold(0.0, f64::max)
+        self.mu.iter().zip(rows).map(of).fold(0.0, f64::max)
     }
 
     /// The kind that the discs of all S' with |S' − S| ≤ `off`, entry by entry, prove, if any.
     pub fn certified_around(&self, off: &Mat<f64>) -> Option<Kind> {
-        self.with_residual(self.residual()?.widened(&real_form(&self.mu, &self.vectors)?.0, off)?).by_discs()
+        self.with_residual(|residual, v| residual.widened(v, off))?.by_discs()
     }
 
     /// The kind that the discs of all S + x C, |x| ≤ 1, prove, if any.
     pub fn certified_along(&self, change: &Mat<f64>) -> Option<Kind> {
-        self.with_residual(self.residual()?.along(&real_form(&self.mu, &self.vectors)?.0, change)?).by_discs()
+        self.with_residual(|residual, v| residual.along(v, change))?.by_discs()
     }
 
     /// The discs of all S + Σ L E R, too.
     pub fn with_terms(&self, terms: &[Term]) -> Option<Spectrum> {
-        let basis = real_form(&self.mu, &self.vectors)?.0;
-        Some(self.with_residual(self.residual()?.with_terms(&basis, terms)?))
+        self.with_residual(|residual, v| residual.with_terms(v, terms))
     }
 
     /// The rows of V⁻¹ S' V − D for another S', in parts of their bounds.
@@ -144,24 +137,19 @@ impl Spectrum {
         let (v, d) = real_form(&self.mu, &self.vectors).unwrap();
         let f = v.partial_piv_lu().inverse() * other * &v - d;
         let length = |i: usize| (0..v.ncols()).map(|j| f[(i, j)] * f[(i, j)]).sum::<f64>().sqrt();
-        self.rows.iter().enumerate().map(|(i, row)| length(i) / row).collect()
+        let rows = self.residual.iter().flat_map(|residual| &residual.rows);
+        rows.enumerate().map(|(i, row)| length(i) / row).collect()
     }
 
-    fn residual(&self) -> Option<Residual> {
-        Some(Residual { norm: self.radius?, rows: self.rows.clone(), inverse: self.inverse? })
-    }
-
-    fn with_residual(&self, residual: Residual) -> Spectrum {
-        Spectrum { radius: Some(residual.norm), rows: residual.rows, ..self.clone() }
+    /// The discs with other bounds, made of the own ones and of V.
+    fn with_residual(&self, of: impl FnOnce(&Residual, &Mat<f64>) -> Option<Residual>) -> Option<Spectrum> {
+        let residual = Some(of(self.residual.as_ref()?, &real_form(&self.mu, &self.vectors)?.0)?);
+        Some(Spectrum { residual, ..self.clone() })
     }
 
     /// The kind that the discs or the clusters prove, if any.
     pub fn certified(&self, blocks: &FloatBlocks) -> Option<Kind> {
-        let form = || {
-            let a = Mat::from_fn(blocks.m, blocks.m, |i, j| blocks.y[i][j]);
-            times_c(blocks, &a)
-        };
-        self.certified_with(form)
+        self.certified_with(|| times_c(blocks, &blocks.matrices[0]))
     }
 
     /// As [`Spectrum::certified`], with Y = Aᵀ C and a bound on its error (2-norm), which only clusters ask
@@ -177,10 +165,11 @@ impl Spectrum {
 
     /// The kind that the discs prove, if any.
     pub fn by_discs(&self) -> Option<Kind> {
-        let radius = 1.01 * self.radius?;
+        let Residual { norm, rows } = self.residual.as_ref()?;
+        let radius = 1.01 * norm;
         let components = components(&self.mu, radius);
         let off = |component: &Vec<usize>| component.iter().all(|&i| from_segment(self.mu[i]) > radius);
-        if components.iter().any(off) || (0..self.mu.len()).any(|i| self.is_encircled(i)) {
+        if components.iter().any(off) || (0..self.mu.len()).any(|i| self.is_encircled(i, rows)) {
             return Some(Kind::Hyperbolic);
         }
         // Real, within (−1, 0) and simple.
@@ -196,19 +185,19 @@ impl Spectrum {
             .iter()
             .filter(|component| !inside(component))
             .flatten()
-            .filter(|&&i| !self.is_alone(i));
+            .filter(|&&i| !self.is_alone(i, rows));
         untold.next().is_none().then_some(Kind::Elliptic)
     }
 
     /// Whether some circle about a real μ_i, within (−1, 0) and at most half as wide as the nearest other μ
     /// is far, is free of eigenvalues as in [`Spectrum::is_encircled`]: one eigenvalue of S is in it, real,
     /// and in no other such circle.
-    fn is_alone(&self, i: usize) -> bool {
+    fn is_alone(&self, i: usize, rows: &[f64]) -> bool {
         let z = self.mu[i];
         let others =
             self.mu.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, other)| (other - z).norm() / 2.0);
         let room = 0.99 * others.fold((-z.re).min(1.0 + z.re), f64::min);
-        z.im == 0.0 && room > 0.0 && self.is_free(i, room)
+        z.im == 0.0 && room > 0.0 && self.is_free(i, room, rows)
     }
 
     /// Whether some circle about μ_i that does not meet \[−1, 0\] is free of eigenvalues of D + tF, 0 ≤ t ≤
@@ -218,26 +207,23 @@ impl Spectrum {
     /// 1 (for both rows of a conjugate pair the nearer of the two). Rows differ where some eigenvectors are
     /// nearly dependent: those that are not keep their small discs. The radii tried go down by fifths, to a
     /// hundredth of the distance.
-    fn is_encircled(&self, i: usize) -> bool {
+    fn is_encircled(&self, i: usize, rows: &[f64]) -> bool {
         let off = 0.99 * from_segment(self.mu[i]);
-        if self.rows.get(i).is_none_or(|value| *value >= off) {
-            return false;
-        }
-        self.is_free(i, off)
+        rows[i] < off && self.is_free(i, off, rows)
     }
 
     /// Whether one of some circles about μ_i, of at most this radius, holds no eigenvalue of D + tF.
-    fn is_free(&self, i: usize, largest: f64) -> bool {
+    fn is_free(&self, i: usize, largest: f64, rows: &[f64]) -> bool {
         let distances = |z: &c64| {
             let own = (z - self.mu[i]).norm();
             [own, if z.im == 0.0 { own } else { (z.conj() - self.mu[i]).norm() }]
         };
-        let all: Vec<_> = self.mu.iter().map(distances).zip(&self.rows).collect();
+        let all: Vec<_> = self.mu.iter().map(distances).zip(rows).collect();
         let escape = |radius: f64| {
             let term = |([value, other], row): &([f64; 2], &f64)| {
                 (*row / (value - radius).abs().min((other - radius).abs())).powi(2)
             };
-            self.rows.len() == self.mu.len() && all.iter().map(term).sum::<f64>() < 0.99
+            all.iter().map(term).sum::<f64>() < 0.99
         };
         (0..20).map(|k| largest * 0.8f64.powi(k)).any(escape)
     }
@@ -245,21 +231,20 @@ impl Spectrum {
 
 /// S = Bᵀ C of the half period, and a bound on its distance from the true one.
 pub fn product(blocks: &FloatBlocks) -> (Mat<f64>, Option<f64>) {
-    times_c(blocks, &Mat::from_fn(blocks.m, blocks.m, |i, j| blocks.y[i][blocks.m + j]))
+    times_c(blocks, &blocks.matrices[1])
 }
 
 /// Zᵀ C for a block Z of the half period, and a bound on its distance from the true one.
 fn times_c(blocks: &FloatBlocks, z: &Mat<f64>) -> (Mat<f64>, Option<f64>) {
-    let m = blocks.m;
-    let c = Mat::from_fn(m, m, |i, j| blocks.p[i][j]);
+    let (m, [_, _, c, _]) = (blocks.size(), &blocks.matrices);
     // In the 2-norm that of |Z| and |C|, too.
-    let [size_z, size_c] = [z, &c].map(norm::absolute);
+    let [size_z, size_c] = [z, c].map(norm::absolute);
     let error = blocks.error.map(|e| {
         // The rounding of the product: (m + 2) u |Z|ᵀ |C|.
         let rounding = 1.01 * (m as f64 + 2.0) * U * size_z * size_c;
         e * (size_z.min(blocks.norm) + size_c.min(blocks.norm) + e) + rounding
     });
-    (z.transpose() * &c, error)
+    (z.transpose() * c, error)
 }
 
 /// The distance from the segment [−1, 0], rounded.

@@ -101,7 +101,7 @@ impl Piece {
         }
         let blocks = float::half_period(&self.system, &self.frame);
         let signed = || asked.is_none().then(|| signs::proven(&blocks)).flatten();
-        let (signed, spectrum) = both(blocks.m >= SIDE_BY_SIDE, signed, || Spectrum::new(&blocks));
+        let (signed, spectrum) = both(blocks.size() >= SIDE_BY_SIDE, signed, || Spectrum::new(&blocks));
         let certified = || Some((spectrum.as_ref()?.certified(&blocks)?, Evidence::Discs));
         let (kind, evidence, roots) = match asked {
             Some((kind, roots)) => (Some(kind), Evidence::Exact, Some(roots)),
