@@ -62,7 +62,7 @@ impl Symmetric {
     }
 
     /// Rows whose entries are those of the matrix but for a factor that is not 0.
-    fn pattern(&self) -> &[BTreeMap<usize, Rational>] {
+    pub(super) fn pattern(&self) -> &[BTreeMap<usize, Rational>] {
         self.entries.multiple.as_ref().map_or_else(|| self.rows(), |(symmetric, _)| symmetric.rows())
     }
 
@@ -424,19 +424,19 @@ pub(crate) fn null_space(mut rows: Vec<BTreeMap<usize, Rational>>, n: usize) -> 
     if 8 * rows.iter().map(BTreeMap::len).sum::<usize>() > n * n && modular::rank_of(&rows, n) == Some(n) {
         return Vec::new();
     }
-    // Gauss and Jordan; pivots[i] = the column that row i was solved for.
-    let mut solved: Vec<(usize, BTreeMap<usize, Rational>)> = Vec::new();
-    while let Some(mut row) = rows.pop() {
-        for (column, pivot_row) in &solved {
-            eliminate(&mut row, *column, pivot_row);
-        }
+    // Gauss and Jordan: each row by the column that it was solved for, where all others are 0.
+    let mut solved: BTreeMap<usize, BTreeMap<usize, Rational>> = BTreeMap::new();
+    while solved.len() < n
+        && let Some(mut row) = rows.pop()
+    {
+        let columns: Vec<usize> = row.keys().filter(|j| solved.contains_key(j)).copied().collect();
+        columns.iter().for_each(|j| eliminate(&mut row, *j, &solved[j]));
         let Some((&column, pivot)) = row.first_key_value() else { continue };
         let inverse = pivot.recip();
         row.values_mut().for_each(|x| *x *= &inverse);
-        solved.iter_mut().for_each(|(_, other)| eliminate(other, column, &row));
-        solved.push((column, row));
+        solved.values_mut().for_each(|other| eliminate(other, column, &row));
+        solved.insert(column, row);
     }
-    let is_pivot = |j: usize| solved.iter().any(|(column, _)| *column == j);
     let vector = |free: usize| {
         let mut x = vec![Rational::zero(); n];
         x[free] = Rational::from_integer(1.into());
@@ -445,7 +445,7 @@ pub(crate) fn null_space(mut rows: Vec<BTreeMap<usize, Rational>>, n: usize) -> 
         }
         (free, x)
     };
-    (0..n).filter(|&j| !is_pivot(j)).map(vector).collect()
+    (0..n).filter(|j| !solved.contains_key(j)).map(vector).collect()
 }
 
 /// `row -= row[column] pivot_row`, where pivot_row\[column\] = 1.

@@ -204,25 +204,12 @@ impl System {
     /// drifts, but only as long as they cancel, and is called what it is, parabolic. Nor is one along which
     /// an effective stiffness vanishes at this step alone, as after a full turn.
     pub fn rigid_modes(&self) -> Vec<(usize, Vec<Rational>)> {
-        // Common null vectors are null vectors of the sum: look among those.
+        // Common null vectors are null vectors of the sum.
         if inertia_of_sum(&self.stiffnesses()).unknown == 0 {
             return Vec::new();
         }
-        let candidates: Vec<_> = self.total_stiffness().null_space().into_iter().map(|(_, z)| z).collect();
-        let mut conditions = Vec::new();
-        for stiffness in self.holding() {
-            let images: Vec<_> = candidates.iter().map(|z| stiffness.times(z)).collect();
-            for i in 0..self.size() {
-                let row: BTreeMap<_, _> = images.iter().map(|z| z[i].clone()).enumerate().collect();
-                conditions.push(row.into_iter().filter(|(_, x)| !x.is_zero()).collect());
-            }
-        }
-        let combine = |(_, weights): (usize, Vec<Rational>)| {
-            let entry = |i: usize| crate::linear::sparse::dot(&weights, &column(&candidates, i));
-            (0..self.size()).map(entry).collect::<Vec<_>>()
-        };
-        let common: Vec<_> = null_space(conditions, candidates.len()).into_iter().map(combine).collect();
-        reduced(common, self.size())
+        let rows = self.holding().flat_map(Symmetric::pattern).filter(|row| !row.is_empty());
+        null_space(rows.cloned().collect(), self.size())
     }
 
     /// The dynamics in the coordinates y, x = Z y, where the columns of Z span an invariant subspace.
@@ -253,27 +240,6 @@ impl System {
             .expect("a part of a checked system");
         System { holding: self.holding.as_ref().map(|all| all.iter().map(&map).collect()), ..part }
     }
-}
-
-fn column(vectors: &[Vec<Rational>], i: usize) -> Vec<Rational> {
-    vectors.iter().map(|z| z[i].clone()).collect()
-}
-
-/// The reduced basis of the span: each vector 1 at a coordinate of its own, where the others are 0.
-fn reduced(mut vectors: Vec<Vec<Rational>>, n: usize) -> Vec<(usize, Vec<Rational>)> {
-    let mut pivots = Vec::new();
-    for k in 0..vectors.len() {
-        let index = (0..n).rev().find(|&i| !vectors[k][i].is_zero()).expect("independent vectors");
-        let inverse = vectors[k][index].recip();
-        vectors[k].iter_mut().for_each(|x| *x *= &inverse);
-        let pivot = vectors[k].clone();
-        for (_, other) in vectors.iter_mut().enumerate().filter(|(j, _)| *j != k) {
-            let factor = other[index].clone();
-            other.iter_mut().zip(&pivot).for_each(|(x, y)| *x -= &factor * y);
-        }
-        pivots.push(index);
-    }
-    pivots.into_iter().zip(vectors).collect()
 }
 
 pub(crate) fn check_mass(mass: &Symmetric) -> Result<()> {
