@@ -8,7 +8,7 @@ use nalgebra::DMatrix;
 use super::model::{Along, Rigid, beside};
 use super::scaled::{Scaled, frequency, power, scaled, scales};
 use crate::columns::combined;
-use crate::exact::decide::{MuCount, allow_blocks, judged_blocks};
+use crate::exact::decide::{MuCount, allow_blocks, judged_blocks, led};
 use crate::half::float::FloatBlocks;
 use crate::half::norm;
 use crate::half::period::{Drifts, Propagated, Stiff, Stiffness, follow};
@@ -167,25 +167,24 @@ impl Along {
         let kicks = self.hessians.iter().map(Vec::len).sum::<usize>() as f64;
         allow_blocks(self.size(), (kicks, BITS), limits)?;
         let exact = |x: f64| from_f64_exact(x).expect("finite, as it was read");
-        let half = |starts_moving: bool| {
-            let (one, zero) =
-                (DMatrix::identity(self.size(), self.size()), DMatrix::zeros(self.size(), self.size()));
-            let (mut x, mut p) = if starts_moving { (zero, one) } else { (one, zero) };
-            for (event, matrixes) in self.schedule.half_period().zip(&self.hessians) {
-                let time = self.schedule.tick() * Rational::from_integer(event.drift.into());
-                let moved = |i: usize, j: usize| &time * &p[(i, j)] / exact(self.masses[i]);
-                x += DMatrix::from_fn(self.size(), self.size(), moved);
-                for (clock, k) in event.clocks().zip(matrixes) {
-                    let two = Rational::from_integer(2.into());
-                    let mean = |i: usize, j: usize| (exact(k[(i, j)]) + exact(k[(j, i)])) / &two;
-                    p -= DMatrix::from_fn(self.size(), self.size(), mean)
-                        * &x
-                        * event.weight.of(&self.step(clock));
-                }
-            }
-            (x, p)
+        let (n, half) = (self.size(), Rational::new(1.into(), 2.into()));
+        let inverse_mass: Vec<Rational> = self.masses.iter().map(|m| exact(*m).recip()).collect();
+        let kick = |event: &Event, matrixes: &[DMatrix<f64>]| {
+            event.clocks().zip(matrixes).fold(DMatrix::zeros(n, n), |sum, (clock, k)| {
+                let factor = event.weight.of(&self.step(clock)) * &half;
+                sum + DMatrix::from_fn(n, n, |i, j| (exact(k[(i, j)]) + exact(k[(j, i)])) * &factor)
+            })
         };
-        let ((a, c), (b, d)) = (half(false), half(true));
+        let events = || {
+            let own = self.schedule.half_period().zip(&self.hessians);
+            own.map(|(event, matrixes)| {
+                let drift = self.schedule.tick() * Rational::from_integer(event.drift.into());
+                (drift, kick(&event, matrixes))
+            })
+        };
+        let (one, zero) = (DMatrix::identity(n, n), DMatrix::zeros(n, n));
+        let [a, c] = led([one.clone(), zero.clone()], &inverse_mass, events());
+        let [b, d] = led([zero, one], &inverse_mass, events());
         Ok(judged_blocks(&(b.transpose() * &c), [&a, &b, &c, &d]))
     }
 

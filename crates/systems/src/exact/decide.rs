@@ -10,6 +10,8 @@
 //!   is semisimple iff null B + null C = 2a; μ = −1 likewise with A and D. For one degree of freedom this is
 //!   the table of four signs.
 
+use std::ops::AddAssign;
+
 use nalgebra::DMatrix;
 use num_bigint::BigInt;
 use num_complex::Complex64;
@@ -200,6 +202,23 @@ pub(crate) fn allow_blocks(n: usize, (kicks, bits): (f64, f64), limits: &Limits)
         + size.powi(4) * words * 4.0
         + size.powi(3) * words.powi(2);
     limits.allow(cost.min(1e19) as u64, || format!("exact arithmetic on {}", degrees_of_freedom(n)))
+}
+
+/// Positions and momenta over ℚ, a column a solution, led through events, each the time of the drift before
+/// it and the F of all its kicks together: x ← x + t M⁻¹ p, then p ← p − F x. M is diagonal.
+pub(crate) fn led(
+    start: [DMatrix<Rational>; 2],
+    inverse_mass: &[Rational],
+    events: impl Iterator<Item = (Rational, DMatrix<Rational>)>,
+) -> [DMatrix<Rational>; 2] {
+    events.fold(start, |[mut x, mut p], (time, kick)| {
+        for (i, inverse) in inverse_mass.iter().enumerate() {
+            let moved = p.row(i) * (&time * inverse);
+            x.row_mut(i).add_assign(&moved);
+        }
+        p -= kick * &x;
+        [x, p]
+    })
 }
 
 /// The kind from S and the blocks A, B, C, D of the half period over ℚ.

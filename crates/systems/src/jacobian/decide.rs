@@ -156,8 +156,8 @@ impl Jacobians {
     /// A budget error.
     pub fn exact(&self, limits: &Limits) -> Result<(Kind, MuCount)> {
         allow_blocks(self.size(), (self.schedule.strikes() as f64, self.bits()), limits)?;
-        let blocks = orbit::exact(self);
-        Ok(judged_blocks(&blocks.product, blocks.blocks.each_ref()))
+        let (blocks, product) = orbit::exact(self);
+        Ok(judged_blocks(&product, blocks.each_ref()))
     }
 
     /// The bits of an entry of a kick.

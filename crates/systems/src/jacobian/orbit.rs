@@ -6,8 +6,10 @@
 
 use faer::{Mat, Scale};
 use nalgebra::DMatrix;
+use num_traits::One;
 
 use super::model::Jacobians;
+use crate::exact::decide::led;
 use crate::half::norm;
 use clocks::schedule::{Event, KickDrift, Kicks, Weight, reversed};
 use number::rational::to_f64;
@@ -122,44 +124,23 @@ pub(super) fn half_product(jacobians: &Jacobians) -> (Mat<f64>, [f64; 2]) {
     (b * c, errors)
 }
 
-/// Over ℚ.
-struct Exact<'a> {
-    own: &'a Jacobians,
-    x: DMatrix<Rational>,
-    v: DMatrix<Rational>,
-}
-
-impl KickDrift<Strike> for Exact<'_> {
-    fn drift(&mut self, ticks: u64) {
-        let time = &self.own.tick * Rational::from_integer(ticks.into());
-        self.x.iter_mut().zip(self.v.iter()).for_each(|(x, v)| *x += v * &time);
-    }
-
-    fn kick(&mut self, &(clock, weight): &Strike) {
-        let clock = &self.own.clocks[clock];
-        let step = weight.of(&clock.step);
-        let moved = clock.rational().as_ref() * &self.x;
-        self.v.iter_mut().zip(moved.iter()).for_each(|(v, a)| *v -= a * &step);
-    }
-}
-
-/// The blocks of the half period over ℚ, with S = B' C.
-pub(super) struct Blocks {
-    pub blocks: [DMatrix<Rational>; 4],
-    pub product: DMatrix<Rational>,
-}
-
-/// The blocks of rational matrices, or of the doubles that stand for them.
-pub(super) fn exact(own: &Jacobians) -> Blocks {
+/// The blocks A, B, C, D of the half period over ℚ and S = B' C, of rational matrices or of the doubles that
+/// stand for them.
+pub(super) fn exact(own: &Jacobians) -> ([DMatrix<Rational>; 4], DMatrix<Rational>) {
     let n = own.size();
-    let half = |is_reversed: bool, starts_moving: bool| {
-        let (one, zero) = (DMatrix::identity(n, n), DMatrix::zeros(n, n));
-        let (x, v) = if starts_moving { (zero, one) } else { (one, zero) };
-        let mut state = Exact { own, x, v };
-        lead(own, events(own, is_reversed), &mut state);
-        (state.x, state.v)
+    let kick = |event: &Event| {
+        event.clocks().map(|clock| &own.clocks[clock]).fold(DMatrix::zeros(n, n), |sum, clock| {
+            sum + clock.rational().as_ref() * event.weight.of(&clock.step)
+        })
     };
-    let ((a, c), (b, d), (back, _)) = (half(false, false), half(false, true), half(true, true));
-    let product = &back * &c;
-    Blocks { blocks: [a, b, c, d], product }
+    let (one, zero) = (DMatrix::identity(n, n), DMatrix::zeros(n, n));
+    let half = |start: [&DMatrix<Rational>; 2], is_reversed: bool| {
+        let timed = |event: Event| (&own.tick * Rational::from_integer(event.drift.into()), kick(&event));
+        let events = events(own, is_reversed).into_iter().map(timed);
+        led(start.map(Clone::clone), &vec![Rational::one(); n], events)
+    };
+    let ([a, c], [b, d]) = (half([&one, &zero], false), half([&zero, &one], false));
+    let [back, _] = half([&zero, &one], true);
+    let product = back * &c;
+    ([a, b, c, d], product)
 }
