@@ -179,7 +179,7 @@ impl IntegerBlocks {
 }
 
 /// a b.
-pub fn product(a: &DMatrix<BigInt>, b: &DMatrix<BigInt>) -> DMatrix<BigInt> {
+fn product(a: &DMatrix<BigInt>, b: &DMatrix<BigInt>) -> DMatrix<BigInt> {
     let entry = |i: usize, j: usize| (0..a.ncols()).map(|k| &a[(i, k)] * &b[(k, j)]).sum();
     DMatrix::from_fn(a.nrows(), b.ncols(), entry)
 }

@@ -8,18 +8,11 @@ use crate::signs::inertia::{self, Inertia};
 use clocks::verdict::Kind;
 use number::U;
 
-/// The inertias of P, R, W and Z, each computed when it is asked for.
-pub(crate) trait Inertias {
-    fn p(&mut self) -> Inertia;
-    fn r(&mut self) -> Inertia;
-    fn w(&mut self) -> Inertia;
-    fn z(&mut self) -> Inertia;
-}
-
-/// The kind that the signs of the forms prove, if any.
-pub(crate) fn judge(forms: &mut impl Inertias) -> Option<Kind> {
+/// The kind, where the forms of the half period in doubles prove it within their error.
+pub fn proven(blocks: &FloatBlocks) -> Option<Kind> {
+    let forms = Forms { blocks, error: blocks.error? };
     let (p, r) = (forms.p(), forms.r());
-    // The numbers of μ outside [−1, 0], on its ends, and undecided.
+    // The numbers of μ outside [−1, 0], and undecided.
     let outside = match (p.definite(), r.definite()) {
         (sign, _) if sign != 0 => r.times(sign),
         (_, sign) if sign != 0 => p.times(sign),
@@ -32,19 +25,13 @@ pub(crate) fn judge(forms: &mut impl Inertias) -> Option<Kind> {
             }
             let (p, r) = (p.times(sign), r.times(sign));
             let both = |f: fn(&Inertia) -> usize| f(&p) + f(&r);
-            Inertia {
-                positive: 0,
-                negative: both(|i| i.negative),
-                zero: both(|i| i.zero),
-                unknown: both(|i| i.unknown),
-            }
+            Inertia { negative: both(|i| i.negative), unknown: both(|i| i.unknown), ..Inertia::default() }
         }
     };
     match outside {
         Inertia { negative: 1.., .. } => Some(Kind::Hyperbolic),
-        Inertia { unknown: 1.., .. } => None,
-        Inertia { zero: 1.., .. } => Some(Kind::Parabolic),
-        _ => Some(Kind::Elliptic),
+        Inertia { unknown: 0, zero: 0, .. } => Some(Kind::Elliptic),
+        _ => None,
     }
 }
 
@@ -54,11 +41,6 @@ fn counts_differ(ends: [Inertia; 2], others: [Option<Inertia>; 2]) -> bool {
     let known = |inertia: Inertia| (inertia.unknown + inertia.zero == 0).then_some(inertia.negative);
     let others: Vec<usize> = others.into_iter().flatten().filter_map(known).collect();
     ends.into_iter().filter_map(known).any(|count| others.iter().any(|other| *other != count))
-}
-
-/// The kind, where a definite form of the half period in doubles proves it within their error.
-pub fn proven(blocks: &FloatBlocks) -> Option<Kind> {
-    judge(&mut Forms { error: blocks.error?, blocks })
 }
 
 /// The forms of a half period in doubles, within the bound on its error.
@@ -80,25 +62,23 @@ impl Forms<'_> {
         let symmetric = Mat::from_fn(m, m, |i, j| (product[(i, j)] + product[(j, i)]) / 2.0);
         inertia::proven(&symmetric, 1.01 * slack).times(sign)
     }
-}
 
-impl Inertias for Forms<'_> {
-    fn p(&mut self) -> Inertia {
+    fn p(&self) -> Inertia {
         let [a, b, ..] = &self.blocks.matrices;
         self.inertia(a * b.transpose(), (a, b), 1)
     }
 
-    fn r(&mut self) -> Inertia {
+    fn r(&self) -> Inertia {
         let [.., c, d] = &self.blocks.matrices;
         self.inertia(c * d.transpose(), (c, d), -1)
     }
 
-    fn w(&mut self) -> Inertia {
+    fn w(&self) -> Inertia {
         let [_, b, _, d] = &self.blocks.matrices;
         self.inertia(b.transpose() * d, (b, d), 1)
     }
 
-    fn z(&mut self) -> Inertia {
+    fn z(&self) -> Inertia {
         let [a, _, c, _] = &self.blocks.matrices;
         self.inertia(a.transpose() * c, (a, c), -1)
     }

@@ -16,7 +16,7 @@ pub(crate) struct Inertia {
     pub positive: usize,
     pub negative: usize,
     pub zero: usize,
-    /// Those whose sign is not known; 0 in exact arithmetic.
+    /// Those whose sign is not known.
     pub unknown: usize,
 }
 

@@ -21,7 +21,8 @@
 //! | W | both together | those of P | those of R |
 //! | Z | both together | those of R | those of P |
 //!
-//!   A zero eigenvalue of P or R beside a definite form is an edge: a Jordan block at λ = ±1, linear growth.
+//!   A zero eigenvalue of P or R beside a definite form is an edge: a Jordan block at λ = ±1, linear growth. In
+//!   doubles no eigenvalue is known to be 0, so exact arithmetic tells that.
 //! * None definite: #{μ < −1} ≥ |neg P − neg W|, |neg R − neg Z| and #{μ > 0} ≥ |neg R − neg W|, |neg P − neg
 //!   Z| for regular forms (neg: the number of negative eigenvalues). Where these agree two modes may have
 //!   collided, and other means decide.
@@ -30,16 +31,13 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `forms` | the table above, from inertias, and the forms of a half period in doubles |
-//! | `elimination` | exact inertias without fractions |
+//! | `forms` | the table above, from the forms of a half period in doubles |
 //! | `inertia` | proven inertias of dense matrices in doubles |
 //! | `action`, `envelope` | the action of large sparse systems; sparse matrices and their proven signs |
 
 pub(super) mod action;
-mod elimination;
 pub(super) mod envelope;
 mod forms;
 pub(super) mod inertia;
 
-pub(super) use elimination::inertia as exact_inertia;
-pub(super) use forms::{Inertias, judge, proven};
+pub(super) use forms::proven;

@@ -1,6 +1,6 @@
 //! Invariant parts of a component, and the verdict on each.
 
-use crate::exact::decide::{MuCount, decide_beside, decide_by_signs};
+use crate::exact::decide::{MuCount, decide_beside, grows_by_trace};
 use crate::half::compose::check_length;
 use crate::half::float;
 use crate::linear::frame::Frame;
@@ -137,8 +137,8 @@ impl Piece {
             ));
             return Ok((None, Evidence::Estimate, None));
         }
-        if let Ok(Some(kind)) = decide_by_signs(&self.system, &self.frame, limits) {
-            return Ok((Some(kind), Evidence::Exact, None));
+        if grows_by_trace(&self.system, &self.frame, limits) {
+            return Ok((Some(Kind::Hyperbolic), Evidence::Exact, None));
         }
         let error = match (self.exact(limits), spectrum) {
             (Ok((kind, roots)), _) => return Ok((Some(kind), Evidence::Exact, Some(roots))),
