@@ -15,10 +15,12 @@
 //! The sign of the form is Krein's: clusters of one sign cannot be driven off the unit circle, however close.
 //! A cluster of both signs is left to exact arithmetic.
 
-use faer::{Mat, Side, c64};
+use faer::{Mat, c64};
 
 use crate::half::norm;
+use crate::signs::inertia;
 use crate::spectrum::bauer_fike::{bauer_fike, gamma};
+use number::U;
 
 /// The matrices that decide, as computed, and how far from them the true ones can be.
 pub(crate) struct Pencil<'a> {
@@ -150,20 +152,10 @@ fn is_certain(cluster: &Cluster, gap: f64, r: f64, form: &Form) -> bool {
     invariant && is_definite(cluster, form, form.error + form.norm * (2.0 * p + p * p))
 }
 
-/// Whether every matrix within `slack` of the cluster's block is definite: Gershgorin's discs after a
-/// congruence with its computed eigenvectors Z, which a definite Zᵀ K Z shows to be regular.
+/// Whether every matrix within `slack` (2-norm) of the cluster's block is definite.
 fn is_definite(cluster: &Cluster, form: &Form, slack: f64) -> bool {
     let k = cluster.size;
     let at = |i: usize, j: usize| form.k[(cluster.first + i, cluster.first + j)];
     let block = Mat::from_fn(k, k, |i, j| (at(i, j) + at(j, i)) / 2.0);
-    let Ok(eigen) = block.self_adjoint_eigen(Side::Lower) else { return false };
-    let z = eigen.U().to_owned();
-    let g = z.transpose() * &block * &z;
-    let nz = norm::frobenius(&z);
-    let slack = nz * nz * (1.01 * slack + 2.1 * gamma(k) * norm::frobenius(&block));
-    let sign = g[(0, 0)].signum();
-    (0..k).all(|i| {
-        let off: f64 = (0..k).filter(|&j| j != i).map(|j| g[(i, j)].abs()).sum();
-        sign * g[(i, i)] > 1.01 * off + slack
-    })
+    inertia::proven(&block, 1.01 * slack + U * norm::frobenius(&block)).definite() != 0
 }
