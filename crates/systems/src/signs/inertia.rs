@@ -266,7 +266,12 @@ pub(crate) fn lack(m: &Mat<f64>, slack: f64) -> f64 {
         let row = |i: usize| (0..n).map(|j| m[(i, j)].abs()).sum::<f64>() - m[(i, i)].abs() - m[(i, i)];
         return 1.01 * ((0..n).map(row).fold(0.0, f64::max) + slack) + f64::MIN_POSITIVE;
     }
-    let Ok(values) = m.self_adjoint_eigenvalues(Side::Lower) else { return f64::INFINITY };
+    m.self_adjoint_eigenvalues(Side::Lower).map_or(f64::INFINITY, |values| lack_beside(&values, m, slack))
+}
+
+/// The same of a matrix with these eigenvalues, rounded, whatever its size.
+pub(crate) fn lack_beside(values: &[f64], m: &Mat<f64>, slack: f64) -> f64 {
+    let n = m.nrows();
     let (least, largest) =
         values.iter().fold((0.0, 0.0), |(a, b): (f64, f64), x| (a.min(*x), b.max(x.abs())));
     // Farther than the roundings of the proof; twice as far each time.

@@ -7,7 +7,7 @@ use nalgebra::DMatrix;
 
 use crate::half::norm;
 use crate::levels::rigid::Hessians;
-use crate::signs::inertia::{is_definite, orthogonality, spectral_norm};
+use crate::signs::inertia::{is_definite, lack_beside, orthogonality, spectral_norm};
 use crate::verdict::measured::Removed;
 use clocks::schedule::{Event, Schedule};
 use number::error::{Error, Result};
@@ -81,7 +81,7 @@ impl Nested {
         };
         let eigen = levels[0].stiffness.self_adjoint_eigen(faer::Side::Lower).map_err(|_| failed())?;
         let squares: Vec<f64> = (0..levels[0].stiffness.nrows()).map(|i| eigen.S()[i]).collect();
-        let lack = lack(&levels[0], &squares);
+        let lack = lack_beside(&squares, &levels[0].stiffness, 0.0);
         let basis = whole.basis().cloned();
         let modes = basis.as_ref().map_or_else(|| eigen.U().to_owned(), |basis| basis * eigen.U());
         let (is_total_definite, modes_of_all) = (OnceLock::new(), OnceLock::new());
@@ -166,23 +166,6 @@ impl Nested {
         };
         if epsilon == 0.0 { *self.is_total_definite.get_or_init(|| found(0.0)) } else { found(epsilon) }
     }
-}
-
-/// A number that makes a stiffness with these eigenvalues, rounded, definite when it is added to them: about
-/// the least.
-fn lack(level: &Level, squares: &[f64]) -> f64 {
-    let least = squares.first().map_or(0.0, |value| value.min(0.0));
-    let mut more = 8.0 * (squares.len() as f64 + 8.0) * U * level.frobenius + f64::MIN_POSITIVE;
-    let lifted = |by: f64| {
-        let mut sum = level.stiffness.clone();
-        (0..squares.len()).for_each(|i| sum[(i, i)] += by);
-        sum
-    };
-    // The sum on the diagonal is rounded.
-    while more.is_finite() && !is_definite(lifted(more - least), U * (more - least + level.frobenius)) {
-        more *= 2.0;
-    }
-    more - least
 }
 
 /// Levels with their steps; outer steps are scaled, all others with them.
