@@ -212,16 +212,8 @@ impl SparseSteps {
         let ((size, count), image) = (self.pattern.size_of(values), self.pattern.times(values, &self.rigid));
         let rounding = 2.0 * (count as f64 + 2.0) * U * size;
         let off = off + 3.1 * (norm::frobenius(&image) + rounding);
-        let mut tau = 1.1 * off;
-        for _ in 0..TRIES {
-            let Some((count, value)) = self.pattern.negative(tau, &terms) else { return Holds::Undecided };
-            if tau > 1.01 * (value + off) {
-                if count <= self.rigid.ncols() {
-                    return Holds::Stable;
-                }
-                break;
-            }
-            tau = 1.1 * (value + off);
+        if self.pattern.at_most_negative(0.0, &terms, off).is_some_and(|count| count <= self.rigid.ncols()) {
+            return Holds::Stable;
         }
         self.unstable_along(values, 1.0, off, 0.0)
     }
@@ -361,9 +353,6 @@ struct Beyond {
     hi: f64,
     along: Mat<f64>,
 }
-
-/// Shifts that are tried: each a tenth above what the last factorization may be off by.
-const TRIES: u32 = 3;
 
 /// The least room above what is sought, relative to ‖f‖: below that factorizations prove nothing.
 const LEAST: f64 = 1e-11;
