@@ -29,7 +29,7 @@ use crate::verdict::limits::{Limits, degrees_of_freedom};
 use clocks::verdict::Kind;
 use number::Rational;
 use number::error::Result;
-use number::polynomial::squarefree;
+use number::polynomial::{quotient, squarefree};
 
 /// The result of exact arithmetic for a system without rigid modes.
 #[derive(Clone, Debug)]
@@ -107,7 +107,7 @@ pub fn multipliers(system: &System, frame: &Frame, limits: &Limits) -> Option<Ve
     while rest.len() > 1 {
         let simple = squarefree(&rest);
         found.extend(refined::multipliers(&simple, &blocks.scale, TIMES_TO_REFINE.saturating_mul(most))?);
-        rest = refined::quotient(rest, &simple);
+        rest = quotient(&rest, &simple).expect("a divisor");
     }
     Some(found)
 }
@@ -211,7 +211,7 @@ fn judged(product: &DMatrix<BigInt>, scale: &BigInt, [a, b, c, d]: [&DMatrix<Big
         above += root_count.above;
         below += root_count.below;
         complex += root_count.complex;
-        left = refined::quotient(left, &round);
+        left = quotient(&left, &round).expect("a divisor");
         round = squarefree(&left);
     }
     let mu = MuCount { inside, at_zero, at_minus_one, above, below, complex };

@@ -69,18 +69,6 @@ pub fn multipliers(f: &[BigInt], d: &BigInt, most: u64) -> Option<Vec<Multiplier
     }
 }
 
-/// A polynomial divided by one that is monic and divides it.
-pub fn quotient(mut f: Vec<BigInt>, g: &[BigInt]) -> Vec<BigInt> {
-    let places = f.len() - g.len() + 1;
-    let mut quotient = vec![BigInt::zero(); places];
-    for k in (0..places).rev() {
-        let c = f[k + g.len() - 1].clone();
-        g.iter().enumerate().for_each(|(i, integer)| f[k + i] -= &c * integer);
-        quotient[k] = c;
-    }
-    quotient
-}
-
 impl<'a> Roots<'a> {
     /// On a circle that no root is outside of (Fujiwara's), with no symmetry.
     fn start(f: &'a [BigInt], d: &'a BigInt) -> Roots<'a> {
