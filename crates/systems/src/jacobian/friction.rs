@@ -1,17 +1,16 @@
 //! Friction on forces that are no gradient: which masks growth, by the spectral radius of whole periods.
 //!
 //! O, v → exp(−γ d) v, stands in the middle of every drift d, as BAOAB has it. Eigenvalues of the period in
-//! doubles lie in discs that its error widens (file `discs` of the spectrum), so all discs within the unit
-//! circle prove that every mean and covariance stays bounded, and a component of discs outside it that
-//! something grows in spite of the friction.
+//! doubles lie in discs that its error widens, so all discs within the unit circle, or a form that every
+//! matrix within the error shrinks, prove that every mean and covariance stays bounded, and a component of
+//! discs outside it that something grows in spite of the friction (file `radius` of the room `friction`).
 
 use faer::Mat;
 use nalgebra::DMatrix;
 
 use super::model::Jacobians;
 use super::orbit::{Doubles, Strike, lead};
-use crate::friction::Damping;
-use crate::spectrum::discs::{Spectrum, components};
+use crate::friction::{Damping, Radius, damping};
 use clocks::schedule::KickDrift;
 use number::rational::{from_f64_exact, to_f64};
 use number::{Ball, Rational};
@@ -34,14 +33,7 @@ impl Jacobians {
     /// decide.
     pub fn damping(&self, friction: &Rational) -> Option<Damping> {
         let (period, error) = self.damped_period(friction);
-        let found = Spectrum::of(period, error.is_finite().then_some(error))?;
-        let radius = 1.01 * found.radius()?;
-        if found.mu.iter().all(|z| z.norm() * (1.0 + 1e-15) + radius < 1.0) {
-            return Some(Damping::Damped);
-        }
-        let is_outside =
-            |indexes: &Vec<usize>| indexes.iter().all(|&i| found.mu[i].norm() * (1.0 - 1e-15) - radius > 1.0);
-        components(&found.mu, radius).iter().any(is_outside).then_some(Damping::Growing)
+        damping(&period, error, Radius::of(&period, error))
     }
 
     /// A friction per unit time that is proven to mask what grows, about the least; `None` where nothing
