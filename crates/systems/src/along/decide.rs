@@ -120,11 +120,7 @@ impl Along {
             explained(spectrum.multipliers(), shape, kind, &period, |_, _, _| None)
         });
         let (multipliers, mut instabilities) = explained.unwrap_or_default();
-        for instability in &mut instabilities {
-            (instability.shape, instability.quadrature) =
-                (half.lifted(&instability.shape), half.lifted(&instability.quadrature));
-            instability.normalize();
-        }
+        instabilities.iter_mut().for_each(|instability| instability.lift(|y| half.lifted(y)));
         let mut part = Part::new(given.size(), period, (kind, evidence), (multipliers, instabilities));
         (part.dofs, part.roots) = ((0..n).collect(), asked.map(|(_, roots)| roots));
         let warnings = if kind.is_some() { Vec::new() } else { vec![NOT_DECIDED.into()] };

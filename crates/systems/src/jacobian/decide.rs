@@ -76,11 +76,7 @@ impl Jacobians {
         let mut part = Part { roots, ..Part::new(self.size(), period, decided, multipliers) };
         let n = self.lift.nrows();
         part.dofs = (0..n).collect();
-        for instability in &mut part.instabilities {
-            (instability.shape, instability.quadrature) =
-                (self.lifted(&instability.shape), self.lifted(&instability.quadrature));
-            instability.normalize();
-        }
+        part.instabilities.iter_mut().for_each(|instability| instability.lift(|y| self.lifted(y)));
         let clocks = self.clocks.len();
         Ok(Analysis { rigid_modes: self.rigid.clone(), ..Analysis::of_part(part, clocks, warnings) })
     }

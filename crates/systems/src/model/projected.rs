@@ -215,11 +215,7 @@ fn lift(analysis: &mut Analysis, basis: &Mat<f64>) {
     let up = |y: &[f64]| combined(basis, y);
     for part in &mut analysis.parts {
         part.dofs = (0..n).collect();
-        for instability in &mut part.instabilities {
-            (instability.shape, instability.quadrature) =
-                (up(&instability.shape), up(&instability.quadrature));
-            instability.normalize();
-        }
+        part.instabilities.iter_mut().for_each(|instability| instability.lift(up));
     }
     for rigid in &mut analysis.rigid_modes {
         let values = up(&rigid.iter().map(to_f64).collect::<Vec<_>>());

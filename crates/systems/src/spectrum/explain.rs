@@ -107,12 +107,11 @@ impl Piece {
 
     /// Brings a shape from the piece's coordinates to those of the whole system of `n`, its longest entry 1.
     pub(crate) fn place_shape(&self, instability: &mut Instability, n: usize, dofs: &[usize]) {
-        let (re, im) = (self.lifted(&instability.shape), self.lifted(&instability.quadrature));
-        (instability.shape, instability.quadrature) = (vec![0.0; n], vec![0.0; n]);
-        for (local, &i) in dofs.iter().enumerate() {
-            (instability.shape[i], instability.quadrature[i]) = (re[local], im[local]);
-        }
-        instability.normalize();
+        instability.lift(|y| {
+            let mut whole = vec![0.0; n];
+            dofs.iter().zip(self.lifted(y)).for_each(|(&i, value)| whole[i] = value);
+            whole
+        });
     }
 
     /// A position in the piece's coordinates as one of its component.

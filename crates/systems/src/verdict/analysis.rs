@@ -61,6 +61,12 @@ pub struct Instability {
 }
 
 impl Instability {
+    /// Brings the shape to other coordinates, its longest entry 1.
+    pub(crate) fn lift(&mut self, up: impl Fn(&[f64]) -> Vec<f64>) {
+        (self.shape, self.quadrature) = (up(&self.shape), up(&self.quadrature));
+        self.normalize();
+    }
+
     /// Turns and scales the shape so that its longest entry is 1.
     pub(crate) fn normalize(&mut self) {
         let entries = || self.shape.iter().zip(&self.quadrature).map(|(&re, &im)| Complex64::new(re, im));
