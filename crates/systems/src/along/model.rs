@@ -5,10 +5,9 @@ use nalgebra::DMatrix;
 use num_traits::Zero;
 
 use crate::levels::{rigid_motions, translations};
-use crate::linear::sparse::Symmetric;
-use crate::linear::system::{Potential, System};
+use crate::linear::system::System;
 use crate::verdict::measured::check_accuracy;
-use clocks::schedule::Schedule;
+use clocks::schedule::{Clock, Schedule};
 use number::Rational;
 use number::error::{Error, Result};
 
@@ -90,12 +89,8 @@ impl Along {
         hessians: Vec<Vec<DMatrix<f64>>>,
     ) -> Result<Along> {
         check(masses, &schedule, &hessians)?;
-        let ticks = |ticks: u64| schedule.tick() * Rational::from_integer(ticks.into());
-        let clock = |clock: &clocks::schedule::Clock| {
-            Potential::new(Symmetric::zero(masses.len()), ticks(clock.step()))
-        };
-        let ones = Symmetric::diagonal(&vec![Rational::from_integer(1.into()); masses.len()]);
-        let clocks = System::new(ones, schedule.clocks().iter().map(clock).collect())?;
+        let step = |clock: &Clock| schedule.tick() * Rational::from_integer(clock.step().into());
+        let clocks = System::of_clocks(masses.len(), schedule.clocks().iter().map(step))?;
         let (accuracy, rigid) = (None, Rigid::Nothing);
         Ok(Along { masses: masses.to_vec(), schedule, hessians, accuracy, rigid, clocks })
     }

@@ -189,7 +189,7 @@ impl Jacobians {
         let exact = |x: f64| from_f64_exact(x).unwrap_or_default();
         let rigid = (0..removed).map(|k| (0..n).map(|i| exact(motions[(i, k)])).collect()).collect();
         let asymmetries = given.iter().map(|(_, j)| asymmetry(j)).collect();
-        let symmetric = stand_in(n, given.iter().map(|(step, _)| step))?;
+        let symmetric = System::of_clocks(n, given.iter().map(|(step, _)| step.clone()))?;
         let known = (Some(accuracy), body.clone());
         Jacobians::new(clocks.collect(), (rigid, lift), asymmetries, known, symmetric)?.at_accuracy(accuracy)
     }
@@ -268,7 +268,7 @@ impl Jacobians {
             (Clock { step: step.clone(), ..clock.clone() }, Rational::zero())
         };
         let clocks = self.clocks.iter().zip(steps).map(with).collect();
-        let symmetric = stand_in(self.symmetric.size(), steps.iter())?;
+        let symmetric = System::of_clocks(self.symmetric.size(), steps.iter().cloned())?;
         let Jacobians { rigid, lift, asymmetries, accuracy, body, .. } = self.clone();
         Jacobians::new(clocks, (rigid, lift), asymmetries, (accuracy, body), symmetric)
     }
@@ -315,12 +315,6 @@ impl Jacobians {
     pub fn period(&self) -> Rational {
         &self.tick * Rational::from_integer(self.schedule.period().into())
     }
-}
-
-/// A system of this size with these clocks and no stiffness.
-fn stand_in<'a>(n: usize, steps: impl Iterator<Item = &'a Rational>) -> Result<System> {
-    let potentials = steps.map(|step| Potential::new(Symmetric::zero(n), step.clone())).collect();
-    System::new(Symmetric::diagonal(&vec![Rational::one(); n]), potentials)
 }
 
 fn square<T>(k: usize, j: &DMatrix<T>, n: usize) -> Result<()> {

@@ -85,6 +85,16 @@ impl System {
         Ok(System { mass, potentials, clocks, schedule, tick, holding: None })
     }
 
+    /// Unit masses under clocks of these steps without stiffness, where only its size and its clocks are
+    /// asked for.
+    ///
+    /// # Errors
+    /// As [`System::new`].
+    pub(crate) fn of_clocks(n: usize, steps: impl IntoIterator<Item = Rational>) -> Result<System> {
+        let clock = |step| Potential::new(Symmetric::zero(n), step);
+        System::new(Symmetric::diagonal(&vec![Rational::one(); n]), steps.into_iter().map(clock).collect())
+    }
+
     /// This system, whose potentials are effective ones, with the stiffnesses that they come from: rigid is
     /// what none of these holds.
     #[must_use]

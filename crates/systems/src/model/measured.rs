@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::sync::{Arc, OnceLock};
 
 use nalgebra::DMatrix;
-use num_traits::{One, Zero};
+use num_traits::Zero;
 
 use crate::levels::{Hessians, Kernel, Method, Nested, Outer, Source};
 use crate::linear::sparse::Symmetric;
@@ -84,8 +84,7 @@ impl MeasuredSystem {
         shares.retain(|(_, matrixes)| matrixes.len() > 1);
         potentials.sort_by(|a, b| a.0.cmp(&b.0));
         // The steps, checked as those of any system are.
-        let clock = |(step, _): &(Rational, _)| Potential::new(Symmetric::zero(1), step.clone());
-        System::new(Symmetric::diagonal(&[Rational::one()]), potentials.iter().map(clock).collect())?;
+        System::of_clocks(1, potentials.iter().map(|(step, _)| step.clone()))?;
         let (system, kernel) = (OnceLock::new(), Arc::default());
         let (keeps_rigid, method) = (false, Method::default());
         let read = MeasuredSystem { potentials, shares, body, accuracy, keeps_rigid, method, system, kernel };

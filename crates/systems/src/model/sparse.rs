@@ -4,12 +4,10 @@
 use std::sync::Arc;
 
 use num_complex::Complex64;
-use num_traits::One;
 
 use crate::levels::sparse::SparseLevels;
 use crate::levels::{Method, Outer};
-use crate::linear::sparse::Symmetric;
-use crate::linear::system::{Potential, System};
+use crate::linear::system::System;
 use crate::lts::{Growth, SparseSteps};
 use crate::spectrum::modes::Origin;
 use crate::spectrum::rate::{Multiplier, per_time};
@@ -91,9 +89,7 @@ impl SparseSystem {
         accuracy: f64,
         removed: Option<Removed>,
     ) -> Result<SparseSystem> {
-        let n = levels.size();
-        let steps = [inner, outer].map(|step| Potential::new(Symmetric::zero(n), step.clone()));
-        let clocks = System::new(Symmetric::diagonal(&vec![Rational::one(); n]), steps.into())?;
+        let clocks = System::of_clocks(levels.size(), [inner, outer].map(Clone::clone))?;
         let at = Outer::of_steps(inner, outer).ok_or_else(|| {
             Error::input(
                 "step",
@@ -117,9 +113,7 @@ impl SparseSystem {
     }
 
     pub(super) fn of_one(n: usize, kind: SparseKind, step: &Rational) -> Result<SparseSystem> {
-        let clock = Potential::new(Symmetric::zero(n), step.clone());
-        let clocks = System::new(Symmetric::diagonal(&vec![Rational::one(); n]), vec![clock])?;
-        Ok(SparseSystem { kind, step: step.clone(), clocks })
+        Ok(SparseSystem { kind, step: step.clone(), clocks: System::of_clocks(n, [step.clone()])? })
     }
 
     /// Both levels with the outer step, where it has them.
