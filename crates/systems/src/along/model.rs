@@ -6,7 +6,7 @@ use num_traits::Zero;
 
 use crate::levels::{rigid_motions, translations};
 use crate::linear::system::System;
-use crate::verdict::measured::check_accuracy;
+use crate::verdict::measured::{check_accuracy, check_masses};
 use clocks::schedule::{Clock, Schedule};
 use number::Rational;
 use number::error::{Error, Result};
@@ -202,9 +202,7 @@ pub(super) fn beside(motions: &Mat<f64>) -> Mat<f64> {
 
 fn check(masses: &[f64], schedule: &Schedule, hessians: &[Vec<DMatrix<f64>>]) -> Result<()> {
     let n = masses.len();
-    if let Some(i) = masses.iter().position(|m| !(m.is_finite() && *m > 0.0)) {
-        return Err(Error::input(&format!("masses[{i}]"), masses[i], "a mass must be positive"));
-    }
+    check_masses(masses)?;
     if n == 0 {
         return Err(Error::input("masses", "none", "give at least one mass"));
     }

@@ -5,7 +5,7 @@ use nalgebra::DMatrix;
 
 use crate::half::norm;
 use crate::signs::inertia::{orthogonality, spectral_norm};
-use crate::verdict::measured::Removed;
+use crate::verdict::measured::{Removed, check_masses};
 use number::U;
 use number::error::{Error, Result};
 
@@ -62,9 +62,7 @@ impl Hessians {
         slow: &DMatrix<f64>,
         accuracy: f64,
     ) -> Result<Hessians> {
-        if let Some((i, mass)) = masses.iter().enumerate().find(|(_, m)| !(m.is_finite() && **m > 0.0)) {
-            return Err(Error::input(&format!("masses[{i}]"), mass, "a mass must be positive"));
-        }
+        check_masses(masses)?;
         if masses.len() != fast.nrows() {
             let remedy = format!("there are {} rows: give as many masses", fast.nrows());
             return Err(Error::input("masses", masses.len(), remedy));

@@ -11,8 +11,8 @@ use crate::levels::sparse::{Pattern, Triplets, symmetric};
 use crate::linear::sparse::Symmetric;
 use crate::linear::system::{Potential, System};
 use crate::verdict::large::start;
-use crate::verdict::measured::Holds;
-use number::error::{Error, Result};
+use crate::verdict::measured::{Holds, check_masses};
+use number::error::Result;
 use number::rational::from_f64_exact;
 use number::{Rational, U, bisected};
 
@@ -94,9 +94,7 @@ impl SparseSteps {
     /// that differ; levels as [`LocalSteps::new`].
     pub fn new(masses: &[f64], stiffness: &Triplets, levels: Vec<Level>) -> Result<SparseSteps> {
         let n = masses.len();
-        if let Some((i, mass)) = masses.iter().enumerate().find(|(_, m)| !(m.is_finite() && **m > 0.0)) {
-            return Err(Error::input(&format!("masses[{i}]"), mass, "a mass must be positive"));
-        }
+        check_masses(masses)?;
         Level::check(&levels, n)?;
         let given = symmetric("stiffness", n, stiffness, false)?;
         let roots: Vec<f64> = masses.iter().map(|m| m.sqrt()).collect();

@@ -42,6 +42,17 @@ pub(crate) fn check_accuracy(accuracy: f64) -> Result<()> {
     Err(Error::input("accuracy", accuracy, "give a positive number below 1/10, as 1e-6"))
 }
 
+/// That all masses of doubles are positive.
+///
+/// # Errors
+/// Names the first that is not, or not finite.
+pub(crate) fn check_masses(masses: &[f64]) -> Result<()> {
+    match masses.iter().position(|m| !(m.is_finite() && *m > 0.0)) {
+        None => Ok(()),
+        Some(i) => Err(Error::input(&format!("masses[{i}]"), masses[i], "a mass must be positive")),
+    }
+}
+
 named! {
     /// Whether a verdict holds for every matrix within the accuracy of the data.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]

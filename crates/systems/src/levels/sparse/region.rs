@@ -15,7 +15,7 @@ use crate::levels::chord::{chord, ends};
 use crate::levels::half::Half;
 use crate::levels::kernel::{Outer, STEP_ERROR};
 use crate::verdict::large::start;
-use crate::verdict::measured::Holds;
+use crate::verdict::measured::{Holds, check_masses};
 use number::U;
 use number::error::{Error, Result};
 
@@ -113,9 +113,7 @@ impl SparseLevels {
     /// pairs of entries that differ.
     pub fn new(masses: &[f64], [fast, slow]: [&Triplets; 2], rigid: Mat<f64>) -> Result<SparseLevels> {
         let n = masses.len();
-        if let Some((i, mass)) = masses.iter().enumerate().find(|(_, m)| !(m.is_finite() && **m > 0.0)) {
-            return Err(Error::input(&format!("masses[{i}]"), mass, "a mass must be positive"));
-        }
+        check_masses(masses)?;
         let weighted = |triples: &Triplets| -> Result<Vec<_>> {
             let weight = |i: usize, j: usize| masses[i].sqrt() * masses[j].sqrt();
             Ok(symmetric("stiffness", n, triples, false)?
