@@ -40,12 +40,6 @@ impl ElementSteps {
 
     /// The scheme as answers state it: its levels, and plain leapfrog's limit beside them.
     pub fn summary(&self) -> SchemeSummary {
-        SchemeSummary {
-            scheme: Scheme::Avi,
-            size: self.size,
-            levels: self.levels.iter().map(|level| (level.fine.len(), level.substeps)).collect(),
-            plain_limit: plain_limit(&self.clocks),
-            first_unstable: None,
-        }
+        SchemeSummary::new(Scheme::Avi, self.size, &self.levels, plain_limit(&self.clocks))
     }
 }

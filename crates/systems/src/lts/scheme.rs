@@ -46,6 +46,19 @@ pub struct SchemeSummary {
     pub first_unstable: Option<(f64, f64)>,
 }
 
+impl SchemeSummary {
+    /// Of these levels, nothing being known of the first unstable step.
+    pub(super) fn new(
+        scheme: Scheme,
+        size: usize,
+        levels: &[Level],
+        plain_limit: Option<(f64, f64)>,
+    ) -> SchemeSummary {
+        let levels = levels.iter().map(|level| (level.fine.len(), level.substeps)).collect();
+        SchemeSummary { scheme, size, levels, plain_limit, first_unstable: None }
+    }
+}
+
 impl std::str::FromStr for Scheme {
     type Err = Error;
 

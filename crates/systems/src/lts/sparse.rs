@@ -323,13 +323,8 @@ impl SparseSteps {
 
     /// The summary of the scheme in answers.
     pub fn summary(&self) -> SchemeSummary {
-        SchemeSummary {
-            scheme: Scheme::Lts,
-            size: self.size(),
-            levels: self.levels.iter().map(|level| (level.fine.len(), level.substeps)).collect(),
-            plain_limit: self.plain_limit(),
-            first_unstable: self.first_unstable(),
-        }
+        let known = SchemeSummary::new(Scheme::Lts, self.size(), &self.levels, self.plain_limit());
+        SchemeSummary { first_unstable: self.first_unstable(), ..known }
     }
 }
 
@@ -377,12 +372,6 @@ fn rigid(stiffness: &Triplets, roots: &[f64]) -> (Mat<f64>, f64) {
 impl LocalSteps {
     /// The summary of the scheme in answers.
     pub fn summary(&self) -> SchemeSummary {
-        SchemeSummary {
-            scheme: Scheme::Lts,
-            size: self.system().size(),
-            levels: self.levels().iter().map(|level| (level.fine.len(), level.substeps)).collect(),
-            plain_limit: self.plain_limit(),
-            first_unstable: None,
-        }
+        SchemeSummary::new(Scheme::Lts, self.system().size(), self.levels(), self.plain_limit())
     }
 }
