@@ -217,12 +217,8 @@ fn turn(s: Interval) -> [Interval; 2] {
     let ball = |x: f64| Ball::from_rational(&from_f64_exact(x).expect("finite"), BITS);
     let square = ball(s.lo).union(&ball(s.hi), BITS).scale2(-2);
     let Some(y) = square.sqrt(BITS) else { return [nothing; 2] };
-    let interval = |x: Ball| {
-        let (lo, hi) = x.to_f64_enclosure();
-        Interval { lo, hi }
-    };
     let sinc = y.sin(BITS).div(&y, BITS);
-    [interval(y.cos(BITS)), sinc.map_or(nothing, interval)]
+    [Interval::of(&y.cos(BITS)), sinc.map_or(nothing, |sinc| Interval::of(&sinc))]
 }
 
 /// Σ (−s/4)^n/(2n + first)!, the rest of which is less than its last term: terms fall by more than two from
