@@ -8,7 +8,7 @@ use super::force::Force;
 use clocks::schedule::{Clock, Clocks, Queue};
 use number::error::{Error, Result};
 use number::named;
-use number::{Laurent, Rational, Ring};
+use number::{Rational, Ring};
 
 /// A ring in which a number of ticks is quickly made.
 pub trait Ticks: Ring {
@@ -25,12 +25,6 @@ impl Ticks for f64 {
 impl Ticks for Rational {
     fn ticks(n: u64) -> Rational {
         Rational::from_integer(n.into())
-    }
-}
-
-impl Ticks for Laurent {
-    fn ticks(n: u64) -> Laurent {
-        Laurent::from_rational(Rational::from_integer(n.into()))
     }
 }
 
