@@ -148,8 +148,14 @@ fn symmetries(operators: &[DMatrix<Rational>]) -> Vec<DMatrix<Rational>> {
     null_space(equations, count).iter().map(|(_, y)| matrix(y)).collect()
 }
 
-fn whole(n: usize) -> Subspace {
-    (0..n).map(|i| (0..n).map(|j| Rational::from_integer(i64::from(i == j).into())).collect()).collect()
+/// All of it.
+pub(crate) fn whole(n: usize) -> Subspace {
+    (0..n).map(|i| unit(n, i)).collect()
+}
+
+/// The i-th unit vector.
+pub(crate) fn unit(n: usize, i: usize) -> Vec<Rational> {
+    (0..n).map(|j| Rational::from_integer(i64::from(i == j).into())).collect()
 }
 
 fn dense_inverse(system: &System) -> DMatrix<Rational> {

@@ -15,12 +15,13 @@
 use crate::half::compose::{self, connected_parts};
 use crate::half::norm;
 use crate::linear::frame::Frame;
+use crate::linear::split::unit;
 use crate::linear::system::System;
 use crate::signs::inertia;
 use crate::verdict::analysis::Analysis;
 use crate::verdict::large;
 use crate::verdict::limits::{Limits, Route};
-use crate::verdict::piece::{Piece, pieces, unit};
+use crate::verdict::piece::{Piece, pieces};
 use clocks::verdict::Kind;
 use number::error::Result;
 use number::{Laurent, Rational, U};

@@ -5,7 +5,7 @@ use crate::half::compose::check_length;
 use crate::half::float;
 use crate::linear::frame::Frame;
 use crate::linear::sparse::dot;
-use crate::linear::split::{Subspace, invariant_subspaces, may_split};
+use crate::linear::split::{Subspace, invariant_subspaces, may_split, whole};
 use crate::linear::system::System;
 use crate::signs;
 use crate::single::decide as single;
@@ -20,11 +20,6 @@ use number::{Laurent, Rational};
 
 /// Components of at most this size are brought to rational normal forms before anything else.
 const SMALL: usize = 16;
-
-/// The unit vector e_i.
-pub fn unit(n: usize, i: usize) -> Vec<Rational> {
-    (0..n).map(|j| Rational::from_integer(i64::from(i == j).into())).collect()
-}
 
 /// A part of a component on its way to a verdict.
 pub struct Piece {
@@ -50,8 +45,8 @@ pub fn pieces(component: System, frame: Frame, is_exact: bool) -> Vec<Piece> {
         return Vec::new();
     }
     let vibrating = component.restricted(&complement);
-    let whole = || vec![(0..vibrating.size()).map(|i| unit(vibrating.size(), i)).collect()];
-    let subspaces = invariant_subspaces(&vibrating, &vibrating.stiffnesses()).unwrap_or_else(whole);
+    let subspaces = invariant_subspaces(&vibrating, &vibrating.stiffnesses())
+        .unwrap_or_else(|| vec![whole(vibrating.size())]);
     let piece = |space: Subspace| {
         let system = vibrating.restricted(&space);
         let frame = Frame::whole(system.size());
