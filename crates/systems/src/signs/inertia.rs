@@ -292,16 +292,13 @@ pub(crate) fn lack_beside(values: &[f64], m: &Mat<f64>, slack: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::numbers::Numbers;
 
     #[test]
     fn counts_of_negative_eigenvalues_enclose_those_of_all_matrices_near() {
-        let mut state = 7_u64;
-        let mut number = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-        };
+        let mut numbers = Numbers(7);
         for n in [1, 2, 5, 20] {
-            let g = Mat::from_fn(n, n, |_, _| number());
+            let g = Mat::from_fn(n, n, |_, _| numbers.signed());
             // Entries of many sizes.
             let m = Mat::from_fn(n, n, |i, j| (g[(i, j)] + g[(j, i)]) * 0.5f64.powi((i + j) as i32));
             let values = m.self_adjoint_eigenvalues(Side::Lower).unwrap();

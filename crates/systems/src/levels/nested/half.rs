@@ -309,15 +309,11 @@ mod tests {
     use super::*;
     use crate::levels::search::Search;
     use crate::levels::{Hessians, Nested};
+    use crate::numbers::Numbers;
     use number::rational::ratio;
 
-    /// Numbers that repeat, in [−1, 1).
-    fn symmetric(state: &mut u64, n: usize) -> DMatrix<f64> {
-        let mut next = || {
-            *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (*state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-        };
-        let g = DMatrix::from_fn(n, n, |_, _| next());
+    fn symmetric(numbers: &mut Numbers, n: usize) -> DMatrix<f64> {
+        let g = DMatrix::from_fn(n, n, |_, _| numbers.signed());
         (&g + g.transpose()) / 2.0
     }
 
@@ -329,12 +325,12 @@ mod tests {
     /// the discs say, and none is so by far. Errors of rank 1 that pull at one mode come nearest to it.
     #[test]
     fn no_error_of_the_data_within_the_accuracy_leaves_the_discs() {
-        let (n, epsilon, mut state) = (6, 1e-6, 7);
+        let (n, epsilon, mut numbers) = (6, 1e-6, Numbers(7));
         let steps = [ratio(1, 4), ratio(1, 2), ratio(1, 1)];
         let mut nearest = 0.0_f64;
         for _ in 0..4 {
             let squares = [1.0, 0.1, 0.04].map(|value| {
-                let g = symmetric(&mut state, n);
+                let g = symmetric(&mut numbers, n);
                 let k = &g * &g;
                 &k * (value / size(&k))
             });
@@ -350,7 +346,7 @@ mod tests {
                     let mut modes = nested.modes_of_all().clone();
                     for (k, square) in squares.iter().enumerate() {
                         let e = match trial % 2 {
-                            0 => symmetric(&mut state, n),
+                            0 => symmetric(&mut numbers, n),
                             _ => DMatrix::from_fn(n, n, |i, j| {
                                 f64::from(u8::from(i == j && i == trial / 2 % n))
                             }),
