@@ -11,6 +11,7 @@ use number::{ExactSign, Laurent, Rational, Sign, rational};
 
 /// The stiffnesses, window and system that a page starts on; every question may name others.
 #[derive(Debug)]
+#[must_use]
 pub struct Session {
     stiffnesses: Option<(Laurent, Laurent)>,
     window: [StepRange; 2],
@@ -92,7 +93,6 @@ impl Session {
 
     /// Takes another window. One without width, or beyond doubles, cannot be shown: the session keeps its
     /// own.
-    #[must_use]
     pub fn within(self, window: [StepRange; 2]) -> Session {
         match spacing(&window) {
             Some(step) => Session { step, window, ..self },
@@ -101,7 +101,6 @@ impl Session {
     }
 
     /// Takes a unit of time.
-    #[must_use]
     pub fn in_unit(self, unit: &str) -> Session {
         Session { unit: Some(unit.into()), ..self }
     }

@@ -13,6 +13,7 @@ pub enum Scale {
 ///
 /// Labels use the notation `*h*_1` for an italic h with index 1.
 #[derive(Clone, Debug, PartialEq)]
+#[must_use]
 pub struct Axis {
     pub(crate) label: String,
     pub(crate) lo: f64,
@@ -56,13 +57,11 @@ impl Axis {
     }
 
     /// Puts it in units of time, which its label names.
-    #[must_use]
     pub fn of_time(self) -> Self {
         Axis { time: 1, ..self }
     }
 
     /// Puts it in inverse units of time, which its label names.
-    #[must_use]
     pub fn per_time(self) -> Self {
         Axis { time: -1, ..self }
     }
@@ -82,7 +81,6 @@ impl Axis {
     }
 
     /// Replaces its ticks: by names, or by points that matter.
-    #[must_use]
     pub fn ticks(mut self, ticks: Vec<Tick>) -> Self {
         self.chosen = Some(ticks);
         self

@@ -12,29 +12,26 @@ use super::label::{literal, typeset};
 /// assert_eq!(foot.to_string(), "*ρ* = 1/25; *h*_1 from 0 to 2/π; 16\\_waters");
 /// ```
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[must_use]
 pub struct Foot(Vec<String>);
 
 impl Foot {
     /// name = value
-    #[must_use]
     pub fn value(self, name: &str, value: impl Display) -> Self {
         self.part(format!("{name} = {}", typeset(value)))
     }
 
     /// name from lo to hi
-    #[must_use]
     pub fn range(self, name: &str, lo: impl Display, hi: impl Display) -> Self {
         self.part(format!("{name} from {} to {}", typeset(lo), typeset(hi)))
     }
 
     /// name from lo to hi by step
-    #[must_use]
     pub fn grid(self, name: &str, [lo, hi, step]: [&dyn Display; 3]) -> Self {
         self.part(format!("{name} from {} to {} by {}", typeset(lo), typeset(hi), typeset(step)))
     }
 
     /// In the notation of labels.
-    #[must_use]
     pub fn part(mut self, part: String) -> Self {
         if !part.is_empty() {
             self.0.push(part);
@@ -43,7 +40,6 @@ impl Foot {
     }
 
     /// Words that others wrote: their stars and bars are letters.
-    #[must_use]
     pub fn words(self, words: &str) -> Self {
         self.part(literal(words))
     }

@@ -17,6 +17,7 @@ pub enum Dash {
 
 /// How a line is drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
 pub struct Stroke {
     /// Its colour.
     pub colour: Colour,
@@ -39,14 +40,12 @@ impl Stroke {
     pub const DOTTED: Stroke = Stroke { colour: INK, width: 0.7, dash: Dash::Dotted };
 
     /// Changes its colour.
-    #[must_use]
     pub const fn in_colour(mut self, colour: Colour) -> Self {
         self.colour = colour;
         self
     }
 
     /// Changes its width, in points.
-    #[must_use]
     pub const fn wide(mut self, width: f64) -> Self {
         self.width = width;
         self
@@ -118,6 +117,7 @@ pub(crate) enum Mark {
 
 /// One layer of a panel; later layers cover earlier ones.
 #[derive(Clone, Debug, PartialEq)]
+#[must_use]
 pub struct Layer {
     pub(crate) mark: Mark,
     pub(crate) label: Option<String>,
@@ -146,7 +146,6 @@ impl Layer {
     }
 
     /// Puts a mark of so many points at each point of its lines; a layer without lines stays as it is.
-    #[must_use]
     pub fn marked(mut self, shape: Shape, size: f64) -> Self {
         if let Mark::Lines { marks, .. } = &mut self.mark {
             *marks = Some((shape, size));
@@ -155,14 +154,12 @@ impl Layer {
     }
 
     /// Draws strokes over its areas or cells, white on dark colours and dark on light ones.
-    #[must_use]
     pub fn hatched(mut self, hatch: Option<Hatch>) -> Self {
         self.hatch = hatch;
         self
     }
 
     /// Gives it an entry in the legend.
-    #[must_use]
     pub fn labelled(mut self, label: &str) -> Self {
         self.label = Some(label.into());
         self

@@ -81,6 +81,7 @@ const FOOT: f64 = 7.0;
 
 /// A sheet of panels.
 #[derive(Clone, Debug, PartialEq)]
+#[must_use]
 pub struct Figure {
     width_mm: f64,
     height_mm: f64,
@@ -128,14 +129,12 @@ impl Figure {
     }
 
     /// Puts at most so many panels side by side; further ones go below.
-    #[must_use]
     pub fn columns(mut self, columns: usize) -> Self {
         self.columns = columns.max(1);
         self
     }
 
     /// Names the SVG: browsers show the name as a hint and read it aloud; it is never drawn.
-    #[must_use]
     pub fn named(mut self, title: &str) -> Self {
         self.title = title.into();
         self
@@ -143,7 +142,6 @@ impl Figure {
 
     /// Changes its width. Its height follows unless it is that of rows, but no row of panels falls below 45
     /// mm that was higher.
-    #[must_use]
     pub fn wide(mut self, width_mm: f64) -> Self {
         let rows = self.panels.len().div_ceil(self.columns.max(1)).max(1) as f64;
         let least = self.height_mm.min(LEAST_ROW * rows);
@@ -154,14 +152,12 @@ impl Figure {
 
     /// Puts a heading above all panels, in the notation of labels. It becomes the name, too, and takes the
     /// place of the title of a single panel.
-    #[must_use]
     pub fn headed(mut self, heading: &str) -> Self {
         self.heading = heading.into();
         self.untitled().named(&Label::new(heading).words)
     }
 
     /// Leaves out heading and foot, for papers whose caption says both; several panels keep their titles.
-    #[must_use]
     pub fn bare(self) -> Self {
         let [heading, foot] = [const { String::new() }; 2];
         Figure { heading, foot, ..self.untitled() }
@@ -176,21 +172,18 @@ impl Figure {
     }
 
     /// Writes into its files the program that made them with its version, and the command.
-    #[must_use]
     pub fn made_by(mut self, program: &str, command: &str) -> Self {
         self.maker = Some([program.into(), command.into()]);
         self
     }
 
     /// Puts small words below all panels: what it was made from.
-    #[must_use]
     pub fn footed(mut self, foot: &Foot) -> Self {
         self.foot = foot.to_string();
         self
     }
 
     /// Names this unit at axes of times and rates, in place of "time".
-    #[must_use]
     pub fn in_units_of(mut self, time: &str) -> Self {
         self.time_unit = time.into();
         self
@@ -202,7 +195,6 @@ impl Figure {
     }
 
     /// Draws letters as shapes in PDF, too; nobody can search them.
-    #[must_use]
     pub fn outlined(mut self) -> Self {
         self.letters = Letters::Shapes;
         self
@@ -210,14 +202,12 @@ impl Figure {
 
     /// Writes letters as text in SVG, too, with their font: in place where fonts in a document are read, as
     /// in browsers, and not where they are ignored (librsvg, Inkscape, LibreOffice).
-    #[must_use]
     pub fn in_text(mut self) -> Self {
         self.letters = Letters::Text;
         self
     }
 
     /// Adds a panel.
-    #[must_use]
     pub fn with(mut self, panel: Panel) -> Self {
         self.panels.push(panel);
         self
@@ -249,7 +239,6 @@ impl Figure {
     }
 
     /// Adds notes to its panels, in their order.
-    #[must_use]
     pub fn noted(mut self, notes: Vec<Vec<Note>>) -> Self {
         for (panel, notes) in self.panels.iter_mut().zip(notes) {
             panel.notes.extend(notes);

@@ -77,6 +77,7 @@ impl ColourBar {
 
 /// Words at a point of the data.
 #[derive(Clone, Debug, PartialEq)]
+#[must_use]
 pub struct Note {
     pub(crate) at: [f64; 2],
     pub(crate) text: String,
@@ -108,21 +109,18 @@ impl Note {
     }
 
     /// Puts another side of the words at the point, moved by so many points right and up.
-    #[must_use]
     pub fn anchored(mut self, anchor: Anchor, shift: [f64; 2]) -> Self {
         (self.anchor, self.shift) = (anchor, shift);
         self
     }
 
     /// Turns the words counterclockwise by so many degrees.
-    #[must_use]
     pub fn turned(mut self, degrees: f64) -> Self {
         self.turn = degrees;
         self
     }
 
     /// Changes the colour of the words.
-    #[must_use]
     pub fn in_colour(mut self, colour: Colour) -> Self {
         self.colour = colour;
         self
@@ -131,6 +129,7 @@ impl Note {
 
 /// Two axes and what stands between them.
 #[derive(Clone, Debug, PartialEq)]
+#[must_use]
 pub struct Panel {
     pub(crate) title: String,
     pub(crate) x: Axis,
@@ -150,42 +149,36 @@ impl Panel {
     }
 
     /// Gives it a title, in the notation of labels.
-    #[must_use]
     pub fn titled(mut self, title: &str) -> Self {
         self.title = title.into();
         self
     }
 
     /// Puts a layer on top.
-    #[must_use]
     pub fn with(mut self, layer: Layer) -> Self {
         self.layers.push(layer);
         self
     }
 
     /// Puts a note above all layers.
-    #[must_use]
     pub fn note(mut self, note: Note) -> Self {
         self.notes.push(note);
         self
     }
 
     /// Replaces its horizontal axis: of panels that share one the last has its name.
-    #[must_use]
     pub fn over(mut self, x: Axis) -> Self {
         self.x = x;
         self
     }
 
     /// Gives it a legend of its labelled layers.
-    #[must_use]
     pub fn legend(mut self, place: Place) -> Self {
         self.legend = Some(place);
         self
     }
 
     /// Gives it a colour bar.
-    #[must_use]
     pub fn bar(mut self, bar: ColourBar) -> Self {
         self.bar = Some(bar);
         self
@@ -202,7 +195,6 @@ impl Panel {
     }
 
     /// Draws faint lines at the labelled ticks.
-    #[must_use]
     pub fn gridded(mut self) -> Self {
         self.grid = true;
         self

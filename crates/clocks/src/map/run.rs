@@ -28,6 +28,7 @@ use number::parallel::{map, try_map};
 /// assert!(unstable > 50 && unstable < 300);
 /// ```
 #[derive(Clone, Copy, Debug)]
+#[must_use]
 pub struct Map<'a> {
     grid: &'a Grid,
     products: Products,
@@ -44,26 +45,22 @@ impl<'a> Map<'a> {
     }
 
     /// Asks for these products beside the verdicts.
-    #[must_use]
     pub fn with(self, products: Products) -> Self {
         Map { products, ..self }
     }
 
     /// This part of it only.
-    #[must_use]
     pub fn shard(self, shard: Shard) -> Self {
         Map { shard, ..self }
     }
 
     /// Limits the work to these resources.
-    #[must_use]
     pub fn within(self, resources: Resources<'a>) -> Self {
         Map { resources, ..self }
     }
 
     /// Uses a store for the bands: those that the store holds are taken from there, new ones are put there.
     /// Interrupted work goes on where it stopped and gives the same result; a kill loses the bands under way.
-    #[must_use]
     pub fn kept_in(self, store: &'a Store) -> Self {
         Map { store: Some(store), ..self }
     }

@@ -19,6 +19,7 @@ use number::{Laurent, Quantity};
 
 /// An [`Oscillator`] in the making; [`OscillatorBuilder::build`] reports what is wrong or missing.
 #[derive(Clone, Debug, Default)]
+#[must_use]
 pub struct OscillatorBuilder {
     quantities: [Option<Result<Laurent>>; 4],
 }
@@ -40,25 +41,21 @@ impl Oscillator {
 
 impl OscillatorBuilder {
     /// The fast stiffness L1, in 1/time².
-    #[must_use]
     pub fn lambda1(self, lambda1: impl Quantity) -> Self {
         self.with(0, lambda1)
     }
 
     /// The slow stiffness L2, in 1/time².
-    #[must_use]
     pub fn lambda2(self, lambda2: impl Quantity) -> Self {
         self.with(1, lambda2)
     }
 
     /// The fast step h1.
-    #[must_use]
     pub fn h1(self, h1: impl Quantity) -> Self {
         self.with(2, h1)
     }
 
     /// The slow step h2.
-    #[must_use]
     pub fn h2(self, h2: impl Quantity) -> Self {
         self.with(3, h2)
     }

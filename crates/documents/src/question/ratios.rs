@@ -122,7 +122,6 @@ impl Ratios {
     }
 
     /// Below a figure.
-    #[must_use]
     pub fn below(&self, foot: Foot) -> Foot {
         match self {
             Ratios::One(ratio) => foot.value("*h*_2/*h*_1", ratio),

@@ -15,6 +15,7 @@ use number::error::{Error, Result, visible};
 
 /// A named result.
 #[derive(Clone, Debug)]
+#[must_use]
 pub struct Document {
     /// NAME in `kickdrift/NAME/1`.
     name: &'static str,
@@ -77,40 +78,34 @@ impl Document {
     }
 
     /// Echoes one input, as an exact string.
-    #[must_use]
     pub fn input(mut self, key: &str, value: impl ToString) -> Self {
         self.input.insert(key.into(), Value::String(value.to_string()));
         self
     }
 
     /// Echoes inputs, in order.
-    #[must_use]
     pub fn inputs<'a, V: Into<Value>>(self, given: impl IntoIterator<Item = (&'a str, V)>) -> Self {
         given.into_iter().fold(self, |document, (key, value)| document.input_json(key, value.into()))
     }
 
     /// Echoes one input that has parts of its own, as JSON.
-    #[must_use]
     pub fn input_json(mut self, key: &str, value: Value) -> Self {
         self.input.insert(key.into(), value);
         self
     }
 
     /// Adds one entry to the JSON body, at a path as in a [`Record`](super::record::Record).
-    #[must_use]
     pub fn entry(mut self, key: &str, value: impl Into<Value>) -> Self {
         put(&mut self.body, key, value.into());
         self
     }
 
     /// Adds entries to the JSON body, in order; none of an `Option` that is `None`.
-    #[must_use]
     pub fn entries<'a, V: Into<Value>>(self, given: impl IntoIterator<Item = (&'a str, V)>) -> Self {
         given.into_iter().fold(self, |document, (key, value)| document.entry(key, value))
     }
 
     /// The rows for CSV, LaTeX and text; in JSON too, under the table's name, unless the body has that key.
-    #[must_use]
     pub fn rows(mut self, table: Table) -> Self {
         if !self.body.contains_key(table.name()) {
             self.body.insert(table.name().into(), table.to_json_rows());
@@ -120,28 +115,24 @@ impl Document {
     }
 
     /// Rows that are too many for JSON: CSV, LaTeX and text alone show them.
-    #[must_use]
     pub fn long_rows(mut self, table: Table) -> Self {
         self.table = Some(table);
         self
     }
 
     /// A shorter table in place of the rows, for LaTeX and text.
-    #[must_use]
     pub fn for_people(mut self, table: Table) -> Self {
         self.for_people = Some(table);
         self
     }
 
     /// A further table, for LaTeX and text alone.
-    #[must_use]
     pub fn and_rows(mut self, table: Table) -> Self {
         self.more.push(table);
         self
     }
 
     /// Equations, which LaTeX shows in place of the rows.
-    #[must_use]
     pub fn equations(mut self, equations: Vec<Equation>) -> Self {
         self.equations = equations;
         self
@@ -166,20 +157,17 @@ impl Document {
     }
 
     /// Puts its LaTeX tables into this environment [default: by their width].
-    #[must_use]
     pub fn floated(self, float: Option<Float>) -> Self {
         Document { float, ..self }
     }
 
     /// The summary for people: whole lines, the last one without a newline.
-    #[must_use]
     pub fn summary(mut self, lines: &[String]) -> Self {
         self.summary = lines.join("\n");
         self
     }
 
     /// A summary that says all: the text form leaves the rows out.
-    #[must_use]
     pub fn summary_alone(mut self, lines: &[String]) -> Self {
         self.summary_only = true;
         self.summary(lines)
@@ -187,32 +175,27 @@ impl Document {
 
     /// The answer in a few lines: the text form shows them alone, and the rest where it is
     /// [`detailed`](Self::detailed).
-    #[must_use]
     pub fn answer(self, lines: Vec<String>) -> Self {
         Document { answer: Some(lines), ..self }
     }
 
     /// With the summary and the tables in text.
-    #[must_use]
     pub fn detailed(self) -> Self {
         Document { is_detailed: true, ..self }
     }
 
     /// With a line below the answer, where it stands alone.
-    #[must_use]
     pub fn below_answer(mut self, line: &str) -> Self {
         self.answer.iter_mut().for_each(|lines| lines.push(line.into()));
         self
     }
 
     /// With tables of at most so many characters a line in text.
-    #[must_use]
     pub fn within(self, width: Option<usize>) -> Self {
         Document { width, ..self }
     }
 
     /// All rows in text, too, of a list that is asked for as one.
-    #[must_use]
     pub fn with_all_rows(self) -> Self {
         Document { most_rows: usize::MAX, ..self }
     }

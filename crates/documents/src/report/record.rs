@@ -44,6 +44,7 @@ struct Field<'a, T> {
 /// assert_eq!(kickdrift_documents::report::csv::document(&table), "n,square\r\n1,1\r\n2,4\r\n");
 /// assert_eq!(squares.entries(&3).to_string(), r#"{"n":3,"square":9,"more":{"cube":27}}"#);
 /// ```
+#[must_use]
 pub struct Record<'a, T> {
     fields: Vec<Field<'a, T>>,
 }
@@ -71,43 +72,36 @@ impl<'a, T> Record<'a, T> {
     }
 
     /// One more field: an entry of JSON and a column of the same name.
-    #[must_use]
     pub fn field(self, column: Column, find: impl Fn(&T) -> Cell + Send + Sync + 'a) -> Self {
         self.with_column(column, Find::Cell(Box::new(find)))
     }
 
     /// One more field, which JSON has at `path`.
-    #[must_use]
     pub fn at(self, path: &str, column: Column, find: impl Fn(&T) -> Cell + Send + Sync + 'a) -> Self {
         self.with(Some(column), Some(path), Find::Cell(Box::new(find)))
     }
 
     /// One more entry of JSON alone.
-    #[must_use]
     pub fn json(self, path: &str, find: impl Fn(&T) -> Cell + Send + Sync + 'a) -> Self {
         self.with(None, Some(path), Find::Cell(Box::new(find)))
     }
 
     /// One more entry of JSON alone, which has parts of its own.
-    #[must_use]
     pub fn value(self, path: &str, find: fn(&T) -> Value) -> Self {
         self.with(None, Some(path), Find::Value(find))
     }
 
     /// One more entry of JSON alone, which is not there where there is none.
-    #[must_use]
     pub fn optional(self, path: &str, find: fn(&T) -> Option<Value>) -> Self {
         self.with(None, Some(path), Find::Optional(find))
     }
 
     /// One more column of tables alone.
-    #[must_use]
     pub fn column(self, column: Column, find: impl Fn(&T) -> Cell + Send + Sync + 'a) -> Self {
         self.with(Some(column), None, Find::Cell(Box::new(find)))
     }
 
     /// Says what the last field is: its shape, and a sentence for people.
-    #[must_use]
     pub fn says(mut self, shape: Shape, sentence: impl Into<Cow<'static, str>>) -> Self {
         if let Some(field) = self.fields.last_mut() {
             field.says = Some((shape, sentence.into()));

@@ -195,6 +195,7 @@ struct Key {
 
 /// The keys of an object, each with its shape and a sentence.
 #[derive(Clone, Debug, Default)]
+#[must_use]
 pub struct Keys {
     keys: Vec<Key>,
     /// Groups and keys that some objects lack.
@@ -208,7 +209,6 @@ impl Keys {
     }
 
     /// One more key.
-    #[must_use]
     pub fn key(
         self,
         path: impl Into<Cow<'static, str>>,
@@ -219,7 +219,6 @@ impl Keys {
     }
 
     /// One more key, which some objects lack.
-    #[must_use]
     pub fn optional(
         self,
         path: impl Into<Cow<'static, str>>,
@@ -230,7 +229,6 @@ impl Keys {
     }
 
     /// One more key, which is required or not.
-    #[must_use]
     pub fn with(
         mut self,
         path: impl Into<Cow<'static, str>>,
@@ -247,7 +245,6 @@ impl Keys {
     }
 
     /// The keys of both.
-    #[must_use]
     pub fn and(mut self, more: Keys) -> Keys {
         self.keys.extend(more.keys);
         self.optional.extend(more.optional);
@@ -256,7 +253,6 @@ impl Keys {
 
     /// Says that objects with the keys of `less` alone are such objects, too: what is not there is optional,
     /// whole groups or keys inside of them.
-    #[must_use]
     pub fn or_only(mut self, less: &Keys) -> Keys {
         let has = |path: &str| {
             let inside = |key: &Key| key.path.strip_prefix(path).is_some_and(|rest| rest.starts_with('.'));
@@ -271,21 +267,18 @@ impl Keys {
     }
 
     /// Those of other names.
-    #[must_use]
     pub fn without(mut self, names: &[&str]) -> Keys {
         self.keys.retain(|key| !names.contains(&key.path.as_ref()));
         self
     }
 
     /// Says that every object has these.
-    #[must_use]
     pub fn requiring(mut self, names: &[&str]) -> Keys {
         self.optional.retain(|path| !names.contains(&path.as_str()));
         self
     }
 
     /// The same as a person may write them in a file, each at its place there, and required only as `names` say.
-    #[must_use]
     pub fn written(mut self, place: impl Fn(&str) -> Option<&'static str>, names: &[&str]) -> Keys {
         for key in &mut self.keys {
             key.path = place(&key.path).map_or_else(|| key.path.clone(), Cow::from);
@@ -411,6 +404,7 @@ impl Shape {
 
 /// The schema of a kind of documents.
 #[derive(Clone, Debug)]
+#[must_use]
 pub struct Schema {
     /// One line on what such a document is.
     title: &'static str,
@@ -429,13 +423,11 @@ impl Schema {
     }
 
     /// Adds a sentence or two on the documents.
-    #[must_use]
     pub fn about(self, about: &'static str) -> Schema {
         Schema { about, ..self }
     }
 
     /// Adds keywords for what no single key can say.
-    #[must_use]
     pub fn rules(self, rules: impl Into<Cow<'static, str>>) -> Schema {
         Schema { rules: rules.into(), ..self }
     }

@@ -109,6 +109,7 @@ pub enum Align {
 
 /// One column: its key for programs, its titles for people.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[must_use]
 pub struct Column {
     /// The name in CSV and JSON.
     pub key: String,
@@ -146,7 +147,6 @@ impl Column {
     }
 
     /// Gives it a title for people, plain and in LaTeX.
-    #[must_use]
     pub fn titled(mut self, title: &str, latex: &str) -> Self {
         self.title = title.into();
         self.latex = Some(latex.into());
@@ -154,28 +154,24 @@ impl Column {
     }
 
     /// Gives it words for a title.
-    #[must_use]
     pub fn in_words(mut self, title: &str) -> Self {
         self.title = title.into();
         self
     }
 
     /// Gives it a unit.
-    #[must_use]
     pub fn in_unit(mut self, unit: &str) -> Self {
         self.unit = Some(unit.into());
         self
     }
 
     /// Lines its cells up on the left.
-    #[must_use]
     pub fn left(mut self) -> Self {
         self.align = Align::Left;
         self
     }
 
     /// Leaves it out on paper unless it is asked for.
-    #[must_use]
     pub fn aside(mut self) -> Self {
         self.aside = true;
         self
@@ -199,7 +195,6 @@ impl Column {
     }
 
     /// Makes it a column of enclosures.
-    #[must_use]
     pub fn enclosure(mut self) -> Self {
         self.enclosed = true;
         self
@@ -216,6 +211,7 @@ impl Column {
 /// assert_eq!(table.to_json_rows().to_string(), r#"[{"p":7,"h2":"7/2"}]"#);
 /// ```
 #[derive(Clone, Debug, PartialEq)]
+#[must_use]
 pub struct Table {
     name: String,
     caption: String,
@@ -231,7 +227,6 @@ impl Table {
     }
 
     /// Gives it a caption for LaTeX, typeset as it stands.
-    #[must_use]
     pub fn captioned(mut self, latex: &str) -> Self {
         self.typeset = Some(latex.into());
         self
@@ -251,21 +246,18 @@ impl Table {
     ///
     /// # Panics
     /// A key that no column has.
-    #[must_use]
     pub fn only(&self, keys: &[&str]) -> Table {
         let keys: Vec<String> = keys.iter().map(ToString::to_string).collect();
         self.choose(&keys).expect("its own keys")
     }
 
     /// The columns that are to be kept.
-    #[must_use]
     pub fn keeping(&self, is_kept: impl Fn(&Column) -> bool) -> Table {
         let kept = self.columns.iter().filter(|column| is_kept(column));
         self.only(&kept.map(|column| column.key.as_str()).collect::<Vec<_>>())
     }
 
     /// The table with so many significant digits at most.
-    #[must_use]
     pub fn shortened(&self, digits: u32) -> Table {
         let shorten = |cell: &Cell| match *cell {
             Cell::Float(x) if x.is_finite() => Cell::Float(decimal::rounded(x, digits as usize)),
@@ -283,7 +275,6 @@ impl Table {
 
     /// The table with decimals in place of fractions, column by column: one notation in each. A column of exact
     /// numbers keeps its fractions where one of them has no finite decimals.
-    #[must_use]
     pub fn in_decimals(&self) -> Table {
         let decimal =
             |text: &str| text.parse().ok().map(|x| decimal_of(&x)).filter(|text| !text.contains('/'));
