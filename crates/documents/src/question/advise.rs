@@ -4,7 +4,6 @@ use plot::Figure;
 
 use super::advised::{Advised, Safe};
 use super::asking::{Fields, Question, Work, question};
-use super::field::flag;
 use crate::input::{SystemFile, of_archive};
 use crate::report::advise as report;
 use crate::report::document::Document;
@@ -50,8 +49,7 @@ question! {
         #[arg(long, value_name = "T")]
         temperature: Option<String>,
         /// The bonds of a known shape, in a run of this length or of 100 ns [default: 10000]
-        #[arg(long, value_name = "N", value_parser = flag::<u64>)]
-        bonds: Option<u64>,
+        bonds as "N": Option<u64>,
         /// The friction of the thermostat, as 1/ps: does it mask what grows?
         #[arg(long, value_name = "RATE")]
         friction: Option<String>,

@@ -5,7 +5,7 @@ use plot::Figure;
 
 use super::advise::part;
 use super::asking::{Question, Work, question};
-use super::field::{flag, notation};
+use super::field::notation;
 use crate::report::aperture as report;
 use crate::report::document::Document;
 use crate::report::shape::Schema;
@@ -88,44 +88,37 @@ question! {
         /// x^2 + k3 x^3 + k4 x^4.
         ///
         /// Masses in amu.
-        #[arg(long, value_name = "NAME:SHAPE,M1,M2", allow_hyphen_values = true, value_parser = flag::<Bond>)]
-        bond: Bond,
+        bond as "NAME:SHAPE,M1,M2": Bond,
         /// The temperature.
-        #[arg(long, value_name = "T", value_parser = flag::<Temperature>)]
-        temperature: Temperature = "298K",
+        temperature as "T": Temperature = "298K",
         /// Steps, as 1.4fs or 1fs,2fs.
-        #[arg(long, value_name = "TIME,...", value_parser = flag::<Times>)]
-        steps: Option<Times>,
+        steps as "TIME,...": Option<Times>,
         /// A closed range of steps, as 1.2fs..2.6fs.
-        #[arg(long, value_name = "LO..HI", value_parser = flag::<TimeRange>)]
-        h_range: Option<TimeRange>,
+        h_range as "LO..HI": Option<TimeRange>,
         /// From one step of the range to the next [default: 0.01fs]
-        #[arg(long, value_name = "TIME", requires = "h_range", value_parser = flag::<Time>)]
-        step: Option<Time>,
+        #[arg(requires = "h_range")]
+        step as "TIME": Option<Time>,
         /// Another integrator than velocity Verlet: one of the catalogue, which word --list shows.
         #[arg(long, value_name = "NAME", conflicts_with_all = ["word", "substeps"])]
         method: Option<String>,
         /// Another integrator, as a word of kicks K, K1 (the bond), K2 (the slow force), drifts D, and O
         /// where a thermostat acts.
-        #[arg(long, value_name = "WORD", conflicts_with = "substeps", value_parser = flag::<Word>)]
-        word: Option<Word>,
+        #[arg(conflicts_with = "substeps")]
+        word as "WORD": Option<Word>,
         /// r-RESPA: so many inner steps of the bond in each step of the slow force.
-        #[arg(long, value_name = "N", requires = "slow", value_parser = flag::<u64>)]
-        substeps: Option<u64>,
+        #[arg(requires = "slow")]
+        substeps as "N": Option<u64>,
         /// A slow harmonic force about the bond's rest: the period that it would give the bond alone, as
         /// 40fs.
-        #[arg(long, value_name = "TIME", value_parser = flag::<Time>)]
-        slow: Option<Time>,
+        slow as "TIME": Option<Time>,
         /// Also the least E* of bonds whose periods are longer by up to this, as 5%: of steps h/(1 + band) to
         /// h.
         #[arg(long, value_name = "PART")]
         band: Option<String>,
         /// The bonds of the system that is meant.
-        #[arg(long, value_name = "N", value_parser = flag::<u64>)]
-        bonds: u64 = "10000",
+        bonds as "N": u64 = "10000",
         /// The length of the run that is meant.
-        #[arg(long, value_name = "TIME", value_parser = flag::<Time>)]
-        length: Time = "100ns",
+        length as "TIME": Time = "100ns",
     }
 }
 

@@ -10,22 +10,35 @@ use clocks::verdict::Limits;
 use number::error::Result;
 
 /// The fields of a `Question`, each declared once: a struct that is read from the `input` of a document and
-/// written there, and, as `args struct`, read from arguments too (`arg` as clap has it). After `|` stand
-/// other names that a field is read from where its own is not given.
+/// written there, and, as `args struct`, read from arguments too. `as "X"` gives a field the flag of its name,
+/// whose value help calls X; `arg`, as clap has it, says what else there is. After `|` stand other names that a
+/// field is read from where its own is not given.
 macro_rules! question {
     (
         $(#[$meta:meta])*
         args struct $Name:ident {
             $(
                 $(#[doc = $help:literal])*
-                #[arg($($arg:tt)*)] $field:ident: $type:ty $(| $other:ident)* $(= $default:literal)?,
+                $(#[arg($($arg:tt)*)])?
+                $field:ident $(as $value:literal)?: $type:ty $(| $other:ident)* $(= $default:literal)?,
             )*
         }
     ) => {
         $(#[$meta])*
         #[derive(Clone, Debug, PartialEq, clap::Args)]
         pub struct $Name {
-            $($(#[doc = $help])* #[arg($($arg)* $(, default_value = $default)?)] pub $field: $type,)*
+            $(
+                $(#[doc = $help])*
+                $(#[arg($($arg)*)])?
+                $(#[arg(
+                    long,
+                    value_name = $value,
+                    allow_hyphen_values = true,
+                    value_parser = $crate::question::flag::<<$type as $crate::question::field::Flag>::Value>,
+                )])?
+                $(#[arg(default_value = $default)])?
+                pub $field: $type,
+            )*
         }
 
         $crate::question::question!(@fields $Name $($(#[doc = $help])* $field: $type $(| $other)* $(= $default)?,)*);

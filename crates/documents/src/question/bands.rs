@@ -5,7 +5,6 @@ use plot::Figure;
 
 use super::asking::{Question, Work, question};
 use super::field::StepRange;
-use super::field::flag;
 use crate::report::bands;
 use crate::report::document::Document;
 use crate::report::shape::Schema;
@@ -17,23 +16,17 @@ question! {
     /// Sectors of (h1, h2) in which every ratio h2/h1, rational or not, is proven unstable.
     args struct Bands {
         /// The stiffness of the fast force.
-        #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
-        lambda1: Laurent,
+        lambda1 as "X": Laurent,
         /// The stiffness of the slow force.
-        #[arg(long, value_name = "Y", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
-        lambda2: Laurent,
+        lambda2 as "Y": Laurent,
         /// The closed range of h1.
-        #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<StepRange>)]
-        h1_range: StepRange,
+        h1_range as "LO..HI": StepRange,
         /// The closed range of h2.
-        #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<StepRange>)]
-        h2_range: StepRange,
+        h2_range as "LO..HI": StepRange,
         /// End where this share of the window is certified, as 17/200.
-        #[arg(long, value_name = "A", allow_hyphen_values = true, value_parser = flag::<Rational>)]
-        area: Option<Rational>,
+        area as "A": Option<Rational>,
         /// The most sectors that are tried: each costs a tenth of a millisecond, and more in a narrow window.
-        #[arg(long, value_name = "N", value_parser = flag::<u64>)]
-        sectors: u64 = "100000",
+        sectors as "N": u64 = "100000",
     }
 }
 

@@ -1,7 +1,6 @@
 //! Where tongues close.
 
 use super::asking::{Question, Work, question};
-use super::field::flag;
 use super::ratios::Ratios;
 use crate::report::decimal::outward;
 use crate::report::document::Document;
@@ -19,24 +18,18 @@ question! {
     /// The pairs (s, ρ) at which tongues of one ratio or of all are closed.
     args struct Closings {
         /// h2/h1 = p/q.
-        #[arg(long, value_name = "P/Q", allow_hyphen_values = true, value_parser = flag::<Ratio>)]
-        ratio: Option<Ratio>,
+        ratio as "P/Q": Option<Ratio>,
         /// All coprime p + q up to this number.
-        #[arg(long, value_name = "N", value_parser = flag::<u64>)]
-        max_sum: Option<u64>,
+        max_sum as "N": Option<u64>,
         /// Only these labels (with --ratio), as 4 or 1,3,7..9.
-        #[arg(long, value_name = "LIST", allow_hyphen_values = true, value_parser = flag::<Labels>)]
-        m: Option<Labels>,
+        m as "LIST": Option<Labels>,
         /// The closed range of rho = lambda2/lambda1, positive.
-        #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<(Rational, Rational)>)]
-        rho_range: (Rational, Rational) = "1/10000..100",
+        rho_range as "LO..HI": (Rational, Rational) = "1/10000..100",
         /// Where p + q > 24: at how many rho, evenly spaced in ln rho, edges are computed to see where two
         /// cross.
-        #[arg(long, value_name = "N", value_parser = flag::<usize>)]
-        samples: usize = "400",
+        samples as "N": usize = "400",
         /// Significant digits of s and rho.
-        #[arg(long, value_name = "N", value_parser = flag::<u32>)]
-        digits: u32 = "25",
+        digits as "N": u32 = "25",
     }
 }
 

@@ -1,7 +1,7 @@
 //! The trace against the predictions: over a grid, or over ratios.
 
 use super::asking::{Fields, Question, Work, question};
-use super::field::{StepRange, flag};
+use super::field::StepRange;
 use super::map::Map;
 use super::ratios::{MOST_SUM, Ratios};
 use crate::report::document::Document;
@@ -20,35 +20,25 @@ question! {
     args struct Compare {
         /// How near q h2 must be to a multiple of T1/2, half the vibration's period, to count as resonant; in
         /// units of T1/2.
-        #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = flag::<Rational>)]
-        tolerance: Rational = "1/20",
+        tolerance as "T": Rational = "1/20",
         /// The stiffness of the fast force (with a grid).
-        #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
-        lambda1: Option<Laurent>,
+        lambda1 as "X": Option<Laurent>,
         /// The stiffness of the slow force (with a grid).
-        #[arg(long, value_name = "Y", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
-        lambda2: Option<Laurent>,
+        lambda2 as "Y": Option<Laurent>,
         /// The spacing of h1, where it differs.
-        #[arg(long, value_name = "D1", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
-        step1: Option<Laurent> | step,
+        step1 as "D1": Option<Laurent> | step,
         /// The spacing of h2, where it differs.
-        #[arg(long, value_name = "D2", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
-        step2: Option<Laurent> | step,
+        step2 as "D2": Option<Laurent> | step,
         /// The closed range of h1, as 1/100..2/pi.
-        #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<StepRange>)]
-        h1_range: Option<StepRange>,
+        h1_range as "LO..HI": Option<StepRange>,
         /// The closed range of h2.
-        #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<StepRange>)]
-        h2_range: Option<StepRange>,
+        h2_range as "LO..HI": Option<StepRange>,
         /// Instead of a grid: all coprime p + q up to this number.
-        #[arg(long, value_name = "N", value_parser = flag::<u64>)]
-        max_sum: Option<u64>,
+        max_sum as "N": Option<u64>,
         /// lambda2/lambda1, with --max-sum.
-        #[arg(long, value_name = "R", allow_hyphen_values = true, value_parser = flag::<Rational>)]
-        rho: Option<Rational>,
+        rho as "R": Option<Rational>,
         /// With --max-sum: the values of s = h1^2 lambda1, evenly spaced inside 0 < s < 4 [default: 99].
-        #[arg(long, value_name = "K", value_parser = flag::<u64>)]
-        samples: Option<u64>,
+        samples as "K": Option<u64>,
     }
 }
 

@@ -2,7 +2,6 @@
 
 use super::asking::{Question, Work, question};
 use super::field::StepRange;
-use super::field::flag;
 use crate::report::document::Document;
 use crate::report::plane;
 use crate::report::record::Record;
@@ -17,8 +16,7 @@ question! {
     /// The curves 1/T½ = a/h1 + b/h2 over closed ranges of h1 and h2.
     args struct Curves {
         /// The stiffness of the fast force.
-        #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
-        lambda1: Laurent = "pi^2",
+        lambda1 as "X": Laurent = "pi^2",
         /// The spacing of h1 of a scene's grid, on which curves do not depend.
         #[arg(skip)]
         step1: Option<Laurent>,
@@ -26,20 +24,15 @@ question! {
         #[arg(skip)]
         step2: Option<Laurent>,
         /// The closed range of h1.
-        #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<StepRange>)]
-        h1_range: StepRange = "1/1000..2/pi",
+        h1_range as "LO..HI": StepRange = "1/1000..2/pi",
         /// The closed range of h2.
-        #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<StepRange>)]
-        h2_range: StepRange = "1/1000..7/2",
+        h2_range as "LO..HI": StepRange = "1/1000..7/2",
         /// The range of a.
-        #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<(i64, i64)>)]
-        a: (i64, i64) = "0..3",
+        a as "LO..HI": (i64, i64) = "0..3",
         /// The range of b.
-        #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<(i64, i64)>)]
-        b: (i64, i64) = "-12..12",
+        b as "LO..HI": (i64, i64) = "-12..12",
         /// Points a curve, evenly spaced in theta over its pieces in the window.
-        #[arg(long, value_name = "N", value_parser = flag::<usize>)]
-        samples: usize = "400",
+        samples as "N": usize = "400",
     }
 }
 

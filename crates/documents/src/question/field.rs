@@ -44,6 +44,10 @@ macro_rules! notation {
                 }
             }
 
+            impl $crate::question::field::Flag for $type {
+                type Value = Self;
+            }
+
             impl $crate::question::field::Field for $type {
                 $(const SHAPE: $crate::report::shape::Shape = $shape;)?
 
@@ -106,6 +110,16 @@ fn whole<T: TryFrom<u64>>(field: &str, text: &str) -> Result<T> {
 /// A parser of an argument, whose flag names the field.
 pub fn flag<T: Notation>(text: &str) -> std::result::Result<T, String> {
     T::parsed("value", text).map_err(|error| error.remedy().to_string())
+}
+
+/// A field that is written behind a flag: a value, or an option of one.
+pub trait Flag {
+    /// What is written.
+    type Value: Notation;
+}
+
+impl<T: Flag> Flag for Option<T> {
+    type Value = T::Value;
 }
 
 /// A field of a question: a value, an option of one, or a flag.

@@ -1,7 +1,6 @@
 //! The half period of one pair of clocks in numbers.
 
 use super::asking::{Question, Work, question};
-use super::field::flag;
 use super::verdict::bias_lines;
 use crate::report::document::Document;
 use crate::report::record::Record;
@@ -17,14 +16,11 @@ question! {
     /// numbers, B is in h1, C in 1/h1.
     args struct Half {
         /// h2/h1 = p/q.
-        #[arg(long, value_name = "P/Q", allow_hyphen_values = true, value_parser = flag::<Ratio>)]
-        ratio: Ratio,
+        ratio as "P/Q": Ratio,
         /// h1^2 lambda1, rational.
-        #[arg(long, value_name = "S", allow_hyphen_values = true, value_parser = flag::<Rational>)]
-        s: Rational,
+        s as "S": Rational,
         /// lambda2/lambda1, rational; may be negative.
-        #[arg(long, value_name = "R", allow_hyphen_values = true, value_parser = flag::<Rational>)]
-        rho: Rational,
+        rho as "R": Rational,
     }
 }
 

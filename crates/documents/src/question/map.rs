@@ -1,7 +1,7 @@
 //! The verdicts of a grid of step pairs.
 
 use super::asking::{Question, Work, question};
-use super::field::{StepRange, flag};
+use super::field::StepRange;
 use crate::report::document::Document;
 use crate::report::map::{self as map_report, MapTally, document};
 use crate::report::shape::Schema;
@@ -14,23 +14,19 @@ question! {
     #[derive(Default)]
     args struct Map {
         /// The stiffness of the fast force, as 10 or pi^2.
-        #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
-        lambda1: Laurent,
+        lambda1 as "X": Laurent,
         /// The stiffness of the slow force, as 2/5 or pi^2/25; may be negative.
-        #[arg(long, value_name = "Y", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
-        lambda2: Laurent,
+        lambda2 as "Y": Laurent,
         /// The spacing of h1, where it differs.
-        #[arg(long, value_name = "D1", required = false, required_unless_present = "step", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
-        step1: Laurent | step,
+        #[arg(required = false, required_unless_present = "step")]
+        step1 as "D1": Laurent | step,
         /// The spacing of h2, where it differs.
-        #[arg(long, value_name = "D2", required = false, required_unless_present = "step", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
-        step2: Laurent | step,
+        #[arg(required = false, required_unless_present = "step")]
+        step2 as "D2": Laurent | step,
         /// The closed range of h1, as 1/100..2/pi.
-        #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<StepRange>)]
-        h1_range: StepRange,
+        h1_range as "LO..HI": StepRange,
         /// The closed range of h2.
-        #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<StepRange>)]
-        h2_range: StepRange,
+        h2_range as "LO..HI": StepRange,
         /// Give the tongue's label m of each growing pair, and its dominant family (a, b).
         #[arg(long)]
         label: bool,
@@ -39,8 +35,7 @@ question! {
         growth: bool,
         /// Compute the K-th of N parts only, into the directory of --resume; `kickdrift merge` joins the
         /// parts.
-        #[arg(long, value_name = "K/N", allow_hyphen_values = true, value_parser = flag::<Shard>)]
-        shard: Option<Shard>,
+        shard as "K/N": Option<Shard>,
     }
 }
 

@@ -5,7 +5,6 @@ use num_traits::{One, Signed, Zero};
 use serde_json::{Map, Value};
 
 use super::asking::{Question, Work, question};
-use super::field::flag;
 use crate::report::document::Document;
 use crate::report::latex::Equation;
 use crate::report::record::Record;
@@ -19,8 +18,7 @@ question! {
     /// A, B, C, D and the trace of one ratio as polynomials in s and ρ.
     args struct Polynomial {
         /// h2/h1 = p/q.
-        #[arg(long, value_name = "P/Q", allow_hyphen_values = true, value_parser = flag::<Ratio>)]
-        ratio: Ratio,
+        ratio as "P/Q": Ratio,
     }
 }
 

@@ -1,7 +1,6 @@
 //! The Proposition, checked exhaustively.
 
 use super::asking::{Question, Work, question};
-use super::field::flag;
 use crate::report::document::Document;
 use crate::report::record::Record;
 use crate::report::shape::{COUNT, FLAG, INTEGER, POSITIVE, Schema, Shape};
@@ -13,8 +12,7 @@ question! {
     /// The Proposition for all coprime p, q up to a number, with all witnesses.
     args struct Proposition {
         /// All coprime p, q up to this number.
-        #[arg(long, value_name = "N", value_parser = flag::<u64>)]
-        max: u64 = "60",
+        max as "N": u64 = "60",
     }
 }
 

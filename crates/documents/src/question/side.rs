@@ -3,7 +3,6 @@
 use plot::{Axis, Cells, Figure, Foot, Layer, Panel, Place, literal, palette};
 
 use super::asking::{Question, Work, question};
-use super::field::flag;
 use crate::report::document::Document;
 use crate::report::record::Record;
 use crate::report::shape::{COUNT, EXACT, Keys, POSITIVE, ROUNDED, Schema, Shape, TEXT};
@@ -29,20 +28,19 @@ question! {
         #[arg(long, value_name = "A,B,...", required = false, conflicts_with_all = ["max_sum", "rho"])]
         methods: String,
         /// The stiffness of the fast force.
-        #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
-        lambda1: Laurent = "1",
+        lambda1 as "X": Laurent = "1",
         /// The closed range of steps, with --methods.
-        #[arg(long, value_name = "LO..HI", required = false, requires = "methods", value_parser = flag::<(Rational, Rational)>)]
-        h_range: (Rational, Rational) | h1_range,
+        #[arg(required = false, requires = "methods")]
+        h_range as "LO..HI": (Rational, Rational) | h1_range,
         /// The spacing of steps.
-        #[arg(long, value_name = "D", required = false, requires = "methods", value_parser = flag::<Rational>)]
-        h_step: Rational | step1 | step,
+        #[arg(required = false, requires = "methods")]
+        h_step as "D": Rational | step1 | step,
         /// The closed range of lambda2/lambda1, with --methods.
-        #[arg(long, value_name = "LO..HI", requires = "methods", value_parser = flag::<(Rational, Rational)>)]
-        rho_range: Option<(Rational, Rational)>,
+        #[arg(requires = "methods")]
+        rho_range as "LO..HI": Option<(Rational, Rational)>,
         /// The spacing of lambda2/lambda1.
-        #[arg(long, value_name = "R", requires = "methods", value_parser = flag::<Rational>)]
-        rho_step: Option<Rational>,
+        #[arg(requires = "methods")]
+        rho_step as "R": Option<Rational>,
         /// The stiffness of the slow force, that of the fast one if not given; with h2.
         #[arg(skip)]
         lambda2: Option<Laurent>,

@@ -3,7 +3,7 @@
 use plot::{Figure, Foot};
 
 use super::asking::{Question, Work, question};
-use super::field::{flag, notation};
+use super::field::notation;
 use crate::input::{SystemFile, SystemScene};
 use crate::report::document::Document;
 use crate::report::shape::{Schema, Shape, TEXT};
@@ -29,12 +29,10 @@ question! {
         #[arg(skip)]
         system: SystemFile,
         /// Synchronization periods to run.
-        #[arg(long, value_name = "N", value_parser = flag::<u32>)]
-        periods: u32 = "200",
+        periods as "N": u32 = "200",
         /// The starting displacement of each degree of freedom, as 1/10,0,0; one number moves the first
         /// alone.
-        #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = flag::<Displacement>)]
-        displace: Displacement = "1/10",
+        displace as "X": Displacement = "1/10",
         /// Algorithm 1 as printed: whole kicks at the start of a period, none at its end [default: half a
         /// kick at both]
         #[arg(long = "staggered", action = clap::ArgAction::SetTrue, value_parser = staggered)]

@@ -42,16 +42,13 @@ question! {
         keep_rigid: bool,
         /// Friction per unit time, as BAOAB has it: halfway through a drift over t, v becomes v exp(-G t).
         /// Does it stop the growth?
-        #[arg(long, value_name = "G", value_parser = flag::<Rational>)]
-        friction: Option<Rational>,
+        friction as "G": Option<Rational>,
         /// How well measured stiffnesses (by reference to NumPy's files) are known, relative to their norms
         /// [default: 1e-6].
-        #[arg(long, value_name = "X", value_parser = flag::<f64>)]
-        accuracy: Option<f64>,
+        accuracy as "X": Option<f64>,
         /// The integrator of two measured levels: respa, implicit-explicit, impulse, molly-short, ...
         /// [default: the file's].
-        #[arg(long, value_name = "NAME", value_parser = flag::<Method>)]
-        method: Option<Method>,
+        method as "NAME": Option<Method>,
         /// The number that is varied in a map,
         #[arg(skip)]
         scan_x: Option<Axis>,
@@ -60,8 +57,8 @@ question! {
         scan_y: Option<Axis>,
         /// Unstable intervals of a number of the file: outer (all steps, or one of them), a scale, a
         /// stiffness, a spring, a mass
-        #[arg(long, value_name = "PATH=LO..HI", conflicts_with_all = ["exact", "friction"], value_parser = flag::<Span>)]
-        intervals: Option<Span>,
+        #[arg(conflicts_with_all = ["exact", "friction"])]
+        intervals as "PATH=LO..HI": Option<Span>,
         /// With the verdict: the unstable intervals of the outer step next to this one, from half of it to
         /// twice it
         #[arg(long, conflicts_with_all = ["intervals", "friction"])]

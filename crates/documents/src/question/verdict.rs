@@ -3,7 +3,6 @@
 use num_bigint::BigInt;
 
 use super::asking::{Question, Work, question};
-use super::field::flag;
 use crate::report::decimal;
 use crate::report::document::Document;
 use crate::report::friction;
@@ -24,21 +23,16 @@ question! {
     /// One pair of steps of one oscillator.
     args struct Verdict {
         /// The stiffness of the fast force, as 10 or pi^2.
-        #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
-        lambda1: Laurent,
+        lambda1 as "X": Laurent,
         /// The stiffness of the slow force, as 2/5 or pi^2/25; may be negative.
-        #[arg(long, value_name = "Y", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
-        lambda2: Laurent,
+        lambda2 as "Y": Laurent,
         /// The fast step.
-        #[arg(long, value_name = "A", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
-        h1: Laurent,
+        h1 as "A": Laurent,
         /// The slow step; h2/h1 must be rational.
-        #[arg(long, value_name = "B", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
-        h2: Laurent,
+        h2 as "B": Laurent,
         /// Friction per unit time, as BAOAB has it: halfway through a drift over t, v becomes v exp(-G t).
         /// Does it stop the growth?
-        #[arg(long, value_name = "G", value_parser = flag::<Rational>)]
-        friction: Option<Rational>,
+        friction as "G": Option<Rational>,
         /// Decide in exact arithmetic alone, and show the exact trace where it is rational.
         #[arg(long)]
         exact: bool,

@@ -4,7 +4,7 @@ mod atlas;
 mod written;
 
 use super::asking::{Fields, Question, Work, question};
-use super::field::{flag, notation};
+use super::field::notation;
 use super::ratios::{MOST_SUM, RatioList, Ratios};
 use crate::report::document::{Document, Layout};
 use crate::report::shape::{Keys, Schema, Shape};
@@ -22,44 +22,32 @@ question! {
     #[derive(Default)]
     args struct Tongues {
         /// h2/h1 = p/q; or several, as 3/2,5/2.
-        #[arg(long, value_name = "P/Q", allow_hyphen_values = true, value_parser = flag::<RatioList>)]
-        ratio: Option<RatioList>,
+        ratio as "P/Q": Option<RatioList>,
         /// All coprime p + q up to this number.
-        #[arg(long, value_name = "N", value_parser = flag::<u64>)]
-        max_sum: Option<u64>,
+        max_sum as "N": Option<u64>,
         /// rho = lambda2/lambda1, not negative.
-        #[arg(long, value_name = "R", allow_hyphen_values = true, value_parser = flag::<Rational>)]
-        rho: Option<Rational>,
+        rho as "R": Option<Rational>,
         /// The fast stiffness: edges are given in h1 and h2 too.
-        #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
-        lambda1: Option<Laurent>,
+        lambda1 as "X": Option<Laurent>,
         /// The slow stiffness, in place of --rho.
-        #[arg(long, value_name = "Y", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
-        lambda2: Option<Laurent>,
+        lambda2 as "Y": Option<Laurent>,
         /// Only tongues that meet this closed range of h1 (needs --lambda1).
-        #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<(Laurent, Laurent)>)]
-        h1_range: Option<Range>,
+        h1_range as "LO..HI": Option<Range>,
         /// Only tongues that meet this closed range of h2 (needs --lambda1).
-        #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<(Laurent, Laurent)>)]
-        h2_range: Option<Range>,
+        h2_range as "LO..HI": Option<Range>,
         /// Only these labels, as 4 or 1,3,7..9.
-        #[arg(long, value_name = "LIST", allow_hyphen_values = true, value_parser = flag::<Labels>)]
-        m: Option<Labels>,
+        m as "LIST": Option<Labels>,
         /// Only tongues whose dominant family has its a in this range.
-        #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<(i64, i64)>)]
-        a: Option<(i64, i64)>,
+        a as "LO..HI": Option<(i64, i64)>,
         /// Only tongues whose dominant family has its b in this range.
-        #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<(i64, i64)>)]
-        b: Option<(i64, i64)>,
+        b as "LO..HI": Option<(i64, i64)>,
         /// Give the edges to so many significant digits, more or fewer than doubles have.
-        #[arg(long, value_name = "N", value_parser = flag::<u32>)]
-        digits: Option<u32>,
+        digits as "N": Option<u32>,
         /// Columns by the names that csv has, or groups [default: all; with --max-sum all but growth; in
         /// LaTeX edges].
         ///
         /// Groups: edges, exact, growth (takes longest), predicted, first-order.
-        #[arg(long, value_name = "LIST", value_parser = flag::<Columns>)]
-        columns: Option<Columns>,
+        columns as "LIST": Option<Columns>,
     }
 }
 

@@ -23,20 +23,15 @@ question! {
         #[arg(long, value_name = "NAME", conflicts_with = "word")]
         method: Option<String>,
         /// The stiffness of K1, or of K where the word names no forces.
-        #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
-        lambda1: Option<Laurent>,
+        lambda1 as "X": Option<Laurent>,
         /// The stiffness of K2; a rational multiple of lambda1.
-        #[arg(long, value_name = "Y", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
-        lambda2: Option<Laurent>,
+        lambda2 as "Y": Option<Laurent>,
         /// The step of the whole word: the verdict there.
-        #[arg(long, value_name = "H", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
-        h: Option<Laurent>,
+        h as "H": Option<Laurent>,
         /// Only intervals that meet this closed range of steps.
-        #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<StepRange>)]
-        h_range: Option<StepRange>,
+        h_range as "LO..HI": Option<StepRange>,
         /// The friction of letters O, F and I, in 1/time; without it they do nothing.
-        #[arg(long, value_name = "G", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
-        friction: Option<Laurent>,
+        friction as "G": Option<Laurent>,
     }
 }
 

@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use super::super::asked::Word;
 use crate::question::asking::question;
-use crate::question::field::{flag, notation, shown_range};
+use crate::question::field::{notation, shown_range};
 use number::error::{Error, Result};
 use number::parse::{parse_rational, parse_rational_range};
 use number::{ExactSign, Laurent, Radical, Rational, Ring, Sign, named};
@@ -171,26 +171,24 @@ question! {
         ///
         /// Further names stand behind commas, with values or one more range. Where none has a range, the
         /// answer is about one word.
-        #[arg(long, value_name = "B=LO..HI:STEP", required = false, value_parser = flag::<Parameters>)]
-        parameter: Parameters,
+        #[arg(required = false)]
+        parameter as "B=LO..HI:STEP": Parameters,
         /// With --parameter, the value with the greatest: edge (the longest stable step) or efficiency (the
         /// same for each evaluation).
-        #[arg(long, value_name = "GOAL", requires = "parameter", conflicts_with = "minimize", value_parser = flag::<Goal>)]
-        maximize: Option<Goal>,
+        #[arg(requires = "parameter", conflicts_with = "minimize")]
+        maximize as "GOAL": Option<Goal>,
         /// With --parameter, the value with the least: error (of leading order) or bias (energy error of the
         /// worst step up to --up-to).
-        #[arg(long, value_name = "GOAL", requires = "parameter", value_parser = flag::<Goal>)]
-        minimize: Option<Goal>,
+        #[arg(requires = "parameter")]
+        minimize as "GOAL": Option<Goal>,
         /// With --parameter, the omega h up to which the bias counts [default: the evaluations of the first
         /// force].
-        #[arg(long, value_name = "X", requires = "parameter", value_parser = flag::<Rational>)]
-        up_to: Option<Rational>,
+        #[arg(requires = "parameter")]
+        up_to as "X": Option<Rational>,
         /// The stiffness of K1, or of K where the word names no forces.
-        #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
-        lambda1: Option<Laurent>,
+        lambda1 as "X": Option<Laurent>,
         /// The stiffness of K2; a rational multiple of lambda1.
-        #[arg(long, value_name = "Y", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
-        lambda2: Option<Laurent>,
+        lambda2 as "Y": Option<Laurent>,
     }
 }
 
