@@ -177,7 +177,7 @@ pub trait Question: Fields {
         self.show(answer).inputs(self.input())
     }
 
-    /// The command line that asks it, as a shell reads it.
+    /// The command line that asks it, as a shell reads it, where each field stands behind the flag of its name.
     fn command(&self) -> String {
         let flag = |(key, value): (&str, Value)| match (key.replace('_', "-"), value.as_str()) {
             (key, Some("true")) => format!(" --{key}"),

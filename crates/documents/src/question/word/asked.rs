@@ -14,6 +14,7 @@ notation! {
 
 question! {
     /// Consistency, symmetry, order, stable steps, cost of an integrator; its verdict at one step.
+    #[derive(Default)]
     args struct Word {
         /// The integrator: kicks K, K1, K2, drifts D, midpoints C, exact flows R, friction O, F, I,
         /// n*(...), as "K(1/2) D(1) K(1/2)".

@@ -40,21 +40,13 @@ impl Question for Methods {
             return Ok(known);
         }
         let lint = |method: &'static Method| {
-            let none = Word {
-                word: None,
-                method: Some(method.name.into()),
-                lambda1: None,
-                lambda2: None,
-                h: None,
-                h_range: None,
-                friction: None,
-            };
-            let linted = none.answer(work)?;
+            let alone = Word { method: Some(method.name.into()), ..Word::default() };
+            let linted = alone.answer(work)?;
             let two = || Word {
                 lambda1: Some(16.into()),
                 lambda2: Some(1.into()),
                 h_range: Some(slow_range()),
-                ..none
+                ..alone
             };
             // Long decimals make orders dear.
             let orders = |_: &words::Word| (linted.order.clone(), linted.general.clone());

@@ -285,9 +285,7 @@ mod tests {
     use super::*;
 
     fn asked(word: &str) -> (Word, Linted) {
-        let word = Some(word.parse().unwrap());
-        let question =
-            Word { word, method: None, lambda1: None, lambda2: None, h: None, h_range: None, friction: None };
+        let question = Word { word: Some(word.parse().unwrap()), ..Word::default() };
         let linted = question.answer(&Work::default()).unwrap();
         (question, linted)
     }

@@ -68,16 +68,6 @@ impl Question for Word {
     fn figure(&self, answer: &Linted, _: &Work) -> Result<Option<plot::Figure>> {
         chart::figure(self, answer).map(Some)
     }
-
-    fn command(&self) -> String {
-        let words = self.word.iter().map(|word| format!(" \"{word}\""));
-        let rest = super::Fields::input(self).into_iter().filter(|(key, _)| *key != "word");
-        let flags = rest.map(|(key, value)| {
-            let value = value.as_str().unwrap_or_default().to_string();
-            format!(" --{} {}", key.replace('_', "-"), crate::report::text::quoted(&value))
-        });
-        format!("kickdrift word{}", words.chain(flags).collect::<String>())
-    }
 }
 
 /// The order on oscillators and those on all problems.

@@ -357,16 +357,7 @@ fn bias(linted: &Linted, question: &Word) -> Option<Ball> {
 
 /// The schema of a word's document.
 pub(super) fn schema() -> Schema {
-    let none = Word {
-        word: None,
-        method: None,
-        lambda1: None,
-        lambda2: None,
-        h: None,
-        h_range: None,
-        friction: None,
-    };
-    let body = record(&none)
+    let body = record(&Word::default())
         .keys()
         .key("sums", GROUP, "The coefficients of the drifts and of the kicks of each force, added up exactly; null where the word does not name the force.")
         .key("differs", GROUP_OR_NULL, "The first place where it does not; null for a palindrome.")

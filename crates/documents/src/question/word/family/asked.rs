@@ -244,12 +244,9 @@ impl Family {
     pub(super) fn asked_at(&self, values: &[Rational]) -> Result<Word> {
         Ok(Word {
             word: Some(self.word_at(values)?),
-            method: None,
             lambda1: self.lambda1.clone(),
             lambda2: self.lambda2.clone(),
-            h: None,
-            h_range: None,
-            friction: None,
+            ..Word::default()
         })
     }
 }

@@ -11,7 +11,7 @@ pub use asked::{Family, Goal, Parameter, Parameters};
 pub use member::Member;
 pub use search::{Best, Members};
 
-use crate::question::asking::{Fields, Question, Work};
+use crate::question::asking::{Question, Work};
 use crate::report::document::Document;
 use crate::report::shape::Schema;
 use number::error::{Error, Result};
@@ -60,14 +60,5 @@ impl Question for Family {
 
     fn figure(&self, members: &Members, _: &Work) -> Result<Option<plot::Figure>> {
         chart::figure(self, members).map(Some)
-    }
-
-    fn command(&self) -> String {
-        let rest = Fields::input(self).into_iter().filter(|(key, _)| *key != "word");
-        let flag = |(key, value): (&str, serde_json::Value)| {
-            let value = crate::report::text::quoted(value.as_str().unwrap_or_default()).to_string();
-            format!(" --{} {value}", key.replace('_', "-"))
-        };
-        format!("kickdrift word \"{}\"{}", self.word, rest.map(flag).collect::<String>())
     }
 }
