@@ -48,11 +48,8 @@ impl Args {
         let answer = asked.answer(&work)?;
         let code = if self.exit_code { Self::code(&answer.safe)? } else { 0 };
         let document = self.details.of(asked.document(&answer), format, common)?;
-        let drawn = common.output.as_deref().filter(|_| format.is_figure());
-        match drawn.zip(drawn.map_or(Ok(None), |_| asked.figure(&answer, &work))?) {
-            Some((path, figure)) => self.paper.draw("output", path, figure, common)?,
-            None => common.write(&document, format)?,
-        }
+        let figure = if format.is_figure() { asked.figure(&answer, &work)? } else { None };
+        self.paper.write_answer(figure, &document, format, common)?;
         if let Some(path) = &self.levers {
             let figure = asked.levers_figure(&answer).ok_or_else(|| {
                 Error::input("levers", path.display(), "there is no lever to draw: the answer says why")

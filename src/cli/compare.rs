@@ -43,11 +43,8 @@ impl Args {
         let work = common.work();
         let answer = asked.answer(&work)?;
         let document = self.details.of(self.columns.of(asked.document(&answer))?, format, common)?;
-        let drawn = common.output.as_deref().filter(|_| format.is_figure());
-        match drawn.zip(drawn.map_or(Ok(None), |_| asked.figure(&answer, &work))?) {
-            Some((path, figure)) => self.paper.draw("output", path, figure, common)?,
-            None => common.write(&document, format)?,
-        }
+        let figure = if format.is_figure() { asked.figure(&answer, &work)? } else { None };
+        self.paper.write_answer(figure, &document, format, common)?;
         common.tell_beside_output(&document)
     }
 }

@@ -6,6 +6,7 @@ use plot::Figure;
 
 use super::args::{Common, unused};
 use documents::format::Format;
+use documents::report::document::Document;
 use documents::report::figure::file;
 use documents::report::file::write_output;
 use number::error::{Error, Result};
@@ -87,6 +88,20 @@ impl Paper {
     /// Writes the figure to a file, or to standard output.
     pub fn write(&self, figure: Figure, format: Format, path: Option<&Path>, common: &Common) -> Result<()> {
         self.write_as(figure, format, path, (&common.command, common))
+    }
+
+    /// Writes an answer as the form wants it: the figure where it is drawn, else the document.
+    pub fn write_answer(
+        &self,
+        figure: Option<Figure>,
+        document: &Document,
+        format: Format,
+        common: &Common,
+    ) -> Result<()> {
+        match figure {
+            Some(figure) => self.write(figure, format, common.output.as_deref(), common),
+            None => common.write(document, format),
+        }
     }
 
     /// Writes the figure with this command in it.

@@ -45,13 +45,12 @@ pub struct Args {
 impl Args {
     pub fn run(&self, common: &Common) -> Result<u8> {
         let form = common.format(&Format::SYSTEM, Format::Text)?;
-        let drawing = common.output.as_deref().filter(|_| form.is_figure());
         if Format::MODES.contains(&form) && (!self.scan.is_empty() || self.question.intervals.is_some()) {
             let remedy = "holds the modes of one verdict: leave --scan and --intervals out";
             return Err(Error::input("output", form.name(), remedy));
         }
         // Refused before the work, not after it.
-        self.paper.check(drawing.is_some())?;
+        self.paper.check(form.is_figure())?;
         let (file, system, arrays) = source(&self.path)?;
         let asked = System { file, system, ..self.asked()? };
         let work = Work { arrays: Some(&arrays), ..common.work() };
@@ -63,24 +62,19 @@ impl Args {
             });
         }
         let answer = asked.answer(&work)?;
-        match drawing {
-            None if Format::MODES.contains(&form) => {
-                common.write_text(&asked.in_space(&answer, form)?)?;
-                common.tell_beside_output(&self.details.of(asked.document(&answer), form, common)?)?;
-            }
-            Some(path) => {
-                let figure = asked.drawn(&answer, self.colour.unwrap_or_default(), &work)?;
-                self.paper.draw("output", path, figure, common)?;
-            }
-            None => {
-                let format = match &answer.found {
-                    SystemFound::Map(_) => common.format_of_table(&Format::DOCUMENT)?,
-                    _ => Format::Text,
-                };
-                let format = common.format(&Format::DOCUMENT, format)?;
-                let document = self.columns.of(asked.document(&answer))?;
-                common.write(&self.details.of(document, format, common)?, format)?;
-            }
+        if Format::MODES.contains(&form) {
+            common.write_text(&asked.in_space(&answer, form)?)?;
+            common.tell_beside_output(&self.details.of(asked.document(&answer), form, common)?)?;
+        } else if form.is_figure() {
+            let figure = asked.drawn(&answer, self.colour.unwrap_or_default(), &work)?;
+            self.paper.write(figure, form, common.output.as_deref(), common)?;
+        } else {
+            let format = match &answer.found {
+                SystemFound::Map(_) => common.format_of_table(&Format::DOCUMENT)?,
+                _ => form,
+            };
+            let document = self.columns.of(asked.document(&answer))?;
+            common.write(&self.details.of(document, format, common)?, format)?;
         }
         match &answer.found {
             SystemFound::Verdict(verdict) if self.exit_code => self.code(verdict.analysis.holds()),

@@ -123,13 +123,8 @@ impl Args {
     ) -> Result<()> {
         let document = self.details.of(self.columns.of(question.document(answer))?, format, common)?;
         let figure = if format.is_figure() { question.figure(answer, &common.work())? } else { None };
-        match figure {
-            None => common.write(&document, Format::Text),
-            Some(figure) => {
-                self.paper.write(figure, format, common.output.as_deref(), common)?;
-                common.tell_beside_output(&document)
-            }
-        }
+        self.paper.write_answer(figure, &document, format, common)?;
+        if format.is_figure() { common.tell_beside_output(&document) } else { Ok(()) }
     }
 }
 
