@@ -2,8 +2,8 @@
 
 use super::answer;
 use super::lines::{self, advised, read_from};
-use super::tables::{self, Told, enclosed, for_people};
-use super::words::{fs, nearest, percent, within};
+use super::tables::{self, Numbered, Told, enclosed, for_people, numbered};
+use super::words::{fs, nearest, percent, rounded, within};
 use crate::report::decimal::is_nothing;
 use crate::report::document::Document;
 use crate::report::friction::above;
@@ -90,7 +90,7 @@ fn rate(rate: Option<(f64, f64)>) -> String {
     match rate {
         None => "a rate that is not bounded".into(),
         Some((_, 0.0)) => "no growth".into(),
-        Some((0.0, hi)) => format!("at most {}/ps", nearest((1000.0 * hi, 1000.0 * hi), 2)),
+        Some((0.0, hi)) => format!("at most {}/ps", rounded(1000.0 * hi, 2)),
         Some((lo, hi)) => format!("{}/ps", nearest((1000.0 * lo, 1000.0 * hi), 3)),
     }
 }
@@ -101,21 +101,16 @@ fn summary(findings: &DirectFindings, reading: Option<&Reading>, notes: &[String
     lines.extend(findings.schemes.iter().map(|scheme| line(findings, scheme)));
     if let Some(reading) = reading {
         lines.extend(read_from(advised(&best.scheme, &best.safe), reading));
-        lines.extend(lines::grompp(reading, FASTEST, |n| {
-            nearest((findings.fastest / n as f64, findings.fastest / n as f64), 3)
-        }));
+        lines.extend(lines::grompp(reading, FASTEST, |n| rounded(findings.fastest / n as f64, 3)));
     }
-    let asymmetries: Vec<String> = findings.asymmetries.iter().map(|x| nearest((*x, *x), 3)).collect();
+    let asymmetries: Vec<String> = findings.asymmetries.iter().map(|x| rounded(*x, 3)).collect();
     lines.push(format!(
         "  forces     are no gradient, |J - J'|/|J + J'| = {}: x'' = -J x itself has {}, whatever the steps",
         asymmetries.join(", "),
         rate(findings.without_steps)
     ));
     lines.extend(looked_at(best));
-    let part = |place: Place| {
-        let step = findings.fastest / place.parts();
-        format!("{} fs", nearest((step, step), 4))
-    };
+    let part = |place: Place| format!("{} fs", rounded(findings.fastest / place.parts(), 4));
     let inner = (!findings.harmonic).then(|| part(Place::Turn(HEEDED)));
     lines.push(lines::published(FASTEST, best.scheme.steps().len(), inner, part));
     lines.push(format!("  unknown    {}", UNKNOWN[0]));
@@ -133,7 +128,7 @@ fn choice(findings: &DirectFindings, best: &DirectFinding) -> String {
         return "advice: none: there is one step alone, so no multiple of another to choose".into();
     }
     let times = |outer: &Rational| format!("{} ({} of {})", fs(outer), decimal(&(outer / step)), fs(step));
-    let third = nearest((findings.fastest / 3.0, findings.fastest / 3.0), 3);
+    let third = rounded(findings.fastest / 3.0, 3);
     let proven = format!(
         "up to it every multiple of {} is proven to grow at most twice as fast as the forces do by themselves, with all periods {} shorter too",
         fs(step),
@@ -153,13 +148,7 @@ fn choice(findings: &DirectFindings, best: &DirectFinding) -> String {
                 "advice: none: the step of {} is not below T/6.28 = {} fs of {FASTEST} or T/3 = {third} fs: take a shorter one. {} is the longest \
                  multiple of small oscillations: {proven}",
                 fs(step),
-                nearest(
-                    (
-                        findings.fastest / Place::Turn(HEEDED).parts(),
-                        findings.fastest / Place::Turn(HEEDED).parts()
-                    ),
-                    3
-                ),
+                rounded(findings.fastest / Place::Turn(HEEDED).parts(), 3),
                 times(largest)
             )
         }
@@ -306,19 +295,16 @@ fn row() -> Record<'static, DirectFinding> {
         .says(FLAG_OR_NULL, "Whether an amplitude is tenfold within the run; null where neither is proven, or no length was given.")
 }
 
-/// A rung, and the number of its scheme.
-type Numbered<'a> = (usize, &'a Rung);
-
-fn rungs(findings: &DirectFindings) -> Vec<Numbered<'_>> {
-    let schemes = (1..).zip(&findings.schemes);
-    schemes.flat_map(|(n, scheme)| scheme.ladder.iter().map(move |rung| (n, rung))).collect()
+/// The rungs of all ladders.
+fn rungs(findings: &DirectFindings) -> Vec<Numbered<'_, Rung>> {
+    numbered(&findings.schemes, |scheme| &scheme.ladder)
 }
 
 /// The record of a rung.
-fn rung<'a>() -> Record<'a, Numbered<'a>> {
+fn rung<'a>() -> Record<'a, Numbered<'a, Rung>> {
     let column = |key: &str, title: &str| Column::new(key).in_words(title);
     Record::new()
-        .field(Column::new("scheme"), |pair: &Numbered| pair.0.into())
+        .field(Column::new("scheme"), |pair: &Numbered<Rung>| pair.0.into())
         .says(POSITIVE, "")
         .field(Column::new("multiple"), |pair| pair.1.multiple.into())
         .says(POSITIVE, "")

@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 use super::tables::{enclosed, for_people};
-use super::words::nearest;
+use super::words::rounded;
 use crate::report::document::Document;
 use crate::report::record::Record;
 use crate::report::shape::{ENCLOSED_OR_NULL, EXACT, FLAG, RATIONAL_OR_NULL, ROUNDED_OR_NULL, Shape, TEXT};
@@ -99,7 +99,7 @@ fn shown(levers: &Levers, full: &Table, unit: TimeUnit) -> Table {
     let mut table = for_people(full, |key| columns.iter().any(|text| text == key));
     let rows: Vec<Vec<Cell>> = table.rows().to_vec();
     table = Table::new(full.name(), full.caption(), table.columns().to_vec());
-    let text = |x: &Rational| Cell::Exact(nearest((to_f64(x), to_f64(x)), 3));
+    let text = |x: &Rational| Cell::Exact(rounded(to_f64(x), 3));
     for (lever, mut row) in levers.rows.iter().zip(rows) {
         if lever.is_free {
             row[1] = Cell::Text("none".into());
@@ -107,7 +107,7 @@ fn shown(levers: &Levers, full: &Table, unit: TimeUnit) -> Table {
         row[3] = lever.step.as_ref().map(|(step, _)| Cell::Exact(decimal(step))).into();
         row[5] = lever.slow_per_ps(unit).as_ref().map(text).into();
         row[6] = match lever.solves_per_ps(unit) {
-            Some(solves) => Cell::Text(format!("{} solves", nearest((to_f64(&solves), to_f64(&solves)), 3))),
+            Some(solves) => Cell::Text(format!("{} solves", rounded(to_f64(&solves), 3))),
             None => lever.fast_per_ps(unit).as_ref().map(text).into(),
         };
         row[7] = lever.gain.as_ref().map(text).into();
@@ -166,8 +166,8 @@ pub(super) fn longer(levers: &Levers, unit: TimeUnit) -> Option<String> {
             group.iter().map(|one| &*one.0.name).filter(|name| *name != lever.name).collect();
         let name = one_of(&lever.name, &others);
         let today = *step / lever.gain.as_ref().expect("only what gains is here");
-        let today = unit.of(nearest((to_f64(&today), to_f64(&today)), 3));
-        let gain = nearest((*gain, *gain), 3);
+        let today = unit.of(rounded(to_f64(&today), 3));
+        let gain = rounded(*gain, 3);
         (format!("{} by {name}", unit.of(decimal(step))), gain, today)
     };
     // What all are compared with is said once.
@@ -210,7 +210,7 @@ pub(super) fn lines(levers: &Levers, unit: TimeUnit) -> Vec<String> {
         let word = if gain > 1.0 {
             format!(
                 ", {} times that of kicks and drifts as given or at another ratio",
-                nearest((gain, gain), 3)
+                rounded(gain, 3)
             )
         } else {
             String::new()

@@ -1,6 +1,6 @@
 //! Advice as text: a line for each scheme, then which step to take, then why.
 
-use super::words::{Choice, cap, down, length, named, nearest, percent, typical, within};
+use super::words::{Choice, cap, down, length, named, nearest, not_below, percent, rounded, typical, within};
 use super::{answer, silent};
 use crate::report::decimal::few;
 use crate::report::friction;
@@ -114,11 +114,9 @@ fn line(advice: &Advice, answer: &Answer) -> String {
     let what = match answer.status {
         Status::Safe => format!("safe{}{next}", silent::condition(advice, answer)),
         Status::Caution => {
-            format!(
-                "stable{}{next}; caution: {}",
-                silent::condition(advice, answer),
-                not_below(advice, answer)
-            )
+            let third = nearest(advice.modes[advice.fastest].part(3), 3);
+            let limit = not_below(&advice.caps, &answer.scheme, third, unit);
+            format!("stable{}{next}; caution: {limit}", silent::condition(advice, answer))
         }
         Status::Near => format!("stable{next}: less than the band of {}: do not use", percent(&advice.band)),
         Status::Island => island(answer, unit),
@@ -152,33 +150,6 @@ fn next(advice: &Advice, answer: &Answer) -> String {
     format!("; {what}, margin {}", unit.of(margin))
 }
 
-/// What a step is not below.
-fn not_below(advice: &Advice, answer: &Answer) -> String {
-    let (scheme, unit) = (&answer.scheme, advice.unit);
-    if let Some((clock, value)) = advice.caps.too_long(scheme) {
-        if advice.caps.bound(clock) == Bound::Aperture {
-            let (step, own) = (length(&scheme.steps()[clock], unit), cap(value, unit));
-            return format!(
-                "the step of {step} is not below {own}; beyond it hot bonds are lost, as measured"
-            );
-        }
-        return format!(
-            "the step of {} is not below T/6.28 = {} of its own forces",
-            length(&scheme.steps()[clock], unit),
-            cap(value, unit)
-        );
-    }
-    let third = || unit.of(nearest(advice.modes[advice.fastest].part(3), 3));
-    match advice.caps.outer() {
-        Some((_, Bound::Third)) => format!("not below T/3 = {}", third()),
-        Some((value, Bound::Aperture)) => {
-            format!("not below {}; beyond it hot bonds are lost, as measured", cap(value, unit))
-        }
-        Some((value, bound)) => format!("not below {} = {}", bound.name(), cap(value, unit)),
-        None => "not below what is published".into(),
-    }
-}
-
 fn island(answer: &Answer, unit: TimeUnit) -> String {
     let outer = to_f64(answer.scheme.outer());
     let below = answer
@@ -194,7 +165,7 @@ fn island(answer: &Answer, unit: TimeUnit) -> String {
     match (below, below.and_then(|below| below.upper), first) {
         (Some(below), Some(upper), _) => {
             let worst = below.worst.map_or_else(String::new, |worst| {
-                format!(" (worst: tenfold in {})", unit.of(nearest((worst.time, worst.time), 3)))
+                format!(" (worst: tenfold in {})", unit.of(rounded(worst.time, 3)))
             });
             let above = unit.of(nearest((outer - upper.1, outer - upper.0), 2));
             format!("stable, but {above} above the unstable {}{worst}: do not use", interval(below, unit))
@@ -457,7 +428,7 @@ fn reasons(advice: &Advice) -> Vec<String> {
 fn sums(answer: &Answer, modes: &[Mode], unit: TimeUnit) -> Option<String> {
     let near = |pair: &Pair| {
         let [a, b] = pair.modes.map(|i| modes[i].name.as_str());
-        format!("{a} + {b} near {}", unit.of(nearest((pair.near, pair.near), 3)))
+        format!("{a} + {b} near {}", unit.of(rounded(pair.near, 3)))
     };
     let shown: Vec<String> = answer.pairs.iter().take(4).map(near).collect();
     let more = if answer.pairs.len() > 4 { ", ..." } else { "" };

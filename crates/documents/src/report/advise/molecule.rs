@@ -2,8 +2,8 @@
 
 use super::answer;
 use super::lines::{self, advised, read_from};
-use super::tables::{self, Told, enclosed, for_people};
-use super::words::{Choice, cap, down, fs, nearest, percent, within};
+use super::tables::{self, Numbered, Told, enclosed, for_people, numbered};
+use super::words::{Choice, cap, down, fs, nearest, not_below, percent, rounded, within};
 use crate::report::document::Document;
 use crate::report::friction::above;
 use crate::report::record::Record;
@@ -165,10 +165,6 @@ fn named(group: &Group) -> String {
     }
 }
 
-fn rounded(x: f64, digits: usize) -> String {
-    nearest((x, x), digits)
-}
-
 /// " at the ratio 8", " at the ratios 1:2:8", and which periods beside the fast ones may be off.
 fn ratios(scheme: &Scheme) -> (String, &'static str) {
     let all: Vec<String> = scheme.steps().iter().map(|step| decimal(&(step / scheme.inner()))).collect();
@@ -225,7 +221,11 @@ fn line(findings: &Findings, finding: &Finding) -> String {
     };
     let what = match finding.status {
         Status::Safe => format!("safe{}", next()),
-        Status::Caution => format!("stable{}; caution: {}", next(), not_below(findings, finding)),
+        Status::Caution => {
+            let third = rounded(findings.fastest.period.0 / 3.0, 3);
+            let limit = not_below(&findings.caps, &finding.scheme, third, TimeUnit::Femtoseconds);
+            format!("stable{}; caution: {limit}", next())
+        }
         Status::Near => {
             format!("stable{}: less than the band of {}: do not use", next(), percent(&findings.band))
         }
@@ -247,24 +247,6 @@ fn line(findings: &Findings, finding: &Finding) -> String {
     };
     let within = within(finding.within_run, &findings.length, TimeUnit::Femtoseconds);
     format!("{:6}  {what}{within}", fs(finding.scheme.outer()))
-}
-
-/// What a step is not below.
-fn not_below(findings: &Findings, finding: &Finding) -> String {
-    let unit = TimeUnit::Femtoseconds;
-    if let Some((clock, cap)) = findings.caps.too_long(&finding.scheme) {
-        return format!(
-            "the step of {} is not below T/6.28 = {} of its own forces",
-            fs(&finding.scheme.steps()[clock]),
-            self::cap(cap, unit)
-        );
-    }
-    let third = || unit.of(rounded(findings.fastest.period.0 / 3.0, 3));
-    match findings.caps.outer() {
-        Some((_, Bound::Third)) => format!("not below T/3 = {}", third()),
-        Some((cap, bound)) => format!("not below {} = {}", bound.name(), self::cap(cap, unit)),
-        None => "not below what is published".into(),
-    }
 }
 
 /// ": tenfold in ...".
@@ -313,20 +295,16 @@ fn group() -> Record<'static, Group> {
         .says(TEXT, "Who moves in the fastest of them.")
 }
 
-/// An interval, and the number of its scheme.
-type Numbered<'a> = (usize, &'a Growing);
-
 /// The intervals of each scheme at its ratio.
-fn all_growing(findings: &Findings) -> Vec<Numbered<'_>> {
-    let schemes = (1..).zip(&findings.schemes);
-    schemes.flat_map(|(n, finding)| finding.growing.iter().map(move |growing| (n, growing))).collect()
+fn all_growing(findings: &Findings) -> Vec<Numbered<'_, Growing>> {
+    numbered(&findings.schemes, |finding| &finding.growing)
 }
 
 /// The record of an interval.
-fn growing<'a>() -> Record<'a, Numbered<'a>> {
+fn growing<'a>() -> Record<'a, Numbered<'a, Growing>> {
     let column = |key: &str, title: &str| Column::new(key).in_words(title);
     Record::new()
-        .field(Column::new("scheme"), |pair: &Numbered| pair.0.into())
+        .field(Column::new("scheme"), |pair: &Numbered<Growing>| pair.0.into())
         .says(POSITIVE, "")
         .field(column("lower", "grows from").in_unit("fs"), |pair| pair.1.lower.into())
         .says(ROUNDED, "Where it begins: of the first proven unstable, of the next ones sampled; a rounded double.")

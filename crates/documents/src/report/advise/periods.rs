@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 use super::tables::{self, Told, enclosed, for_people};
-use super::words::nearest;
+use super::words::rounded;
 use super::{answer, levers, lines};
 use crate::report::decimal;
 use crate::report::document::Document;
@@ -242,7 +242,7 @@ fn row<'a>(unit: TimeUnit, all: bool) -> Record<'a, Named<'a>> {
         let worst = Column::new(&format!("{key}_tenfold_steps")).in_words("worst: tenfold in steps");
         record = record
             .field(worst, move |named| match which(named.row).and_then(|which| which.worst) {
-                Some(worst) if !all => Cell::Exact(nearest((worst.steps, worst.steps), 4)),
+                Some(worst) if !all => Cell::Exact(rounded(worst.steps, 4)),
                 worst => worst.map(|worst| worst.steps).into(),
             })
             .says(ROUNDED_OR_NULL, TENFOLD);

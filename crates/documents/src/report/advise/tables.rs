@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use super::words::nearest;
+use super::words::{nearest, rounded};
 use crate::report::record::Record;
 use crate::report::shape::{ROUNDED, Shape, TEXT, TEXTS, WIDE_ENCLOSURE};
 use crate::report::table::{Cell, Column, Table};
@@ -86,12 +86,21 @@ pub fn for_people(full: &Table, shown: impl Fn(&str) -> bool) -> Table {
     let columns = kept.columns().iter().map(|column| Column { enclosed: false, ..column.clone() });
     let mut table = Table::new(kept.name(), kept.caption(), columns.collect());
     let five_digits = |cell: &Cell| match *cell {
-        Cell::Float(x) => Cell::Exact(nearest((x, x), 5)),
+        Cell::Float(x) => Cell::Exact(rounded(x, 5)),
         Cell::Enclosure { lo, hi } => Cell::Exact(nearest((lo, hi), 5)),
         _ => cell.clone(),
     };
     kept.rows().iter().for_each(|row| table.push(row.iter().map(five_digits).collect()));
     table
+}
+
+/// One of several things of a scheme, with the number of that scheme.
+pub type Numbered<'a, T> = (usize, &'a T);
+
+/// These things of all schemes, in their order.
+pub fn numbered<S, T>(schemes: &[S], of: impl Fn(&S) -> &[T]) -> Vec<Numbered<'_, T>> {
+    let each = |(n, scheme)| of(scheme).iter().map(move |thing| (n, thing));
+    (1..).zip(schemes).flat_map(each).collect()
 }
 
 /// An enclosure, in fs unless it is said otherwise.

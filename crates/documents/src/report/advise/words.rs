@@ -20,6 +20,11 @@ pub fn nearest((lo, hi): (f64, f64), digits: usize) -> String {
     same.map_or_else(|| format!("{} to {}", shown(lo, 2), shown(hi, 2)), |n| shown(lo, n))
 }
 
+/// A number of so many significant digits at most.
+pub(super) fn rounded(x: f64, digits: usize) -> String {
+    nearest((x, x), digits)
+}
+
 /// The name of a mode and where it comes from, for people.
 pub(super) fn named(mode: &Mode, unit: TimeUnit) -> String {
     let period = unit.of(nearest(mode.period(), 4));
@@ -87,6 +92,27 @@ pub(super) fn down(x: f64) -> String {
 /// A bound on a step, three digits, rounded down.
 pub(super) fn cap(x: &Rational, unit: TimeUnit) -> String {
     unit.of(down(number::rational::to_f64(x)))
+}
+
+/// What a step of a scheme is not below; a third of the fastest period in words.
+pub(super) fn not_below(caps: &Caps, scheme: &Scheme, third: String, unit: TimeUnit) -> String {
+    if let Some((clock, own)) = caps.too_long(scheme) {
+        let (step, own) = (length(&scheme.steps()[clock], unit), cap(own, unit));
+        return match caps.bound(clock) {
+            Bound::Aperture => {
+                format!("the step of {step} is not below {own}; beyond it hot bonds are lost, as measured")
+            }
+            _ => format!("the step of {step} is not below T/6.28 = {own} of its own forces"),
+        };
+    }
+    match caps.outer() {
+        Some((_, Bound::Third)) => format!("not below T/3 = {}", unit.of(third)),
+        Some((own, Bound::Aperture)) => {
+            format!("not below {}; beyond it hot bonds are lost, as measured", cap(own, unit))
+        }
+        Some((own, bound)) => format!("not below {} = {}", bound.name(), cap(own, unit)),
+        None => "not below what is published".into(),
+    }
 }
 
 /// The choice of an outer step: `safe` is below what is published too, `largest` is proven for the whole
