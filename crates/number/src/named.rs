@@ -21,6 +21,14 @@ macro_rules! named {
             /// Their names, in the same order.
             pub const NAMES: &'static [&'static str] = &[$($name),*];
 
+            /// The one of this name.
+            pub fn named(name: &str) -> Option<$Name> {
+                match name {
+                    $($name => Some($Name::$Variant),)*
+                    _ => None,
+                }
+            }
+
             /// The name in documents.
             pub const fn name(self) -> &'static str {
                 match self {

@@ -72,8 +72,7 @@ impl Displacement {
 }
 
 fn ends(field: &str, text: &str) -> Result<Ends> {
-    let known = Ends::ALL.into_iter().find(|ends| ends.name() == text);
-    known.ok_or_else(|| Error::input(field, text, "is symmetric or staggered"))
+    Ends::named(text).ok_or_else(|| Error::input(field, text, "is symmetric or staggered"))
 }
 
 /// The value of a flag that is given or not.

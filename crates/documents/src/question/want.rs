@@ -51,8 +51,8 @@ impl Want {
     /// An unknown product or format, or a format that the product does not have.
     fn new(text: &str) -> Result<Want> {
         let (name, format) = text.split_once('.').map_or((text, None), |(name, format)| (name, Some(format)));
-        let product = Product::ALL.into_iter().find(|product| product.name() == name);
-        let product = product.ok_or_else(|| unknown(text, "the products are", &Product::NAMES.join(", ")))?;
+        let known = || unknown(text, "the products are", &Product::NAMES.join(", "));
+        let product = Product::named(name).ok_or_else(known)?;
         let default = if product.is_figure() { Format::Svg } else { Format::Json };
         let format = match format {
             Some(format) => {

@@ -23,15 +23,12 @@ named! {
     }
 }
 
-impl Colour {
-    fn read(field: &str, text: &str) -> Result<Colour> {
-        let known = Colour::ALL.into_iter().find(|colour| colour.name() == text);
-        known.ok_or_else(|| Error::input(field, text, "choose family or growth"))
-    }
+notation! {
+    Colour: colour, |colour: &Colour| colour.name(), Shape::OneOf(Colour::NAMES);
 }
 
-notation! {
-    Colour: Colour::read, |colour: &Colour| colour.name().to_string(), Shape::OneOf(Colour::NAMES);
+fn colour(field: &str, text: &str) -> Result<Colour> {
+    Colour::named(text).ok_or_else(|| Error::input(field, text, "choose family or growth"))
 }
 
 /// A figure to which tongues are added.

@@ -208,10 +208,7 @@ pub(super) fn lines(levers: &Levers, unit: TimeUnit) -> Vec<String> {
     if let Some((lever, (step, bound))) = best.and_then(|best| Some((best, best.step.as_ref()?))) {
         let gain = lever.gain.as_ref().map_or(1.0, to_f64);
         let word = if gain > 1.0 {
-            format!(
-                ", {} times that of kicks and drifts as given or at another ratio",
-                rounded(gain, 3)
-            )
+            format!(", {} times that of kicks and drifts as given or at another ratio", rounded(gain, 3))
         } else {
             String::new()
         };

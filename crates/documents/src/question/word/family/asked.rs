@@ -144,19 +144,14 @@ named! {
     }
 }
 
-impl FromStr for Goal {
-    type Err = Error;
-
-    fn from_str(text: &str) -> Result<Goal> {
-        let names = Goal::ALL.map(Goal::name);
-        let found = Goal::ALL.into_iter().find(|goal| goal.name() == text);
-        found.ok_or_else(|| Error::input("goal", text, format!("choose one of {}", names.join(", "))))
-    }
-}
-
 notation! {
     Parameters: |_: &str, text: &str| text.parse(), ToString::to_string;
-    Goal: |_: &str, text: &str| text.parse(), |goal: &Goal| goal.name().to_string();
+    Goal: goal, |goal: &Goal| goal.name();
+}
+
+fn goal(field: &str, text: &str) -> Result<Goal> {
+    let remedy = || format!("choose one of {}", Goal::NAMES.join(", "));
+    Goal::named(text).ok_or_else(|| Error::input(field, text, remedy()))
 }
 
 question! {
