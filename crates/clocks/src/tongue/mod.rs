@@ -54,7 +54,7 @@ mod survey;
 mod tongues;
 
 pub use closing::{COMPLETE_UP_TO, Closing, Found, Search, closings, closings_of};
-pub use edge::{Edge, Effort, Enclosure};
+pub use edge::{Edge, Effort, Enclosure, Tongues};
 pub use gap::{Gap, count_closings, entries};
 pub use peak::Peak;
 pub use question::{Listing, Progress, StepWindow, Stiffness};
@@ -63,4 +63,3 @@ pub use row::{ExactEdge, Law, Predicted, Resonance, Row, Side, Wanted};
 pub use select::{Labels, Range, Selection};
 pub use string::Entry;
 pub use survey::{Spread, Survey, Thin, survey};
-pub use tongues::Tongues;

@@ -1,9 +1,9 @@
 //! Questions about the tongues of many ratios: which of them, and what of each.
 
+use super::edge::Tongues;
 use super::gap::Gap;
 use super::request::{Request, Tongue};
 use super::select::{Range, Selection};
-use super::tongues::Tongues;
 use number::error::{Error, Result};
 use number::parallel::try_map;
 use number::{ExactSign, Laurent, Ratio, Rational, Sign};
@@ -129,7 +129,7 @@ impl Listing {
         if let Some(&first) = ratios.first() {
             let tongues = Tongues::new(first, &stiffness.rho)?;
             if ratios.len() == 1 {
-                tongues.check_labels(&selection)?;
+                selection.check_labels(&tongues)?;
             }
         }
         request.wanted.family = true;

@@ -1,11 +1,10 @@
 //! A tongue with all that is asked for: its edges in h1 and h2 where L1 is known, by as many digits as are
 //! wanted.
 
-use super::edge::{Edge, Enclosure};
+use super::edge::{Edge, Enclosure, Tongues};
 use super::gap::Gap;
 use super::row::{ExactEdge, Resonance, Row, Wanted};
 use super::string::Entry;
-use super::tongues::Tongues;
 use number::error::Result;
 use number::{Ball, Laurent, Ratio, Rational, Real};
 
@@ -57,7 +56,7 @@ impl Request {
     /// # Errors
     /// Where the schedule is too long.
     pub fn answer(&self, tongues: &Tongues, gap: &Gap) -> Result<Tongue> {
-        self.of_row(tongues, gap, tongues.row(gap, &self.wanted)?)
+        Ok(self.answers(tongues, std::slice::from_ref(gap))?.remove(0))
     }
 
     /// Several of them, which where growth is wanted cost a fraction of so many alone.
@@ -65,19 +64,16 @@ impl Request {
     /// # Errors
     /// Where the schedule is too long.
     pub fn answers(&self, tongues: &Tongues, gaps: &[Gap]) -> Result<Vec<Tongue>> {
-        let rows = tongues.rows(gaps, &self.wanted)?;
-        rows.into_iter().zip(gaps).map(|(row, gap)| self.of_row(tongues, gap, row)).collect()
-    }
-
-    fn of_row(&self, tongues: &Tongues, gap: &Gap, row: Row) -> Result<Tongue> {
-        let lower = self.edge(tongues, gap.m, &gap.lower, &row.exact[0])?;
-        let upper = match &gap.upper {
-            Some(upper) => Some(self.edge(tongues, gap.m, upper, &row.exact[1])?),
-            None => None,
+        let answer = |row: Row| {
+            let gap = &row.gap;
+            let lower = self.edge(tongues, gap.m, &gap.lower, &row.exact[0])?;
+            let upper =
+                gap.upper.map(|upper| self.edge(tongues, gap.m, &upper, &row.exact[1])).transpose()?;
+            let growth_rate =
+                row.peak.zip(self.lambda1.as_ref()).map(|(peak, lambda1)| peak.growth_rate(lambda1));
+            Ok(Tongue { row, lower, upper, growth_rate })
         };
-        let growth_rate =
-            row.peak.as_ref().zip(self.lambda1.as_ref()).map(|(peak, lambda1)| peak.growth_rate(lambda1));
-        Ok(Tongue { row, lower, upper, growth_rate })
+        tongues.rows(gaps, &self.wanted)?.into_iter().map(answer).collect()
     }
 
     fn edge(&self, tongues: &Tongues, m: u64, edge: &Edge, form: &Option<ExactEdge>) -> Result<TongueEdge> {

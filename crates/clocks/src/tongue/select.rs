@@ -15,7 +15,7 @@ use std::cmp::Ordering;
 use std::fmt;
 use std::str::FromStr;
 
-use super::edge::{Edge, Edges, counts};
+use super::edge::{Edge, Tongues, counts};
 use super::gap::Gap;
 use super::string::MOST_KICKS;
 use super::string::lanes::LANES;
@@ -91,42 +91,43 @@ impl Selection {
     }
 
     /// Whether a tongue meets the window of s, decided.
-    pub(crate) fn meets_window(&self, edges: &Edges, gap: &Gap) -> Result<bool> {
+    pub(crate) fn meets_window(&self, tongues: &Tongues, gap: &Gap) -> Result<bool> {
         let Some((lo, hi)) = &self.s else { return Ok(true) };
-        let is_above = |edge: &Edge| edges.compare(edge, hi).map(Ordering::is_gt);
-        let ends_below = |edge: &Edge| edges.compare(edge, lo).map(Ordering::is_lt);
+        let is_above = |edge: &Edge| tongues.compare(edge, hi).map(Ordering::is_gt);
+        let ends_below = |edge: &Edge| tongues.compare(edge, lo).map(Ordering::is_lt);
         Ok(lo <= hi && !is_above(&gap.lower)? && !gap.upper.as_ref().map_or(Ok(false), ends_below)?)
     }
 
-    /// That the labels asked for exist among 1 to `last` of p/q.
+    /// That the labels asked for exist.
     ///
     /// # Errors
     /// A label beyond the last tongue.
-    pub(crate) fn check_labels(&self, edges: &Edges, last: u64) -> Result<()> {
+    pub(crate) fn check_labels(&self, tongues: &Tongues) -> Result<()> {
+        let last = tongues.last();
         let ranges = self.m.iter().flat_map(|labels| &labels.0);
         match ranges.flat_map(|&(from, upto)| [from, upto]).find(|m| !(1..=last).contains(m)) {
             None => Ok(()),
             Some(m) => {
-                let remedy = format!("{} has the tongues 1 to {last}", edges.ratio());
+                let remedy = format!("{} has the tongues 1 to {last}", tongues.ratio());
                 Err(Error::input("m", m, remedy))
             }
         }
     }
 
-    /// The labels selected among 1 to `last`, as far as they are known before the edges, in order.
+    /// The labels selected, as far as they are known before the edges, in order.
     ///
     /// # Errors
     /// A window of s of a period too long to be laid out.
-    pub fn labels(&self, edges: &Edges, last: u64) -> Result<Vec<u64>> {
-        let (first, last) =
-            self.s.as_ref().map_or(Ok((1, last)), |window| labels_within(edges, window, last))?;
+    pub(crate) fn labels(&self, tongues: &Tongues) -> Result<Vec<u64>> {
+        let all = Ok((1, tongues.last()));
+        let (first, last) = self.s.as_ref().map_or(all, |window| labels_within(tongues, window))?;
         let within = |range: Option<(i64, i64)>, x: i64| range.is_none_or(|(lo, hi)| lo <= x && x <= hi);
         let wanted = |m: u64| {
             let listed = self.m.as_ref().is_none_or(|list| list.0.iter().any(|&(a, b)| a <= m && m <= b));
             let any = self.a.is_none() && self.b.is_none();
             listed
                 && (any || {
-                    let (a, b) = dominant_family(edges.ratio(), m);
+                    let (a, b) = dominant_family(tongues.ratio(), m);
                     within(self.a, a) && within(self.b, b)
                 })
         };
@@ -137,21 +138,20 @@ impl Selection {
         });
         if upto.saturating_sub(from) > MOST_KICKS {
             // So many labels are listed of no period that is too long to be laid out.
-            edges.string()?;
+            tongues.string()?;
         }
         Ok((from..=upto).filter(|&m| wanted(m)).collect())
     }
 }
 
-/// A range of labels among 1 to `last` that holds all tongues which meet the window: an edge with an index
-/// not above the count at its lower end lies below it, one with an index above the count at its upper end
-/// lies beyond.
-fn labels_within(edges: &Edges, (lo, hi): &Range, last: u64) -> Result<(u64, u64)> {
+/// A range of labels that holds all tongues which meet the window: an edge with an index not above the count
+/// at its lower end lies below it, one with an index above the count at its upper end lies beyond.
+fn labels_within(tongues: &Tongues, (lo, hi): &Range) -> Result<(u64, u64)> {
     let (lo, hi) = (lo.enclose_f64().0, hi.enclose_f64().1);
     if hi < lo || hi <= 0.0 {
         return Ok((1, 0));
     }
-    let string = edges.string()?;
+    let string = tongues.string()?;
     let counts = |s: f64| {
         // The counts neither underflow nor overflow within these.
         let kappa = (s / string.ticks).min(4.0 * string.upper_bound);
@@ -160,7 +160,7 @@ fn labels_within(edges: &Edges, (lo, hi): &Range, last: u64) -> Result<(u64, u64
     let ([a, b, c, d], [e, f, g, h]) = (counts(lo * (1.0 - SLACK)), counts(hi * (1.0 + SLACK)));
     let first = (2 * b.min(c) + 2).min(2 * a.min(d) + 1);
     let upto = (2 * f.max(g)).max((2 * e.max(h)).saturating_sub(1));
-    Ok((first, upto.min(last)))
+    Ok((first, upto.min(tongues.last())))
 }
 
 /// Ranges that hold all labels and not many others: those to compute side by side.

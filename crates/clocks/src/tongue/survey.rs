@@ -11,8 +11,8 @@
 
 use std::collections::BTreeMap;
 
+use super::edge::Tongues;
 use super::row::{Row, Side, Wanted};
-use super::tongues::Tongues;
 use number::error::Result;
 use number::parallel::try_map;
 use number::{Ratio, Rational};

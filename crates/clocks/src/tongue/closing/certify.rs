@@ -7,9 +7,8 @@ use num_traits::{One, Signed};
 
 use super::jet::{Jet, jets};
 use crate::propagator::TwoClocks;
-use crate::tongue::edge::{Enclosure, simplest};
+use crate::tongue::edge::{Enclosure, Tongues, simplest};
 use crate::tongue::string::Entry;
-use crate::tongue::tongues::Tongues;
 use crate::verdict::Decidable;
 use number::error::{Error, Result};
 use number::parallel::go_on;

@@ -12,7 +12,7 @@ use super::eigenvalues::{eigenvalues, sighting};
 use super::enclosure::{Edge, Enclosure};
 use super::fine_count::{self, TWO_DOUBLES};
 use super::function::{By, EntryFunction};
-use super::{exact_count, long, precise};
+use super::{exact_count, long, modular, precise};
 use crate::orbit::returns;
 use crate::tongue::string::{Entry, HalfString, Indices, MOST_KICKS};
 use number::error::{Error, Result};
@@ -38,41 +38,57 @@ const MOST_EDGES: usize = 1 << 20;
 /// A relative width of 2^-56 shows in no double.
 const DIGITS_OF_DOUBLES: u32 = 56;
 
-/// The zeros of the entries A, B, C and D in s > 0, for one p/q and ρ ≥ 0.
+/// All tongues of one p/q and ρ ≥ 0, computed as they are asked for; their edges are the zeros of the entries
+/// A, B, C and D in s > 0.
 #[derive(Debug)]
-pub struct Edges {
+pub struct Tongues {
     ratio: Ratio,
     rho: Rational,
     /// Laid out when it is first needed.
     string: OnceLock<HalfString>,
+    /// Whether all tongues of even m, and all of odd m, are proven open.
+    open: [OnceLock<bool>; 2],
     doubles: AtomicU64,
     precise: AtomicU64,
 }
 
-impl Clone for Edges {
+impl Clone for Tongues {
     fn clone(&self) -> Self {
         let Effort { doubles, precise } = self.effort();
-        let (rho, string) = (self.rho.clone(), self.string.clone());
-        Edges { ratio: self.ratio, rho, string, doubles: doubles.into(), precise: precise.into() }
+        let (rho, string, open) = (self.rho.clone(), self.string.clone(), self.open.clone());
+        Tongues { ratio: self.ratio, rho, string, open, doubles: doubles.into(), precise: precise.into() }
     }
 }
 
-impl Edges {
-    /// The edges of h2/h1 = p/q and ρ = L2/L1.
+impl Tongues {
+    /// The tongues of h2/h1 = p/q and ρ = L2/L1.
     ///
     /// # Errors
-    /// ρ < 0 (no string), ρ p/q beyond 1e±16.
+    /// ρ < 0 (then the masses are no string's), ρ p/q beyond 1e±16.
     pub fn new(ratio: Ratio, rho: &Rational) -> Result<Self> {
         HalfString::check(ratio, rho)?;
-        Ok(Edges { ratio, rho: rho.clone(), string: OnceLock::new(), doubles: 0.into(), precise: 0.into() })
+        let (string, open) = Default::default();
+        Ok(Tongues { ratio, rho: rho.clone(), string, open, doubles: 0.into(), precise: 0.into() })
     }
 
+    /// h2/h1 = p/q.
     pub fn ratio(&self) -> Ratio {
         self.ratio
     }
 
+    /// The numerator of h2/h1.
+    pub fn p(&self) -> u64 {
+        self.ratio.p()
+    }
+
+    /// ρ = L2/L1.
     pub fn rho(&self) -> &Rational {
         &self.rho
+    }
+
+    /// m of the last tongue, which is infinite: p + q − 1, or p for ρ = 0.
+    pub fn last(&self) -> u64 {
+        if self.rho.is_zero() { self.p() } else { self.ratio.kicks() - 1 }
     }
 
     /// The half period as a string.
@@ -88,12 +104,12 @@ impl Edges {
     }
 
     /// How many positive zeros an entry has.
-    pub fn dimension(&self, entry: Entry) -> usize {
+    pub fn zeros(&self, entry: Entry) -> usize {
         HalfString::dimension(self.ratio, self.rho.is_zero(), entry)
     }
 
     /// Whether the period is so long that edges are found one by one.
-    pub fn is_long(&self) -> bool {
+    pub(crate) fn is_long(&self) -> bool {
         returns::is_worth(self.ratio, f64::MANTISSA_DIGITS)
     }
 
@@ -103,12 +119,12 @@ impl Edges {
         Effort { doubles, precise }
     }
 
-    /// The edges `first` ..= `last` of one problem.
+    /// The edges `first` ..= `last` of one problem, counted from 1.
     ///
     /// # Errors
     /// Where the schedule is too long; an index out of range.
-    pub fn range(&self, entry: Entry, first: usize, last: usize) -> Result<Vec<Edge>> {
-        let zeros = self.dimension(entry);
+    pub fn edges(&self, entry: Entry, first: usize, last: usize) -> Result<Vec<Edge>> {
+        let zeros = self.zeros(entry);
         if first == 0 || first > last || last > zeros {
             let remedy = format!("entry {} has {zeros} positive zeros", entry.name());
             return Err(Error::input("edge", format!("{first}..{last}"), remedy));
@@ -118,17 +134,17 @@ impl Edges {
         Ok(self.with_indices(&wanted)?.concat())
     }
 
-    /// All edges, by entry.
+    /// All edges, by entry: the quickest way to have them all.
     ///
     /// # Errors
     /// Where the schedule is too long.
-    pub fn all(&self) -> Result<[Vec<Edge>; 4]> {
-        let all = Entry::ALL.map(|entry| self.dimension(entry));
+    pub fn all_edges(&self) -> Result<[Vec<Edge>; 4]> {
+        let all = Entry::ALL.map(|entry| self.zeros(entry));
         self.with_indices(&all.map(|zeros| (zeros > 0).then_some(1..=zeros)))
     }
 
     /// The edges of each problem with the given indices, all side by side.
-    pub fn with_indices(&self, wanted: &Indices) -> Result<[Vec<Edge>; 4]> {
+    pub(crate) fn with_indices(&self, wanted: &Indices) -> Result<[Vec<Edge>; 4]> {
         let mut edges = [const { Vec::new() }; 4];
         let count: usize = wanted.iter().flatten().map(|range| range.clone().count()).sum();
         if self.is_long() && count <= if self.ratio.kicks() > MOST_KICKS { MOST_EDGES } else { ONE_BY_ONE } {
@@ -206,7 +222,7 @@ impl Edges {
 
     /// The edge to `digits` significant digits, from an enclosure that may be narrower than the edge's own.
     /// Where it holds another zero, or one on its end, proven counts identify the edge.
-    pub fn sharpened(&self, edge: &Edge, start: &Enclosure, digits: u32) -> Result<Enclosure> {
+    pub(crate) fn sharpened(&self, edge: &Edge, start: &Enclosure, digits: u32) -> Result<Enclosure> {
         self.precise.fetch_add(1, Relaxed);
         let (entry, index, around) = (edge.entry, edge.index as usize, Some((edge.lo, edge.hi)));
         if let Some(found) = self.by_returns(edge, start, digits)? {
@@ -223,12 +239,17 @@ impl Edges {
         Ok(precise::shrink(&function, &alone, &relative, true).expect("it is isolated"))
     }
 
-    /// As [`Edges::sharpened`] by return maps alone; `None` where they cannot decide it, and of a period that
+    /// As [`Tongues::sharpened`] by return maps alone; `None` where they cannot decide it, and of a period that
     /// is not long.
     ///
     /// # Errors
     /// Where the schedule is too long.
-    pub fn by_returns(&self, edge: &Edge, start: &Enclosure, digits: u32) -> Result<Option<Enclosure>> {
+    pub(crate) fn by_returns(
+        &self,
+        edge: &Edge,
+        start: &Enclosure,
+        digits: u32,
+    ) -> Result<Option<Enclosure>> {
         if !self.is_long() {
             return Ok(None);
         }
@@ -241,7 +262,7 @@ impl Edges {
     ///
     /// # Errors
     /// Where the schedule is too long.
-    pub fn compare(&self, edge: &Edge, s: &Laurent) -> Result<Ordering> {
+    pub(crate) fn compare(&self, edge: &Edge, s: &Laurent) -> Result<Ordering> {
         let exact = s.as_rational();
         let order = |enclosure: &Enclosure, bits: u32| {
             let [least, most] = match &exact {
@@ -279,6 +300,20 @@ impl Edges {
         EntryFunction::new(self.ratio, &self.rho, entry, By::Kicks)
     }
 
+    /// Whether all tongues of one parity of m are proven open, ρ being positive; computed once.
+    ///
+    /// # Errors
+    /// Where the schedule is too long.
+    pub(crate) fn are_open(&self, odd: bool) -> Result<bool> {
+        let known = &self.open[usize::from(odd)];
+        if let Some(&open) = known.get() {
+            return Ok(open);
+        }
+        let degrees = Entry::of_tongue(odd).map(|entry| self.zeros(entry));
+        let open = modular::all_open(self.ratio, &self.rho, odd, degrees)?;
+        Ok(*known.get_or_init(|| open))
+    }
+
     /// s = 4 sin²(m π/(2p)), where p θ = m π: the paper's eq. (9).
     pub fn resonance(&self, m: u64, bits: u32) -> Ball {
         let angle = Ball::pi(bits + 16).mul(
@@ -306,14 +341,14 @@ mod tests {
         for (p, q, rho) in
             [(16411, 16421, ratio(1, 10)), (40009, 16901, ratio(3, 100)), (16901, 40009, ratio(2, 1))]
         {
-            let edges = Edges::new(Ratio::new(p, q).unwrap(), &rho).unwrap();
+            let tongues = Tongues::new(Ratio::new(p, q).unwrap(), &rho).unwrap();
             for entry in Entry::ALL {
-                let last = edges.dimension(entry);
+                let last = tongues.zeros(entry);
                 for index in [1, 2, last / 7, last / 3, last / 2, last - 1, last] {
-                    let Some(edge) = edges.lone(entry, index).unwrap() else { continue };
+                    let Some(edge) = tongues.lone(entry, index).unwrap() else { continue };
                     let mut wanted = [const { None }; 4];
                     wanted[entry as usize] = Some(index..=index);
-                    let other = eigenvalues(edges.string().unwrap(), &wanted)[entry as usize][0].unwrap();
+                    let other = eigenvalues(tongues.string().unwrap(), &wanted)[entry as usize][0].unwrap();
                     assert!(
                         edge.is_narrow() && edge.lo <= other.hi && other.lo <= edge.hi,
                         "{edge:?} {other:?}"
@@ -329,9 +364,9 @@ mod tests {
     #[test]
     fn a_period_of_too_many_kicks_to_lay_out_has_its_tongues() {
         let rho = ratio(1, 10);
-        let edges = Edges::new(Ratio::new(13717421, 109739369).unwrap(), &rho).unwrap();
-        assert!(edges.string().is_err());
-        let edge = edges.lone(Entry::A, 3).unwrap().unwrap();
+        let tongues = Tongues::new(Ratio::new(13717421, 109739369).unwrap(), &rho).unwrap();
+        assert!(tongues.string().is_err());
+        let edge = tongues.lone(Entry::A, 3).unwrap().unwrap();
         // The slow kicks being small and close, the fast ones too: s = h1² L1 of the fifth half turn of a
         // smooth force.
         let smooth = (5.0 * std::f64::consts::PI / 13717421.0).powi(2) / (1.0 + 0.1);

@@ -14,6 +14,7 @@
 //! | `fine_count` | 25 digits by counts in two doubles |
 //! | `precise`, `exact_count` | any number of digits; counts where two doubles cannot separate |
 //! | `long` | edges of long periods, one by one |
+//! | `modular` | the proof modulo a prime that no tongue is closed |
 //! | `edges` | the edges of one ratio, by whichever way is needed |
 
 mod batch;
@@ -29,11 +30,11 @@ mod isolate;
 mod locate;
 mod long;
 mod mode;
+mod modular;
 mod precise;
 
 pub use count::counts;
-pub use edges::Edges;
-pub use edges::Effort;
+pub use edges::{Effort, Tongues};
 pub(crate) use enclosure::negative_log2;
 pub use enclosure::{Edge, Enclosure};
 pub(crate) use fine_count::TWO_DOUBLES;

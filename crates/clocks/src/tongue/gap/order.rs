@@ -8,9 +8,8 @@
 use num_traits::Zero;
 
 use super::elimination::common_factor;
-use super::modular::Openness;
 use super::tunnel::{self, Apart};
-use crate::tongue::edge::{Edge, Edges, Enclosure, TWO_DOUBLES, negative_log2, simplest};
+use crate::tongue::edge::{Edge, Enclosure, TWO_DOUBLES, Tongues, negative_log2, simplest};
 use crate::tongue::string::{Digits, Twofold};
 use number::error::Result;
 use number::{Rational, Sign};
@@ -51,7 +50,7 @@ impl Gap {
     ///
     /// # Errors
     /// Where the schedule is too long.
-    pub(crate) fn new(edges: &Edges, open: &Openness, m: u64, pair: [Option<Edge>; 2]) -> Result<Gap> {
+    pub(crate) fn new(tongues: &Tongues, m: u64, pair: [Option<Edge>; 2]) -> Result<Gap> {
         let (a, b) = match pair {
             [Some(a), Some(b)] => (a, b),
             [Some(lower), None] | [None, Some(lower)] => {
@@ -65,30 +64,30 @@ impl Gap {
         if is_accurate(width) {
             return Ok(Gap { m, lower, upper: Some(upper), closed: false, width });
         }
-        Gap::thin(edges, open, m, lower, upper)
+        Gap::thin(tongues, m, lower, upper)
     }
 
     /// The tongue between two edges whose enclosures overlap or nearly do.
-    fn thin(edges: &Edges, open: &Openness, m: u64, a: Edge, b: Edge) -> Result<Gap> {
-        if edges.rho().is_zero() {
+    fn thin(tongues: &Tongues, m: u64, a: Edge, b: Edge) -> Result<Gap> {
+        if tongues.rho().is_zero() {
             return Ok(Gap { m, lower: a, upper: Some(b), closed: true, width: (0.0, 0.0) });
         }
         let (free, pinned) = if a.entry.starts_free() { (a, b) } else { (b, a) };
         let between = [free.lo.min(pinned.lo), free.hi.max(pinned.hi)];
-        if edges.is_long()
-            && let Some(gap) = Gap::by_returns(edges, m, free, pinned)?
+        if tongues.is_long()
+            && let Some(gap) = Gap::by_returns(tongues, m, free, pinned)?
         {
             return Ok(gap);
         }
-        let tunnelled = by_tunnelling(edges, m, &free, &pinned, between)?;
-        tunnelled.map_or_else(|| Gap::by_digits(edges, open, m, free, pinned), Ok)
+        let tunnelled = by_tunnelling(tongues, m, &free, &pinned, between)?;
+        tunnelled.map_or_else(|| Gap::by_digits(tongues, m, free, pinned), Ok)
     }
 
     /// By digits of both edges that return maps give, where these part them.
-    fn by_returns(edges: &Edges, m: u64, a: Edge, b: Edge) -> Result<Option<Gap>> {
+    fn by_returns(tongues: &Tongues, m: u64, a: Edge, b: Edge) -> Result<Option<Gap>> {
         let (mut x, mut y) = (Enclosure::from(&a), Enclosure::from(&b));
         for digits in DIGITS_OF_RETURNS {
-            let found = (edges.by_returns(&a, &x, digits)?, edges.by_returns(&b, &y, digits)?);
+            let found = (tongues.by_returns(&a, &x, digits)?, tongues.by_returns(&b, &y, digits)?);
             let (Some(first), Some(second)) = found else { return Ok(None) };
             (x, y) = (first, second);
             if let Some((gap, _)) = parted(m, [(a, &x), (b, &y)]).filter(|(gap, _)| is_accurate(gap.width)) {
@@ -99,12 +98,12 @@ impl Gap {
     }
 
     /// By more and more digits of both edges, until they part or are proven one.
-    fn by_digits(edges: &Edges, open: &Openness, m: u64, free: Edge, pinned: Edge) -> Result<Gap> {
+    fn by_digits(tongues: &Tongues, m: u64, free: Edge, pinned: Edge) -> Result<Gap> {
         let (a, b) = (free, pinned);
         let (mut x, mut y) = (Enclosure::from(&a), Enclosure::from(&b));
         let mut digits = TWO_DOUBLES;
         loop {
-            (x, y) = (edges.sharpened(&a, &x, digits)?, edges.sharpened(&b, &y, digits)?);
+            (x, y) = (tongues.sharpened(&a, &x, digits)?, tongues.sharpened(&b, &y, digits)?);
             if let Some((gap, width)) = parted(m, [(a, &x), (b, &y)]) {
                 if is_accurate(gap.width) {
                     return Ok(gap);
@@ -114,10 +113,10 @@ impl Gap {
                 digits = places.max(digits + 1);
             } else if digits == TWO_DOUBLES
                 && let between = [(&x.lo).min(&y.lo), (&x.hi).max(&y.hi)].map(Twofold::from_rational)
-                && let Some(gap) = by_tunnelling(edges, m, &a, &b, between)?
+                && let Some(gap) = by_tunnelling(tongues, m, &a, &b, between)?
             {
                 return Ok(gap);
-            } else if !open.is_proven(edges, m % 2 == 1)? && coincide(edges, &[(a, &x), (b, &y)])? {
+            } else if !tongues.are_open(m % 2 == 1)? && coincide(tongues, &[(a, &x), (b, &y)])? {
                 return Ok(Gap { m, lower: a, upper: Some(b), closed: true, width: (0.0, 0.0) });
             } else {
                 digits *= 2;
@@ -136,13 +135,13 @@ fn parted(m: u64, [(a, x), (b, y)]: [(Edge, &Enclosure); 2]) -> Option<(Gap, Rat
 
 /// The tongue, if orbits over an interval that holds both edges give its width.
 fn by_tunnelling<D: Digits>(
-    edges: &Edges,
+    tongues: &Tongues,
     m: u64,
     free: &Edge,
     pinned: &Edge,
     between: [D; 2],
 ) -> Result<Option<Gap>> {
-    let splitting = tunnel::splitting(edges.string()?, free.entry, between);
+    let splitting = tunnel::splitting(tongues.string()?, free.entry, between);
     let Some(Apart { in_order, width }) = splitting else { return Ok(None) };
     let (lower, upper) = if in_order { (*free, *pinned) } else { (*pinned, *free) };
     let is_enough = is_accurate(width) || width.1 < f64::MIN_POSITIVE;
@@ -151,17 +150,17 @@ fn by_tunnelling<D: Digits>(
 
 /// Whether both entries vanish at the simplest rational in both enclosures, or at a common algebraic zero
 /// there.
-fn coincide(edges: &Edges, pair: &[(Edge, &Enclosure); 2]) -> Result<bool> {
+fn coincide(tongues: &Tongues, pair: &[(Edge, &Enclosure); 2]) -> Result<bool> {
     let [(a, x), (b, y)] = pair;
     let (lo, hi) = ((&x.lo).max(&y.lo), (&x.hi).min(&y.hi));
     if lo > hi {
         return Ok(false);
     }
     let candidate = simplest(lo, hi);
-    let (f, g) = (edges.function(a.entry)?, edges.function(b.entry)?);
+    let (f, g) = (tongues.function(a.entry)?, tongues.function(b.entry)?);
     if f.exact_sign(&candidate) == Sign::Zero && g.exact_sign(&candidate) == Sign::Zero {
         return Ok(true);
     }
-    let common = common_factor(edges.ratio(), edges.rho(), [a.entry, b.entry]);
+    let common = common_factor(tongues.ratio(), tongues.rho(), [a.entry, b.entry]);
     Ok(common.degree() > Some(0) && common.count_roots(lo, hi) > 0)
 }

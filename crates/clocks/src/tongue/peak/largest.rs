@@ -27,7 +27,7 @@
 
 use super::meet::{Meeting, Point};
 use crate::propagator::TwoClocks;
-use crate::tongue::edge::{Edge, Edges, Enclosure, negative_log2};
+use crate::tongue::edge::{Edge, Enclosure, Tongues, negative_log2};
 use crate::tongue::gap::Gap;
 use crate::tongue::string::HalfString;
 use crate::verdict::{Limits, Side, Verdict, growth};
@@ -63,35 +63,42 @@ const STEP: f64 = 1e-10;
 /// Steps at most; regula falsi needs three to ten.
 const STEPS: u32 = 100;
 
-impl Peak {
-    /// The peaks of tongues that are open and finite; `None` of any other.
+impl Tongues {
+    /// The fastest growth inside a tongue; `None` of a closed one and of the infinite one.
     ///
     /// # Errors
     /// Where the schedule is too long, or more digits are needed than are tried.
-    pub fn all(edges: &Edges, gaps: &[Gap]) -> Result<Vec<Option<Peak>>> {
+    pub fn peak(&self, gap: &Gap) -> Result<Option<Peak>> {
+        Ok(self.peaks(std::slice::from_ref(gap))?.remove(0))
+    }
+
+    /// As [`Tongues::peak`], of many tongues.
+    pub(crate) fn peaks(&self, gaps: &[Gap]) -> Result<Vec<Option<Peak>>> {
         // For a long period one point in more bits costs less than the string.
-        let by_bits = |gap: &Gap| edges.is_long() && gap.width.1 <= POINT * gap.lower.lo;
+        let by_bits = |gap: &Gap| self.is_long() && gap.width.1 <= POINT * gap.lower.lo;
         let open = gaps.iter().filter_map(|gap| gap.upper.filter(|_| !gap.closed).map(|upper| (gap, upper)));
         let in_doubles: Vec<_> = open.filter(|(gap, _)| !by_bits(gap)).collect();
         let mut found = match in_doubles.is_empty() {
             true => Vec::new(),
-            false => Search::all(edges.string()?, &in_doubles),
+            false => Search::all(self.string()?, &in_doubles),
         }
         .into_iter();
         let peak = |gap: &Gap| {
             let Some(upper) = gap.upper.filter(|_| !gap.closed) else { return Ok(None) };
             let in_doubles = if by_bits(gap) { None } else { found.next().flatten() };
-            let (s, ln_multiplier) = in_doubles.map_or_else(|| fastest_by_bits(edges, gap, &upper), Ok)?;
+            let (s, ln_multiplier) = in_doubles.map_or_else(|| fastest_by_bits(self, gap, &upper), Ok)?;
             Ok(Some(Peak {
                 s,
                 ln_multiplier,
-                rate: ln_multiplier / (edges.ratio().p() as f64 * s.sqrt()),
-                slow_steps_to_tenfold: std::f64::consts::LN_10 * edges.ratio().q() as f64 / ln_multiplier,
+                rate: ln_multiplier / (self.ratio().p() as f64 * s.sqrt()),
+                slow_steps_to_tenfold: std::f64::consts::LN_10 * self.ratio().q() as f64 / ln_multiplier,
             }))
         };
         gaps.iter().map(peak).collect()
     }
+}
 
+impl Peak {
     /// The growth rate per unit time for a fast stiffness L1, rounded: `rate` is in units of √L1.
     pub fn growth_rate(&self, lambda1: &Laurent) -> f64 {
         self.rate * lambda1.to_f64().sqrt()
@@ -99,36 +106,36 @@ impl Peak {
 }
 
 /// s and ln μ by golden section and certified enclosures: slow, and always right.
-fn fastest_by_bits(edges: &Edges, gap: &Gap, upper: &Edge) -> Result<(f64, f64)> {
-    let [a, b] = parted(edges, &gap.lower, upper, gap.width.0)?;
+fn fastest_by_bits(tongues: &Tongues, gap: &Gap, upper: &Edge) -> Result<(f64, f64)> {
+    let [a, b] = parted(tongues, &gap.lower, upper, gap.width.0)?;
     let width = &b - &a;
     let ratio = rational::to_f64(&(&width / &a));
     let at = |u: f64| {
         let part = if ratio > THIN { (u * ratio.ln_1p()).exp_m1() / ratio } else { u };
         &a + &width * rational::from_f64_exact(part).expect("finite")
     };
-    let ln = |s: &Rational| ln_multiplier_by_bits(edges, s, gap.m);
+    let ln = |s: &Rational| ln_multiplier_by_bits(tongues, s, gap.m);
     let rate = |u: f64| Ok(ln(&at(u))? / rational::to_f64(&at(u)).sqrt());
     let u = if ratio > POINT { golden(rate)? } else { 0.5 };
     Ok((rational::to_f64(&at(u)), ln(&at(u))?))
 }
 
 /// Points at the edges, to within 1e-8 of their distance.
-fn parted(edges: &Edges, lower: &Edge, upper: &Edge, width: f64) -> Result<[Rational; 2]> {
+fn parted(tongues: &Tongues, lower: &Edge, upper: &Edge, width: f64) -> Result<[Rational; 2]> {
     let [mut a, mut b] = [lower, upper].map(Enclosure::from);
     // Those of the tongue's relative width (a binary digit is 0.3 decimal ones), and ten more.
     let mut digits =
         3 * negative_log2(&rational::from_f64_exact(width / lower.lo).expect("finite")) / 10 + 10;
     while (a.width() + b.width()) * Rational::from_integer(100_000_000.into()) > &b.lo - &a.hi {
-        (a, b) = (edges.sharpened(lower, &a, digits)?, edges.sharpened(upper, &b, digits)?);
+        (a, b) = (tongues.sharpened(lower, &a, digits)?, tongues.sharpened(upper, &b, digits)?);
         digits *= 2;
     }
     Ok([a.middle(), b.middle()])
 }
 
-fn ln_multiplier_by_bits(edges: &Edges, s: &Rational, m: u64) -> Result<f64> {
+fn ln_multiplier_by_bits(tongues: &Tongues, s: &Rational, m: u64) -> Result<f64> {
     let verdict = Verdict::Hyperbolic(Side::of_half_turns(m));
-    let clocks = TwoClocks::with_rho(edges.ratio(), s.clone(), edges.rho().clone());
+    let clocks = TwoClocks::with_rho(tongues.ratio(), s.clone(), tongues.rho().clone());
     let ln = growth(&clocks, verdict, &Limits::default())?.ln_multiplier.map(|ln| ln.mid_f64());
     ln.filter(|&ln| ln > 0.0).ok_or_else(|| {
         let cost = format!("the growth of tongue {m} at s = {}", rational::to_f64(s));
@@ -284,7 +291,6 @@ fn golden(f: impl Fn(f64) -> Result<f64>) -> Result<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tongue::Tongues;
     use number::Ratio;
     use number::rational::ratio;
 
@@ -295,16 +301,16 @@ mod tests {
         for decade in [-12, -6, -3, -1, 0, 2, 6, 12] {
             for (p, q) in [(2, 1), (1, 2), (7, 3), (5, 6), (4, 9), (19, 16)] {
                 let rho = ratio(7, 5) * power(decade);
-                let edges = Edges::new(Ratio::new(p, q).unwrap(), &rho).unwrap();
-                for gap in Tongues::new(Ratio::new(p, q).unwrap(), &rho).unwrap().all().unwrap() {
+                let tongues = Tongues::new(Ratio::new(p, q).unwrap(), &rho).unwrap();
+                for gap in tongues.all().unwrap() {
                     let Some(upper) = gap.upper.filter(|_| !gap.closed) else { continue };
                     seen += 1;
-                    let alone = Search::all(edges.string().unwrap(), &[(&gap, upper)]);
+                    let alone = Search::all(tongues.string().unwrap(), &[(&gap, upper)]);
                     let Some((s, ln)) = alone[0] else {
                         left += 1;
                         continue;
                     };
-                    let (t, exact) = fastest_by_bits(&edges, &gap, &upper).unwrap();
+                    let (t, exact) = fastest_by_bits(&tongues, &gap, &upper).unwrap();
                     let rate = |s: f64, ln: f64| ln / s.sqrt();
                     // Golden section sees a maximum to the root of a rounding.
                     assert!((s - t).abs() < 1e-7 * t, "{p}/{q}, 10^{decade}: {s}, {t}, {gap:?}");
@@ -322,13 +328,13 @@ mod tests {
     /// kicks show.
     #[test]
     fn thin_tongues_of_a_long_period_grow_as_their_kicks_say() {
-        let edges = Edges::new(Ratio::new(30001, 30000).unwrap(), &ratio(121, 10_000)).unwrap();
-        for gap in Tongues::new(edges.ratio(), edges.rho()).unwrap().gaps(1, 2).unwrap() {
+        let tongues = Tongues::new(Ratio::new(30001, 30000).unwrap(), &ratio(121, 10_000)).unwrap();
+        for gap in tongues.gaps(1, 2).unwrap() {
             let upper = gap.upper.unwrap();
-            assert!(edges.is_long() && gap.width.1 < POINT * gap.lower.lo);
-            let [a, b] = [&gap.lower, &upper].map(|edge| edges.refine(edge, 40).unwrap().middle());
-            let exact = ln_multiplier_by_bits(&edges, &((a + b) / Rational::from_integer(2.into())), gap.m);
-            let (_, ln) = fastest_by_bits(&edges, &gap, &upper).unwrap();
+            assert!(tongues.is_long() && gap.width.1 < POINT * gap.lower.lo);
+            let [a, b] = [&gap.lower, &upper].map(|edge| tongues.refine(edge, 40).unwrap().middle());
+            let exact = ln_multiplier_by_bits(&tongues, &((a + b) / Rational::from_integer(2.into())), gap.m);
+            let (_, ln) = fastest_by_bits(&tongues, &gap, &upper).unwrap();
             // The rate is flat in the middle, to the square of the 1e-8 of a width that the place may be off.
             assert!((ln / exact.unwrap() - 1.0).abs() < 1e-14, "{ln} {gap:?}");
         }

@@ -2,7 +2,7 @@
 
 use num_traits::Zero;
 
-use crate::tongue::edge::{Edge, Edges, Enclosure, simplest};
+use crate::tongue::edge::{Edge, Enclosure, Tongues, simplest};
 use crate::tongue::string::Entry;
 use number::error::Result;
 use number::named;
@@ -24,24 +24,25 @@ pub enum ExactEdge {
 /// The odd solution of p θ = m π vanishes at all slow kicks if q = 1 (and then ends with x = 0 or v = 0 at
 /// T/2 as m is even or odd), or if q = 2 and m is even: the slow clock does not act on it. Likewise with the
 /// clocks exchanged. Other edges are rational if the simplest rational in the enclosure is a zero.
-pub(crate) fn exact_edge(edges: &Edges, m: u64, edge: &Edge) -> Result<Option<ExactEdge>> {
+pub(crate) fn exact_edge(tongues: &Tongues, m: u64, edge: &Edge) -> Result<Option<ExactEdge>> {
     let odd_start = !edge.entry.starts_free();
     let silent = |other: u64| other == 1 || (other == 2 && edge.entry == Entry::B);
-    if let Some(s) = rational_edge(edges, edge)? {
+    if let Some(s) = rational_edge(tongues, edge)? {
         return Ok(Some(ExactEdge::Rational(s)));
     }
-    if (odd_start && silent(edges.ratio().q()) && m < edges.ratio().p()) || edges.rho().is_zero() {
+    if (odd_start && silent(tongues.ratio().q()) && m < tongues.ratio().p()) || tongues.rho().is_zero() {
         return Ok(Some(ExactEdge::Resonance));
     }
-    Ok((odd_start && silent(edges.ratio().p()) && m < edges.ratio().q()).then_some(ExactEdge::SlowResonance))
+    Ok((odd_start && silent(tongues.ratio().p()) && m < tongues.ratio().q())
+        .then_some(ExactEdge::SlowResonance))
 }
 
-fn rational_edge(edges: &Edges, edge: &Edge) -> Result<Option<Rational>> {
+fn rational_edge(tongues: &Tongues, edge: &Edge) -> Result<Option<Rational>> {
     let around = Enclosure::from(edge);
     let candidate = simplest(&around.lo, &around.hi);
     // A random enclosure of 2^-52 has its simplest rational at a denominator of some 2^26.
     let simple = candidate.denom().bits() <= 20;
-    let is_zero = simple && edges.function(edge.entry)?.is_zero_at(&candidate);
+    let is_zero = simple && tongues.function(edge.entry)?.is_zero_at(&candidate);
     Ok(is_zero.then_some(candidate))
 }
 

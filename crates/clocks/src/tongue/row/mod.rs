@@ -21,7 +21,7 @@ pub use exact::{ExactEdge, Resonance};
 pub use predicted::{Predicted, Side};
 
 use crate::resonance::{FirstOrder, dominant_family, first_order};
-use crate::tongue::edge::Edges;
+use crate::tongue::edge::Tongues;
 use crate::tongue::gap::Gap;
 use crate::tongue::peak::Peak;
 use number::error::Result;
@@ -79,35 +79,45 @@ pub struct Row {
     pub first_order: Option<Law>,
 }
 
-impl Row {
-    /// The rows of tongues with the columns wanted.
+impl Tongues {
+    /// A tongue with the columns wanted.
     ///
     /// # Errors
     /// Where the schedule is too long.
-    pub fn all(edges: &Edges, gaps: &[Gap], wanted: &Wanted) -> Result<Vec<Row>> {
-        let peaks = if wanted.growth { Peak::all(edges, gaps)? } else { vec![None; gaps.len()] };
-        gaps.iter().zip(peaks).map(|(gap, peak)| Row::new(edges, gap, wanted, peak)).collect()
+    pub fn row(&self, gap: &Gap, wanted: &Wanted) -> Result<Row> {
+        Ok(self.rows(std::slice::from_ref(gap), wanted)?.remove(0))
     }
 
-    fn new(edges: &Edges, gap: &Gap, wanted: &Wanted, peak: Option<Peak>) -> Result<Row> {
-        let (ratio, m) = (edges.ratio(), gap.m);
+    /// Tongues with the columns wanted: where growth is wanted, many cost a fraction of so many alone.
+    ///
+    /// # Errors
+    /// Where the schedule is too long.
+    pub fn rows(&self, gaps: &[Gap], wanted: &Wanted) -> Result<Vec<Row>> {
+        let peaks = if wanted.growth { self.peaks(gaps)? } else { vec![None; gaps.len()] };
+        gaps.iter().zip(peaks).map(|(gap, peak)| Row::new(self, gap, wanted, peak)).collect()
+    }
+}
+
+impl Row {
+    fn new(tongues: &Tongues, gap: &Gap, wanted: &Wanted, peak: Option<Peak>) -> Result<Row> {
+        let (ratio, m) = (tongues.ratio(), gap.m);
         let family = wanted.family.then(|| dominant_family(ratio, m));
         let mut exact = [None, None];
         if wanted.exact {
-            exact[0] = exact_edge(edges, m, &gap.lower)?;
-            exact[1] = gap.upper.as_ref().map_or(Ok(None), |upper| exact_edge(edges, m, upper))?;
+            exact[0] = exact_edge(tongues, m, &gap.lower)?;
+            exact[1] = gap.upper.as_ref().map_or(Ok(None), |upper| exact_edge(tongues, m, upper))?;
         }
-        let predicted = if wanted.predicted { Predicted::new(edges, gap)? } else { None };
-        let first_order = if wanted.first_order { Law::new(edges, gap) } else { None };
+        let predicted = if wanted.predicted { Predicted::new(tongues, gap)? } else { None };
+        let first_order = if wanted.first_order { Law::new(tongues, gap) } else { None };
         Ok(Row { ratio, gap: gap.clone(), family, exact, peak, predicted, first_order })
     }
 }
 
 impl Law {
-    fn new(edges: &Edges, gap: &Gap) -> Option<Law> {
+    fn new(tongues: &Tongues, gap: &Gap) -> Option<Law> {
         const BITS: u32 = 128;
-        let rho = Some(edges.rho()).filter(|rho| !rho.is_zero())?;
-        let FirstOrder { centre, width, ln_multiplier } = first_order(edges.ratio(), gap.m, rho)?;
+        let rho = Some(tongues.rho()).filter(|rho| !rho.is_zero())?;
+        let FirstOrder { centre, width, ln_multiplier } = first_order(tongues.ratio(), gap.m, rho)?;
         let between = |(lo, hi): (f64, f64)| {
             let [lo, hi] =
                 [lo, hi].map(|x| rational::from_f64_exact(x).map(|x| Ball::from_rational(&x, BITS)));

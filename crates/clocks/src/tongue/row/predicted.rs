@@ -4,7 +4,7 @@ use num_traits::{Signed, Zero};
 
 use super::exact::{ExactEdge, exact_edge};
 use crate::propagator::TwoClocks;
-use crate::tongue::edge::{Edge, Edges};
+use crate::tongue::edge::{Edge, Tongues};
 use crate::tongue::gap::Gap;
 use crate::verdict::{Kind, Limits, decide};
 use number::error::Result;
@@ -40,39 +40,39 @@ impl Predicted {
     ///
     /// # Errors
     /// Where the schedule is too long.
-    pub fn new(edges: &Edges, gap: &Gap) -> Result<Option<Predicted>> {
-        let Some(upper) = gap.upper.filter(|_| gap.m < edges.ratio().p()) else { return Ok(None) };
-        let s = edges.resonance(gap.m, 128);
+    pub fn new(tongues: &Tongues, gap: &Gap) -> Result<Option<Predicted>> {
+        let Some(upper) = gap.upper.filter(|_| gap.m < tongues.ratio().p()) else { return Ok(None) };
+        let s = tongues.resonance(gap.m, 128);
         let lower = gap.lower;
         let side = match (compare(&s, &lower), compare(&s, &upper)) {
-            _ if edges.rho().is_zero() => Side::OnLower,
+            _ if tongues.rho().is_zero() => Side::OnLower,
             (Some(Sign::Negative), _) => Side::Below,
             (_, Some(Sign::Positive)) => Side::Above,
             (Some(Sign::Positive), Some(Sign::Negative)) => Side::Inside,
-            (at_lower, _) => decide_side(edges, gap, at_lower.is_none())?,
+            (at_lower, _) => decide_side(tongues, gap, at_lower.is_none())?,
         };
         let distance = match side {
-            Side::Below => distance(edges, gap.m, &lower)?,
-            Side::Above => distance(edges, gap.m, &upper)?,
+            Side::Below => distance(tongues, gap.m, &lower)?,
+            Side::Above => distance(tongues, gap.m, &upper)?,
             Side::OnLower | Side::OnUpper => 0.0,
-            Side::Inside => -distance(edges, gap.m, &lower)?.min(distance(edges, gap.m, &upper)?),
+            Side::Inside => -distance(tongues, gap.m, &lower)?.min(distance(tongues, gap.m, &upper)?),
         };
-        Ok(Some(Predicted { s: Ball::nearest_f64(|bits| edges.resonance(gap.m, bits)), side, distance }))
+        Ok(Some(Predicted { s: Ball::nearest_f64(|bits| tongues.resonance(gap.m, bits)), side, distance }))
     }
 }
 
 /// How far the predicted point is from an edge that it is not; rounded, but never to 0 or to the other side.
-fn distance(edges: &Edges, m: u64, edge: &Edge) -> Result<f64> {
+fn distance(tongues: &Tongues, m: u64, edge: &Edge) -> Result<f64> {
     let from_doubles = |s: f64| (edge.lo - s).max(s - edge.hi);
-    let near = from_doubles(edges.resonance(m, 128).mid_f64());
+    let near = from_doubles(tongues.resonance(m, 128).mid_f64());
     // Two roundings of s: of a larger distance they take less than a millionth.
     if near > 1e6 * f64::EPSILON * edge.hi {
         return Ok(near);
     }
     let mut digits = 40;
     loop {
-        let precise = edges.refine(edge, digits)?;
-        let s = edges.resonance(m, 4 * digits + 64);
+        let precise = tongues.refine(edge, digits)?;
+        let s = tongues.resonance(m, 4 * digits + 64);
         let (below, above) = (&precise.lo - s.upper(), s.lower() - &precise.hi);
         if let Some(distance) = [below, above].into_iter().find(Signed::is_positive) {
             return Ok(rational::to_f64(&distance));
@@ -93,16 +93,16 @@ fn compare(s: &Ball, edge: &Edge) -> Option<Sign> {
 
 /// The predicted point lies within an edge's enclosure: the verdict there, in exact cyclotomic numbers if
 /// need be, decides on which side of the edge.
-fn decide_side(edges: &Edges, gap: &Gap, at_lower: bool) -> Result<Side> {
+fn decide_side(tongues: &Tongues, gap: &Gap, at_lower: bool) -> Result<Side> {
     let edge = if at_lower { &gap.lower } else { gap.upper.as_ref().expect("a finite tongue") };
     let on = if at_lower { Side::OnLower } else { Side::OnUpper };
-    if exact_edge(edges, gap.m, edge)? == Some(ExactEdge::Resonance) {
+    if exact_edge(tongues, gap.m, edge)? == Some(ExactEdge::Resonance) {
         return Ok(on);
     }
-    let p = u32::try_from(edges.ratio().p()).expect("a period that is laid out in memory");
+    let p = u32::try_from(tongues.ratio().p()).expect("a period that is laid out in memory");
     let s = Cyclotomic::resonant_s(gap.m as i64, p);
-    let rho = <Cyclotomic as Ring>::from_rational(edges.rho());
-    let verdict = decide(&TwoClocks::with_rho(edges.ratio(), s, rho), &Limits::default())?.verdict;
+    let rho = <Cyclotomic as Ring>::from_rational(tongues.rho());
+    let verdict = decide(&TwoClocks::with_rho(tongues.ratio(), s, rho), &Limits::default())?.verdict;
     Ok(match verdict.kind() {
         Kind::Hyperbolic => Side::Inside,
         Kind::Elliptic if at_lower => Side::Below,

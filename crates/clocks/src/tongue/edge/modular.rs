@@ -7,13 +7,9 @@
 //! thin; A and D likewise for odd m. The other answer, a common factor, may be an accident of the prime and
 //! is left to exact arithmetic.
 
-use std::sync::OnceLock;
-
 use num_traits::Zero;
 
 use crate::schedule::{KickDrift, Kicks, Schedule};
-use crate::tongue::edge::Edges;
-use crate::tongue::string::Entry;
 use number::error::Result;
 use number::{PrimeField, Ratio, Rational};
 
@@ -67,7 +63,7 @@ impl KickDrift<u64> for PolynomialOrbit {
 /// Whether both edges of every tongue of the given parity of m are proven different, for ρ > 0.
 ///
 /// `degrees` are the numbers of positive zeros of (B, C) for even m, of (A, D) for odd m.
-fn all_open(ratio: Ratio, rho: &Rational, odd: bool, degrees: [usize; 2]) -> Result<bool> {
+pub fn all_open(ratio: Ratio, rho: &Rational, odd: bool, degrees: [usize; 2]) -> Result<bool> {
     debug_assert!(!rho.is_zero());
     let (Some(even_start), Some(odd_start)) = (ends(ratio, rho, true)?, ends(ratio, rho, false)?) else {
         return Ok(false);
@@ -77,24 +73,4 @@ fn all_open(ratio: Ratio, rho: &Rational, odd: bool, degrees: [usize; 2]) -> Res
     let second = if odd { second } else { second.into_iter().skip(1).collect() };
     let survived = first.len() == degrees[0] + 1 && second.len() == degrees[1] + 1;
     Ok(survived && FIELD.gcd(first, second).len() == 1)
-}
-
-/// Whether all tongues of even m, and all of odd m, are open; each is computed once.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Openness([OnceLock<bool>; 2]);
-
-impl Openness {
-    /// Whether all tongues of one parity of m are proven open, ρ being positive.
-    ///
-    /// # Errors
-    /// Where the schedule is too long.
-    pub fn is_proven(&self, edges: &Edges, odd: bool) -> Result<bool> {
-        let known = &self.0[usize::from(odd)];
-        if let Some(&open) = known.get() {
-            return Ok(open);
-        }
-        let degrees = Entry::of_tongue(odd).map(|entry| edges.dimension(entry));
-        let open = all_open(edges.ratio(), edges.rho(), odd, degrees)?;
-        Ok(*known.get_or_init(|| open))
-    }
 }
