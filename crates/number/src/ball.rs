@@ -11,7 +11,7 @@
 //! let root = two.sqrt(bits).unwrap();
 //! let error = root.square(bits).sub(&two, bits);
 //! assert_eq!(error.sign(), None); // contains 0: undecided, as it must be
-//! assert!(error.radius_log2().unwrap() < -190);
+//! assert!(error.to_f64_enclosure().1 < 1e-57);
 //! assert_eq!(Ball::pi(bits).compare(&root), Some(std::cmp::Ordering::Greater));
 //! ```
 
@@ -278,12 +278,6 @@ impl Ball {
             }
             working *= 2;
         }
-    }
-
-    /// The least t with radius ≤ 2^t; `None` for an exact ball.
-    pub fn radius_log2(&self) -> Option<i64> {
-        let units = self.rad.checked_sub(1)?;
-        Some(self.exp + 64 - i64::from(units.leading_zeros()))
     }
 
     /// How many leading bits the radius leaves intact, up to one: about log2 |mid / rad|.

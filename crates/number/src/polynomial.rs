@@ -2,14 +2,14 @@
 //! is ℚ\[ρ\]\[s\].
 //!
 //! ```
-//! use kickdrift_number::{Polynomial, Rational, rational::ratio};
+//! use kickdrift_number::{Polynomial, Rational, Sturm, rational::ratio};
 //! // (s − 1)² (s² − 2) has the real roots −√2, 1, √2.
 //! let s = Polynomial::<Rational>::variable();
 //! let shifted = &s - &Polynomial::constant(ratio(1, 1));
 //! let f = &(&shifted * &shifted) * &(&(&s * &s) - &Polynomial::constant(ratio(2, 1)));
 //! assert_eq!(f.text(&["s"]), "s^4 - 2*s^3 - s^2 + 4*s - 2");
 //! assert_eq!(f.count_roots(&ratio(0, 1), &ratio(2, 1)), 2);
-//! assert_eq!(f.isolate_real_roots().len(), 3);
+//! assert_eq!(Sturm::new(&f).isolate().len(), 3);
 //! ```
 
 mod display;

@@ -234,7 +234,7 @@ fn first_tier<S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule) -> Option<fil
 /// use kickdrift_clocks::propagator::{TwoClocks, half_period};
 /// let clocks = TwoClocks::with_rho("7/2".parse().unwrap(), ratio(1, 3), ratio(1, 25));
 /// let trace = kickdrift_clocks::verdict::filter_trace(&clocks).unwrap();
-/// assert!(trace.contains(&half_period(&clocks).trace()) && trace.radius_log2() < Some(-40));
+/// assert!(trace.contains(&half_period(&clocks).trace()) && trace.relative_accuracy_bits() > 40);
 /// ```
 pub fn filter_trace<S: Real>(clocks: &TwoClocks<S>) -> Option<Ball> {
     let ends = filter::run(&Floquet::new(clocks)?)?;

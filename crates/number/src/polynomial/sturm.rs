@@ -61,12 +61,8 @@ impl<C: SignAt> Sturm<C> {
         self.variations(lo) - self.variations(hi) + at_lo
     }
 
-    /// The number of distinct real roots.
-    pub fn count_all(&self) -> usize {
-        self.count(&-&self.bound, &self.bound)
-    }
-
-    /// All real roots, increasing, in intervals that share at most an end, which is no root.
+    /// All real roots, increasing, in intervals that share at most an end, which is no root; see
+    /// [`Sturm::refine`] to make these small.
     pub fn isolate(&self) -> Vec<RootInterval> {
         let mut roots = Vec::new();
         // The bound exceeds every root, so no end is a root.
@@ -160,14 +156,6 @@ impl Polynomial<Rational> {
     /// **Panics** for the polynomial 0.
     pub fn count_roots(&self, lo: &Rational, hi: &Rational) -> usize {
         Sturm::new(self).count(lo, hi)
-    }
-
-    /// All real roots, increasing, in intervals that share at most an end, which is no root; see
-    /// [`Sturm::refine`] to make these small.
-    ///
-    /// **Panics** for the polynomial 0.
-    pub fn isolate_real_roots(&self) -> Vec<RootInterval> {
-        Sturm::new(self).isolate()
     }
 }
 

@@ -43,7 +43,7 @@ fn degrees_and_roots() {
             .iter()
             .rev()
             .fold(Ball::zero(), |value, k| value.mul(&c, 300).add(&Ball::from_rational(k, 300), 300));
-        assert!(value.contains_zero() && value.radius_log2().is_none_or(|r| r < -200), "n = {n}");
+        assert!(value.contains_zero() && value.top().is_none_or(|top| top < -200), "n = {n}");
     }
 }
 

@@ -1,9 +1,10 @@
-//! Velocity Verlet for x'' + L x = 0, in velocity form (paper eq. (1)) and staggered form (eqs. (2)-(3)).
+//! Velocity Verlet for x'' + L x = 0, in velocity form (paper eq. (1)); eqs. (2)-(3), the staggered form, are
+//! D(h) K(hL), its conjugate.
 //!
 //! ```
-//! use kickdrift_clocks::propagator::methods::verlet;
+//! use kickdrift_clocks::propagator::{drift, kick, methods::verlet};
 //! let (h, l) = (0.5, 3.0);
-//! assert_eq!(verlet::velocity_form(h, l).trace(), verlet::staggered_form(h, l).trace());
+//! assert_eq!(verlet::velocity_form(h, l).trace(), (drift(h) * kick(h * l)).trace());
 //! ```
 
 use nalgebra::Matrix2;
@@ -19,9 +20,4 @@ pub fn velocity_form<S: Ring>(h: S, stiffness: S) -> Matrix2<S> {
     let one_half = S::from_rational(&Rational::new(1.into(), 2.into()));
     let half_kick = S::product(&h, &stiffness) * one_half;
     kick(half_kick.clone()) * drift(h) * kick(half_kick)
-}
-
-/// One full kick, then one drift: D(h) K(hL). Conjugate to the velocity form, so the trace is the same.
-pub fn staggered_form<S: Ring>(h: S, stiffness: S) -> Matrix2<S> {
-    drift(h.clone()) * kick(S::product(&h, &stiffness))
 }
