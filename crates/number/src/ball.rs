@@ -67,6 +67,18 @@ impl Ball {
         Ball { mid: n.clone(), rad: 0, exp: 0 }
     }
 
+    /// The number that the double x is, exactly; `None` for infinities and NaN.
+    pub fn from_f64(x: f64) -> Option<Ball> {
+        let (whole, exponent, sign) = Float::integer_decode(x);
+        let mid = BigInt::from(i64::from(sign)) * whole;
+        x.is_finite().then(|| Ball { mid, rad: 0, exp: i64::from(exponent) }.normalized())
+    }
+
+    /// All numbers between two doubles; `None` unless both are finite.
+    pub fn between(lo: f64, hi: f64, bits: u32) -> Option<Ball> {
+        Some(Ball::from_f64(lo)?.union(&Ball::from_f64(hi)?, bits))
+    }
+
     /// x, rounded to `bits` bits: exact if x is a dyadic rational that fits.
     pub fn from_rational(x: &Rational, bits: u32) -> Ball {
         let (numerator, denominator) = (x.numer(), x.denom());

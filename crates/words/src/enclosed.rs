@@ -247,12 +247,7 @@ impl<'a> Enclosed<'a> {
 
     /// Whether all steps of [lo, hi] are stable or all unstable; `None` where that is undecided.
     fn verdict(&self, lo: f64, hi: f64) -> Option<bool> {
-        let exact = |x: f64| {
-            let x = number::rational::from_f64_exact(x).unwrap_or_default();
-            Ball::from_rational(&x, BITS)
-        };
-        let (lower, upper) = (exact(lo), exact(hi));
-        let (middle, cell) = (exact(lo + (hi - lo) / 2.0), lower.union(&upper, BITS));
+        let (middle, cell) = (Ball::from_f64(lo + (hi - lo) / 2.0)?, Ball::between(lo, hi, BITS)?);
         let (here, over) = (self.product(middle.clone())?, self.product(cell.clone())?);
         let off = cell.sub(&middle, BITS);
         let pairs = here.margins().into_iter().zip(over.margins());

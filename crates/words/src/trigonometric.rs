@@ -28,7 +28,7 @@ use num_traits::{One, Signed, Zero};
 use super::enclosed::{Piece, pieces};
 use super::letters::{Force, Item, Letter, Word};
 use number::named;
-use number::rational::{from_f64_exact, ratio};
+use number::rational::ratio;
 use number::{Ball, Laurent, Rational, Real, Sign};
 
 named! {
@@ -247,7 +247,7 @@ impl Shape {
     /// distinguished from edges that touch.
     pub fn pieces(self, fast: &Laurent, slow: &Laurent, lo: f64, hi: f64) -> Vec<Piece> {
         let (half, rho) = (half_frequency(fast, BITS), over(slow, fast));
-        let at = |h: f64| half.mul(&Ball::from_rational(&from_f64_exact(h).unwrap_or_default(), BITS), BITS);
+        let at = |h: f64| half.mul(&Ball::from_f64(h).unwrap_or_else(Ball::zero), BITS);
         pieces(lo, hi, |lo, hi| self.verdict(&at(lo).union(&at(hi), BITS), &rho, BITS))
     }
 

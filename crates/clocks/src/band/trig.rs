@@ -72,10 +72,10 @@ pub fn arcsine(x: f64) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use number::{Ball, rational};
+    use number::Ball;
 
     fn off(near: f64, exact: &Ball) -> f64 {
-        let near = Ball::from_rational(&rational::from_f64_exact(near).unwrap(), 128);
+        let near = Ball::from_f64(near).unwrap();
         exact.sub(&near, 128).abs().to_f64_enclosure().1
     }
 
@@ -83,13 +83,13 @@ mod tests {
     fn functions_are_within_their_bounds() {
         for k in -4000..4000 {
             let x = f64::from(k) * 0.0371 + f64::from(k) * f64::from(k) * 1e-4;
-            let ball = Ball::from_rational(&rational::from_f64_exact(x).unwrap(), 128);
+            let ball = Ball::from_f64(x).unwrap();
             let [s, c] = sine_cosine(x);
             assert!(off(s, &ball.sin(128)) < TRIG && off(c, &ball.cos(128)) < TRIG, "{x}");
         }
         for k in 0..4000 {
             let x = f64::from(k) / 4001.0;
-            let ball = Ball::from_rational(&rational::from_f64_exact(x).unwrap(), 128);
+            let ball = Ball::from_f64(x).unwrap();
             let [y, error] = arcsine(x);
             assert!(off(y, &ball.asin(128).unwrap()) < error && error < 1e-13, "{x}");
         }

@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 
 use number::error::{Error, Result};
-use number::{Ball, ExactSign, Laurent, Real, Sign, rational};
+use number::{Ball, ExactSign, Laurent, Real, Sign};
 
 /// The part of the (h1, h2) plane in which curves are wanted; closed ranges.
 #[derive(Clone, Debug, PartialEq)]
@@ -97,13 +97,12 @@ struct Path {
 impl Path {
     /// The point at h1; `None` beyond the fast clock's limit, and where h2 is no positive double.
     fn at(&self, h1: f64) -> Option<CurvePoint> {
-        let exact = rational::from_f64_exact(h1)?;
+        let exact = Ball::from_f64(h1)?;
         let within = |bits: u32, root: &Ball| {
-            let h1 = Ball::from_rational(&exact, bits);
-            let sine = h1.mul(root, bits).scale2(-1);
+            let sine = exact.mul(root, bits).scale2(-1);
             let over_pi = sine.asin(bits)?.scale2(1).div(&Ball::pi(bits), bits)?;
             let is_before_limit = over_pi.compare(&Ball::one()) == Some(Ordering::Less);
-            let h2 = h1.mul(&integer(self.b), bits).div(&over_pi.sub(&integer(self.a), bits), bits)?;
+            let h2 = exact.mul(&integer(self.b), bits).div(&over_pi.sub(&integer(self.a), bits), bits)?;
             is_before_limit.then_some((h2, over_pi))
         };
         let all = BITS.iter().zip(&self.roots).filter_map(|(&bits, root)| within(bits, root));
@@ -123,7 +122,7 @@ impl Path {
     fn rises(&self, h1: f64) -> bool {
         let bits = BITS[0];
         let sign = || {
-            let h1 = Ball::from_rational(&rational::from_f64_exact(h1)?, bits);
+            let h1 = Ball::from_f64(h1)?;
             let sine = h1.mul(&self.roots[0], bits).scale2(-1);
             let over_pi = sine.asin(bits)?.scale2(1).div(&Ball::pi(bits), bits)?;
             let cosine = Ball::one().sub(&sine.square(bits), bits).sqrt_clipped(bits)?;
@@ -166,8 +165,7 @@ impl Path {
 
     fn is_before_limit(&self, h1: f64) -> bool {
         let (bits, one) = (BITS[2], Ball::one());
-        let sine = rational::from_f64_exact(h1)
-            .map(|h1| Ball::from_rational(&h1, bits).mul(&self.roots[2], bits).scale2(-1));
+        let sine = Ball::from_f64(h1).map(|h1| h1.mul(&self.roots[2], bits).scale2(-1));
         sine.and_then(|sine| sine.compare(&one)) == Some(Ordering::Less)
     }
 

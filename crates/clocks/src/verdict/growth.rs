@@ -21,7 +21,7 @@ use crate::propagator::{LongClocks, Oscillator, TwoClocks};
 use crate::schedule::Schedule;
 use number::error::{Error, Result};
 use number::parallel::go_on;
-use number::{Ball, Rational, Real};
+use number::{Ball, Real};
 
 /// How a pair moves over one synchronization period. As JSON its enclosures are two doubles with the value
 /// between them, `{"lo": , "hi": }`.
@@ -303,12 +303,10 @@ fn products(ends: &filter::Ends) -> Products {
 }
 
 fn component(value: f64, end: &filter::End) -> Ball {
-    let exact = |x: f64| Rational::from_float(x).map(|x| Ball::from_rational(&x, 128));
     let slack = 1.001 * (end.across / end.x.hypot(end.v) + end.rounding * value.abs());
-    let between = |lo: f64, hi: f64| Some(exact(lo)?.union(&exact(hi)?, 128));
+    let between = |lo: f64, hi: f64| Ball::between(lo, hi, 128).expect("finite");
     let range = between((value - slack).next_down(), (value + slack).next_up());
     let length = between(1.0 - 1.4 * end.stretch, 1.0 + 1.4 * end.stretch);
-    let (range, length) = (range.expect("finite"), length.expect("finite"));
     range.mul(&length, 128).scale2(end.exponent)
 }
 

@@ -104,6 +104,16 @@ proptest! {
         prop_assert!(&mid - &error <= a.lower() && a.upper() <= &mid + &error);
     }
 
+    #[test]
+    fn doubles_are_exact(lo in any::<f64>(), hi in any::<f64>()) {
+        let all = [lo, hi].map(rational::from_f64_exact);
+        let found = [lo, hi].map(|x| Ball::from_f64(x).map(|ball| [ball.lower(), ball.upper()]));
+        prop_assert_eq!(found, all.clone().map(|x| x.map(|x| [x.clone(), x])));
+        let between = Ball::between(lo, hi, 53);
+        prop_assert_eq!(between.is_some(), all.iter().all(Option::is_some));
+        prop_assert!(between.is_none_or(|ball| all.iter().flatten().all(|x| ball.contains(x))));
+    }
+
     /// At p bits every function contains what it is at 4p bits, of the ball's points.
     #[test]
     fn functions_agree_across_precisions((x, a) in any_case(), p in 20u32..150, pick in 0u8..3) {

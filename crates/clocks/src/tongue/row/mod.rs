@@ -21,11 +21,11 @@ pub use exact::{ExactEdge, Resonance};
 pub use predicted::{Predicted, Side};
 
 use crate::resonance::{FirstOrder, dominant_family, first_order};
-use crate::tongue::edge::Tongues;
+use crate::tongue::edge::{Edge, Tongues};
 use crate::tongue::gap::Gap;
 use crate::tongue::peak::Peak;
 use number::error::Result;
-use number::{Ball, Ratio, rational};
+use number::{Ball, Ratio};
 
 /// The columns wanted beside p, q, m, the edges and the width.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -118,15 +118,9 @@ impl Law {
         const BITS: u32 = 128;
         let rho = Some(tongues.rho()).filter(|rho| !rho.is_zero())?;
         let FirstOrder { centre, width, ln_multiplier } = first_order(tongues.ratio(), gap.m, rho)?;
-        let between = |(lo, hi): (f64, f64)| {
-            let [lo, hi] =
-                [lo, hi].map(|x| rational::from_f64_exact(x).map(|x| Ball::from_rational(&x, BITS)));
-            lo.zip(hi).map(|(lo, hi)| lo.union(&hi, BITS))
-        };
-        let upper = gap.upper.as_ref()?;
-        let middle =
-            between((gap.lower.lo, gap.lower.hi))?.add(&between((upper.lo, upper.hi))?, BITS).scale2(-1);
-        let found = between(gap.width)?;
+        let of = |edge: &Edge| Ball::between(edge.lo, edge.hi, BITS);
+        let middle = of(&gap.lower)?.add(&of(gap.upper.as_ref()?)?, BITS).scale2(-1);
+        let found = Ball::between(gap.width.0, gap.width.1, BITS)?;
         Some(Law {
             centre_error: middle.sub(&centre, BITS).to_f64_enclosure(),
             width_error: found.sub(&width, BITS).to_f64_enclosure(),
