@@ -12,7 +12,7 @@ use super::eigenvalues::{eigenvalues, sighting};
 use super::enclosure::{Edge, Enclosure};
 use super::fine_count::{self, TWO_DOUBLES};
 use super::function::{By, EntryFunction};
-use super::{exact_count, long, modular, precise};
+use super::{long, modular, precise, proven_count};
 use crate::orbit::returns;
 use crate::tongue::string::{Entry, HalfString, Indices, MOST_KICKS};
 use number::error::{Error, Result};
@@ -235,7 +235,7 @@ impl Tongues {
         if let Some(found) = precise::shrink(&function, start, &relative, false) {
             return Ok(found);
         }
-        let alone = exact_count::isolate(&function, self.string()?, index, around);
+        let alone = proven_count::isolate(&function, self.string()?, index, around);
         Ok(precise::shrink(&function, &alone, &relative, true).expect("it is isolated"))
     }
 

@@ -15,8 +15,8 @@ use number::{Ball, Laurent, Ratio, Rational, Sign};
 pub(crate) struct EntryFunction {
     ratio: Ratio,
     /// The slow clock's mass ρ p/q, in those of the fast one.
-    pub slow: Rational,
-    pub schedule: Schedule,
+    slow: Rational,
+    schedule: Schedule,
     pub entry: Entry,
     by: By,
 }
@@ -114,11 +114,8 @@ impl EntryFunction {
     /// The number of zeros below the s of an orbit; `None` if its signs are not certain or s may be a zero.
     pub fn counted(&self, end: &End) -> Option<u64> {
         let (changes, (x, v)) = (end.nodes?, (end.signs.0?, end.signs.1?));
-        Some(if self.entry.ends_free() { self.free_count(changes, x != v) } else { changes })
-    }
-
-    /// At a free end the slope's zeros count; the rigid shift of C does not.
-    pub fn free_count(&self, changes: u64, falling: bool) -> u64 {
-        changes + u64::from(falling) - u64::from(self.entry == Entry::C)
+        // At a free end the slope's zeros count; the rigid shift of C does not.
+        let at_free_end = || changes + u64::from(x != v) - u64::from(self.entry == Entry::C);
+        Some(if self.entry.ends_free() { at_free_end() } else { changes })
     }
 }

@@ -12,7 +12,7 @@
 //! | `enclosure` | an edge in doubles, and by rational ends |
 //! | `function` | an entry of the half period at rational points |
 //! | `fine_count` | 25 digits by counts in two doubles |
-//! | `precise`, `exact_count` | any number of digits; counts where two doubles cannot separate |
+//! | `precise`, `proven_count` | any number of digits; counts where two doubles cannot separate |
 //! | `long` | edges of long periods, one by one |
 //! | `modular` | the proof modulo a prime that no tongue is closed |
 //! | `edges` | the edges of one ratio, by whichever way is needed |
@@ -22,7 +22,6 @@ mod count;
 mod edges;
 mod eigenvalues;
 mod enclosure;
-mod exact_count;
 mod fine_count;
 mod function;
 mod half;
@@ -32,6 +31,7 @@ mod long;
 mod mode;
 mod modular;
 mod precise;
+mod proven_count;
 
 pub use count::counts;
 pub use edges::{Effort, Tongues};
