@@ -363,7 +363,7 @@ fn numbers_whose_squares_are_no_doubles_are_no_steps() {
         refused(&desk, &["system", "spring.json", asked], &["step = ", "1e-150 to 1e150"]);
     }
     let frozen = ["word", "K(1/2) O(1) K(1/2)", "--lambda1", "1", "--friction", "1"];
-    refused(&desk, &frozen, &["h-range = 0..12.5", "choose a shorter range"]);
+    refused(&desk, &frozen, &["word = K(1/2) O(1) K(1/2)", "every step is on an edge"]);
 }
 
 #[test]

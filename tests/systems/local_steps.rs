@@ -119,11 +119,11 @@ fn is_stable(own: &LocalSteps) -> Option<bool> {
     (!eigenvalues.iter().any(is_near)).then(|| eigenvalues.iter().all(|&x| 0.0 < x && x < 4.0))
 }
 
-// Ledger: local time stepping; 1000 random schemes, seed 7; eigenvalues of the composed step
+// Ledger: local time stepping; 400 random schemes, seed 7; eigenvalues of the composed step
 #[test]
 fn the_stiffness_of_the_scheme_is_what_its_steps_do_and_decides() {
     let (mut numbers, mut decided) = (Numbers(7), [0, 0]);
-    for _ in 0..1000 {
+    for _ in 0..400 {
         let own = numbers.scheme();
         let (n, mass, square) = (own.plain().size(), own.plain().mass(), own.step() * own.step());
         let stiffness = &own.system().clocks()[0].stiffness;
@@ -139,13 +139,24 @@ fn the_stiffness_of_the_scheme_is_what_its_steps_do_and_decides() {
             decided[usize::from(stable)] += 1;
         }
     }
-    assert!(decided.iter().all(|&n| n > 100), "{decided:?}");
+    assert!(decided.iter().all(|&n| n > 40), "{decided:?}");
 }
 
 #[test]
 fn all_unstable_intervals_are_found() {
-    let (mut numbers, mut seen) = (Numbers(11), [0, 0]);
-    for _ in 0..60 {
+    all_intervals_are_found(11, 20);
+}
+
+#[test]
+#[ignore = "minutes"]
+fn all_unstable_intervals_of_three_hundred_schemes_are_found() {
+    all_intervals_are_found(12, 300);
+}
+
+/// Stretches of random schemes against verdicts at 99 steps each.
+fn all_intervals_are_found(seed: u64, schemes: usize) {
+    let (mut numbers, mut seen) = (Numbers(seed), [0, 0]);
+    for _ in 0..schemes {
         let own = numbers.scheme();
         let found = own.stretches((0.05, 3.0), &Limits::default()).unwrap();
         // But where one number between two doubles is unstable and both are not.
@@ -161,7 +172,7 @@ fn all_unstable_intervals_are_found() {
             seen[usize::from(stable)] += 1;
         }
     }
-    assert!(seen.iter().all(|&n| n > 500), "{seen:?}");
+    assert!(seen.iter().all(|&n| n > 9 * schemes), "{seen:?}");
 }
 
 #[test]

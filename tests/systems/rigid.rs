@@ -433,11 +433,11 @@ fn is_telling(tally: &Tally, count: usize) -> bool {
         && 30 * tally.first > count
 }
 
-// Ledger: rigid motions; 2_000 random systems; products of rational matrices and Sturm chains
+// Ledger: rigid motions; 500 random systems; products of rational matrices and Sturm chains
 #[test]
-fn of_two_thousand_random_systems_nothing_proven_is_wrong_and_nothing_held_is_set_apart() {
-    let tally = all(0..2_000);
-    assert!(is_telling(&tally, 2_000), "{tally:?}");
+fn of_five_hundred_random_systems_nothing_proven_is_wrong_and_nothing_held_is_set_apart() {
+    let tally = all(0..500);
+    assert!(is_telling(&tally, 500), "{tally:?}");
 }
 
 // Ledger: rigid motions; 50_000 random systems; products of rational matrices and Sturm chains

@@ -59,7 +59,7 @@ const CLEAR: f64 = 1e-9;
 #[test]
 fn verdicts_and_growth_are_those_of_dense_eigenvalues() {
     let (mut numbers, mut seen) = (Numbers(3), [0, 0]);
-    for case in 0..200 {
+    for case in 0..80 {
         let n = 3 + numbers.below(10) as usize;
         let floats = case % 4 == 0;
         let springs: Vec<_> = (0..=n).map(|_| (1 + numbers.below(16)) as f64 / 4.0).collect();
@@ -99,7 +99,7 @@ fn verdicts_and_growth_are_those_of_dense_eigenvalues() {
             }
         }
     }
-    assert!(seen.iter().all(|&n| n > 300), "{seen:?}");
+    assert!(seen.iter().all(|&n| n > 120), "{seen:?}");
 }
 
 #[test]

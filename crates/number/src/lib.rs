@@ -59,7 +59,7 @@ pub use bisect::bisected;
 pub use cyclotomic::{Cyclotomic, CyclotomicField};
 pub use element::{Element, NumberField};
 pub use enclosed::Enclosed;
-pub use float::outward;
+pub use float::{outward, power_of_two};
 pub use interval::Interval;
 pub use laurent::Laurent;
 pub use polynomial::Polynomial;

@@ -227,6 +227,12 @@ impl Word {
         !self.any(|letter| matches!(letter, Letter::Friction { damping: Damping::Exact, .. }))
     }
 
+    /// Whether positions act on velocities and velocities on positions. Without that the propagator is triangular,
+    /// so every step of the word is on an edge.
+    pub fn couples(&self) -> bool {
+        self.any(Letter::moves) && self.any(|letter| letter.force().is_some())
+    }
+
     /// The letters one by one. Its length is [`Word::len`]: to be known before.
     pub fn letters(&self) -> Vec<&Letter> {
         fn add<'a>(items: &'a [Item], all: &mut Vec<&'a Letter>) {

@@ -5,7 +5,7 @@ use num_traits::Float;
 use super::lanes::Lanes;
 use super::long;
 pub use super::long::Long;
-use number::{Ball, Rational, Twofold, U};
+use number::{Ball, Rational, Twofold, U, power_of_two};
 
 /// A floating number. Every operation returns its exact result but for [`UNIT`](Coefficient::UNIT): a product
 /// within UNIT |a b|, a sum within UNIT (|a| + |b|), as long as nothing is smaller than 2^-900.
@@ -126,7 +126,7 @@ impl Coefficient for f64 {
     }
 
     fn scale2(&self, k: i32) -> Self {
-        self * 2f64.powi(k)
+        self * power_of_two(k)
     }
 
     #[inline(always)]
@@ -193,7 +193,7 @@ impl Coefficient for Twofold {
     }
 
     fn scale2(&self, k: i32) -> Self {
-        let unit = 2f64.powi(k);
+        let unit = power_of_two(k);
         Twofold { hi: self.hi * unit, lo: self.lo * unit }
     }
 

@@ -4,7 +4,7 @@
 use num_bigint::BigUint;
 
 use super::coefficient::{Coefficient, exact, near_ball, quotient};
-use number::{Ball, Rational, Real, Sign, Twofold};
+use number::{Ball, Rational, Real, Sign, Twofold, power_of_two};
 
 /// A real number, enclosed. Numbers of one pair have the same bits.
 pub trait Enclosure: Clone {
@@ -215,7 +215,7 @@ impl Enclosure for Close {
     }
 
     fn scale2(&self, k: i32) -> Self {
-        Close::new(self.middle.scaled(2f64.powi(k)), self.radius * 2f64.powi(k))
+        Close::new(self.middle.scaled(power_of_two(k)), self.radius * power_of_two(k))
     }
 
     fn ends(&self) -> (f64, f64) {

@@ -2,6 +2,7 @@
 
 use num_bigint::{BigInt, Sign};
 use num_traits::Float;
+use number::power_of_two;
 
 /// The whole words of a mantissa, the lowest first.
 const WORDS: usize = 4;
@@ -194,7 +195,7 @@ impl Long {
 fn scaled(x: f64, k: i64) -> f64 {
     let half = (k / 2).clamp(-1020, 1000);
     let rest = (k - half).clamp(-1020, 1000);
-    x * 2f64.powi(half as i32) * 2f64.powi(rest as i32)
+    x * power_of_two(half as i32) * power_of_two(rest as i32)
 }
 
 #[cfg(test)]

@@ -24,7 +24,7 @@
 use super::coefficient::{Coefficient, near_ball};
 use super::enclosure::Enclosure;
 use super::turn::{Turn, angle, direction, principal};
-use number::Ball;
+use number::{Ball, power_of_two};
 
 /// Some hundreds of roundings of positive numbers.
 pub const UP: f64 = 1.0 + 1e-12;
@@ -219,7 +219,7 @@ impl<T: Coefficient> Map<T> {
 
     /// 2^e ε.
     pub fn error(&self) -> f64 {
-        self.error * power_of_two(self.exponent)
+        self.error * size_of(self.exponent)
     }
 
     /// ε over the norm of the middle.
@@ -229,7 +229,7 @@ impl<T: Coefficient> Map<T> {
 
     /// A bound of the norm of all values, with the power of two.
     pub fn size(&self) -> f64 {
-        (self.norm + self.error) * power_of_two(self.exponent) * UP
+        (self.norm + self.error) * size_of(self.exponent) * UP
     }
 
     /// Known within `error` beside what it is known by, without the power of two.
@@ -276,7 +276,7 @@ impl<T: Coefficient> Map<T> {
         let scaled = |map: &Self| {
             let k = (map.exponent - exponent).max(-2000) as i32;
             let terms = map.terms.iter().map(|m| m.each_ref().map(|x| x.scale2(k))).collect::<Vec<_>>();
-            (terms, map.error * 2f64.powi(k))
+            (terms, map.error * power_of_two(k))
         };
         let ((mut terms, one), (others, two)) = (scaled(self), scaled(other));
         let size = |terms: &[Entries<T>]| terms.iter().map(norm).sum::<f64>();
@@ -367,8 +367,8 @@ impl<T: Coefficient> Map<T> {
         if !(1.0 / 16.0..=16.0).contains(&size) && size > 1e-200 && size < 1e200 {
             let k = -size.log2().round() as i32;
             self.terms.iter_mut().flatten().for_each(|x| *x = x.scale2(k));
-            self.norm *= 2f64.powi(k);
-            self.error = self.error * 2f64.powi(k) * UP + FLOOR;
+            self.norm *= power_of_two(k);
+            self.error = self.error * power_of_two(k) * UP + FLOOR;
             self.exponent -= i128::from(k);
         }
     }
@@ -380,8 +380,8 @@ impl<T: Coefficient> Map<T> {
 }
 
 /// 2^e as far as doubles reach.
-fn power_of_two(e: i128) -> f64 {
-    2f64.powi(e.clamp(-2000, 2000) as i32)
+fn size_of(e: i128) -> f64 {
+    power_of_two(e.clamp(-2000, 2000) as i32)
 }
 
 /// Σ m_j and Σ j m_j.

@@ -61,12 +61,16 @@ impl Pieces {
         };
         let shape = Shape::of(word).filter(|_| question.friction.is_none());
         let all = match shape {
+            None if !word.couples() => {
+                let remedy = "without kicks, or without drifts, every step is on an edge: add them";
+                return Err(Error::input("word", word, remedy));
+            }
             Some(shape) => shape.pieces(lambda1, lambda2, lo, hi),
             None => Enclosed::new(word, lambda1, lambda2, &friction).pieces(lo, hi).ok_or_else(|| {
                 Error::input(
                     "h-range",
                     format!("{lo}..{hi}"),
-                    "too many of its steps are on an edge, or too near to one: choose a shorter range (of a word without kicks, or without drifts, every step is on an edge)",
+                    "too many of its steps are on an edge, or too near to one: choose a shorter range",
                 )
             })?,
         };

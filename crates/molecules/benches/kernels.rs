@@ -5,17 +5,15 @@
 //! `cargo bench --bench kernels` lists the names; a second argument (`portable`, `avx2`, `avx512`) forces
 //! that form.
 
-use kickdrift::advise::aperture::{Bond, Measurement};
-use kickdrift::map::{Map, Pairs, Products, Resources};
-use kickdrift::number::rational::ratio;
-use kickdrift::number::{Laurent, Ratio};
-use kickdrift::propagator::TwoClocks;
-use kickdrift::tongue::Tongues;
-use kickdrift::verdict::{Limits, Tier, decide_from};
-
-mod common;
-
-use common::figure_1;
+use kickdrift_molecules::aperture::{Bond, Measurement};
+use kickdrift_molecules::clocks::map::{Grid, Map, Pairs, Products, Resources};
+use kickdrift_molecules::clocks::propagator::TwoClocks;
+use kickdrift_molecules::clocks::tongue::Tongues;
+use kickdrift_molecules::clocks::verdict::{Limits, Tier, decide_from};
+use kickdrift_molecules::number::parse::parse;
+use kickdrift_molecules::number::rational::ratio;
+use kickdrift_molecules::number::vector::instructions::force_instructions;
+use kickdrift_molecules::number::{Laurent, Ratio};
 
 /// A name, and the work.
 const KERNELS: [(&str, fn()); 12] = [
@@ -56,12 +54,16 @@ fn tier(first: Tier, p: u64, q: u64, times: usize) {
 }
 
 fn map(products: Products) {
+    // Figure 1 of the paper with steps of 1/100.
+    let x = |text: &str| parse("x", text).expect("a number");
+    let (h1, h2) = ((x("1/100"), x("2/pi")), (x("1/100"), x("7/2")));
+    let figure_1 = Grid::new(x("pi^2"), x("pi^2/25"), [x("1/100"), x("1/100")], h1, h2).expect("a grid");
     let see = |_, band| {
         std::hint::black_box(band);
         Ok(())
     };
     let one = Resources { threads: 1, ..Resources::default() };
-    Map::of(&figure_1(100)).with(products).within(one).for_each_band(see).expect("within the budget");
+    Map::of(&figure_1).with(products).within(one).for_each_band(see).expect("within the budget");
 }
 
 /// Pairs on no grid, each step with a denominator of its own.
@@ -76,7 +78,7 @@ fn scattered() {
 fn main() {
     let mut words = std::env::args().skip(1).filter(|argument| !argument.starts_with("--"));
     let (name, form) = (words.next(), words.next());
-    if let Some(form) = form.filter(|form| !kickdrift::force_instructions(form)) {
+    if let Some(form) = form.filter(|form| !force_instructions(form)) {
         eprintln!("this processor lacks {form}");
         std::process::exit(2);
     }
