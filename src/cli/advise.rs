@@ -7,8 +7,7 @@ use super::paper::Paper;
 use super::system::{arrays, source};
 use documents::format::Format;
 use documents::question::{Advise, Question, Safe, Work};
-use number::error::{Error, Result};
-use number::file;
+use number::{Error, Result, file};
 
 /// Flags of `advise`.
 ///

@@ -13,8 +13,8 @@ use documents::report::document::{Document, Layout};
 use documents::report::file::write_output;
 use documents::report::latex::Float;
 use documents::report::map::needed;
-use number::Laurent;
-use number::error::{Error, Result, visible};
+use number::error::visible;
+use number::{Error, Laurent, Result};
 
 /// Flags of every command.
 #[derive(Debug, clap::Args)]

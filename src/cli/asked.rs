@@ -12,7 +12,7 @@ use super::progress::{Shown, announce, progress};
 use clocks::tongue::Progress;
 use documents::format::Format;
 use documents::question::{Fields, NEEDED, Question, Watch, Work};
-use number::error::{Error, Result};
+use number::{Error, Result};
 
 /// The flags of a question, and of its table.
 #[derive(Debug, clap::Args)]

@@ -5,7 +5,7 @@ use clap::ValueEnum;
 use super::args::Common;
 use documents::format::Format;
 use documents::report::file::write_output;
-use number::error::{Error, Result};
+use number::{Error, Result};
 
 /// The files of the source from which this program was built; a test holds one to the other.
 const CITATION: &str = include_str!("../../CITATION.cff");

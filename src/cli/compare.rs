@@ -5,7 +5,7 @@ use super::asked::Flags;
 use super::paper::Paper;
 use documents::format::Format;
 use documents::question::{Compare, CompareMethods, Question};
-use number::error::Result;
+use number::Result;
 
 /// Flags of `compare`: of the trace against its predictions, or of integrators side by side.
 #[derive(Debug, clap::Args)]

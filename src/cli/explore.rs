@@ -9,9 +9,7 @@ use crate::explore::serve::Server;
 use documents::input::{SystemScene, json};
 use documents::question::{Scene, flag};
 use documents::report::file::{private, write_output};
-use number::error::{Error, Result};
-use number::file;
-use number::{ExactSign, Laurent, Rational, Sign};
+use number::{Error, ExactSign, Laurent, Rational, Result, Sign, file};
 
 /// Flags of `explore`.
 #[derive(Debug, clap::Args)]

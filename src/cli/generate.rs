@@ -7,7 +7,7 @@ use clap_complete::Shell;
 
 use super::args::Common;
 use documents::report::file::{Folder, write_output};
-use number::error::{Error, Result};
+use number::{Error, Result};
 
 /// Flags of `generate`.
 ///

@@ -10,7 +10,7 @@ use super::args::Common;
 use documents::format::Format;
 use documents::question;
 use documents::report::file::write_output;
-use number::error::{Error, Result};
+use number::{Error, Result};
 
 /// Flags of `mcp`.
 #[derive(Debug, clap::Args)]

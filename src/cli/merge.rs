@@ -6,7 +6,7 @@ use super::args::{Columns, Common};
 use super::map::{Drawing, Output, Part, Source};
 use documents::format::Format;
 use documents::question::Map;
-use number::error::{Error, Result};
+use number::{Error, Result};
 
 /// Flags of `merge`.
 #[derive(Debug, clap::Args)]

@@ -41,7 +41,7 @@ use documents::question::{Aperture, Bands, Closings, Curves, Half, Polynomial, P
 #[cfg(unix)]
 use documents::report::file::abandon;
 use documents::report::file::{stdout_is_closed, writable, write_output};
-use number::error::{Error, Result};
+use number::{Error, Result};
 use progress::Patience;
 
 /// Exact, certified linear stability of multiple-time-step integrators.

@@ -9,7 +9,7 @@ use documents::format::Format;
 use documents::report::document::Document;
 use documents::report::figure::file;
 use documents::report::file::write_output;
-use number::error::{Error, Result};
+use number::{Error, Result};
 
 /// Flags of every command that draws.
 #[derive(Clone, Debug, Default, clap::Args)]

@@ -9,8 +9,7 @@ use documents::format::Format;
 use documents::question::{Form, LONGEST_SCENE, Scene, Want};
 use documents::report::file::{Folder, write_output};
 use documents::report::map::MapArrays;
-use number::error::{Error, Result};
-use number::file;
+use number::{Error, Result, file};
 
 /// Flags of `run`.
 #[derive(Debug, clap::Args)]

@@ -7,7 +7,7 @@ use super::paper::Paper;
 use super::system::source;
 use documents::format::Format;
 use documents::question::{Question, Simulate, Work};
-use number::error::Result;
+use number::Result;
 
 /// Flags of `simulate`.
 #[derive(Debug, clap::Args)]

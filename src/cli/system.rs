@@ -8,8 +8,7 @@ use documents::format::Format;
 use documents::input::{Arrays, Axis, SystemFile};
 use documents::question::{Question, System, SystemFound, Work, flag};
 use documents::report::system::Colouring;
-use number::error::{Error, Result};
-use number::file;
+use number::{Error, Result, file};
 use systems::{Holds, Route};
 
 /// Flags of `system`.

@@ -5,7 +5,8 @@ use std::path::Path;
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 
-use number::error::{Error, is_like};
+use number::Error;
+use number::error::is_like;
 
 /// An error that the argument parser found in these arguments, as one of ours.
 pub fn explained(error: &clap::Error, program: &clap::Command, arguments: &[OsString]) -> Error {

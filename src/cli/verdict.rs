@@ -10,8 +10,7 @@ use documents::format::Format;
 use documents::question::{self, Question};
 use documents::report::certificate;
 use documents::report::file::write_output;
-use number::error::{Error, Result};
-use number::{Laurent, rational};
+use number::{Error, Laurent, Result, rational};
 
 /// Flags of `verdict`.
 #[derive(Debug, clap::Args)]

@@ -7,8 +7,8 @@ use super::args::Common;
 use super::progress::{announce, progress};
 use documents::format::Format;
 use documents::verify::{CheckedDocument, Failure, Options, Outcome};
-use number::error::{Error, Kind, Result};
-use number::file;
+use number::error::Kind;
+use number::{Error, Result, file};
 
 /// Flags of `verify`.
 #[derive(Debug, clap::Args)]

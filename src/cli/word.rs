@@ -12,8 +12,7 @@ use documents::format::Format;
 use documents::question::{Family, Linted, Methods, Question, Word, WordCheck};
 use documents::report::certificate;
 use documents::report::file::write_output;
-use number::error::{Error, Result};
-use number::{Laurent, file};
+use number::{Error, Laurent, Result, file};
 
 /// Flags of `word`: the question, its table, or the catalogue in its place.
 #[derive(Debug, clap::Args)]

@@ -8,9 +8,8 @@ use super::reply::Reply;
 use super::session::Session;
 use clocks::resonance::{Curve, Families, Window};
 use documents::question::FAMILIES;
-use number::error::Result;
 use number::parse::parse_integer_range;
-use number::{Ball, Laurent, Rational, Real, rational};
+use number::{Ball, Laurent, Rational, Real, Result, rational};
 
 /// Points of a curve across a window.
 const SAMPLES: usize = 160;

@@ -11,10 +11,9 @@ use super::tile::code;
 use clocks::propagator::Oscillator;
 use clocks::tongue::{Listing, Request, Selection, StepWindow, Stiffness};
 use clocks::verdict::{Decision, Tier, decide_with_growth};
-use number::error::{Error, Result};
 use number::parallel::try_map;
 use number::parse::{parse, parse_ratio, parse_rational};
-use number::{Laurent, Rational};
+use number::{Error, Laurent, Rational, Result};
 
 /// The quantity that is fixed along the line.
 enum Line {

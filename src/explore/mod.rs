@@ -49,7 +49,7 @@ use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 pub use assets::asset;
-use number::error::Result;
+use number::Result;
 use number::parallel::stoppable;
 use query::Query;
 pub use reply::Reply;

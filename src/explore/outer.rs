@@ -8,9 +8,9 @@ use super::reply::Reply;
 use super::session::Session;
 use documents::input::{Span, SystemScene};
 use documents::report::system::{Beside, document};
-use number::error::{Error, Kind, Result};
+use number::error::Kind;
 use number::parse::parse_rational_range;
-use number::{Rational, rational};
+use number::{Error, Rational, Result, rational};
 use systems::stretches::Stretch;
 use systems::{Analysis, Limits, Route};
 

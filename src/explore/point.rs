@@ -11,10 +11,9 @@ use clocks::verdict::Limits;
 use documents::format::Format;
 use documents::question::{Decided, Question, Verdict, Work};
 use documents::report::certificate::coq;
-use number::error::{Error, Result};
 use number::parse::parse;
-use number::rational::{ratio, simplest};
-use number::{Laurent, Rational};
+use number::rational::simplest;
+use number::{Error, Laurent, Rational, Result, ratio};
 
 /// Kicks that one tier may compose.
 pub(super) const MOST_KICKS: u64 = 3_000_000;

@@ -7,9 +7,8 @@ use num_bigint::BigUint;
 use super::session::Session;
 use clocks::tongue::Stiffness;
 use documents::question::StepRange;
-use number::error::{Error, Result};
 use number::parse::{parse, parse_range, parse_rational};
-use number::{Laurent, Rational};
+use number::{Error, Laurent, Rational, Result};
 
 /// Parameters of one address, each given once.
 #[derive(Debug, Default)]

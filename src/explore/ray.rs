@@ -6,9 +6,8 @@ use serde_json::{Value, json};
 
 use clocks::tongue::{Bounds, Edge, Request, Tongue, TongueEdge, Tongues};
 use documents::report::document::enclosure;
-use number::error::Result;
 use number::parallel::go_on;
-use number::{Laurent, Ratio, Rational, Real};
+use number::{Laurent, Ratio, Rational, Real, Result};
 
 /// Masses and springs that are laid out, at most.
 const MOST: u64 = 20_000;

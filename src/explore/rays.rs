@@ -42,7 +42,7 @@ pub(super) fn ratios(range: &(Rational, Option<Rational>), most: u64, count: usi
 #[cfg(test)]
 mod tests {
     use super::*;
-    use number::rational::ratio;
+    use number::ratio;
 
     #[test]
     fn the_tree_gives_what_trial_does() {

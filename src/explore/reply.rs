@@ -4,7 +4,8 @@ use std::borrow::Cow;
 
 use serde_json::{Value, json};
 
-use number::error::{Error, Kind};
+use number::Error;
+use number::error::Kind;
 
 /// An answer: an HTTP status, a media type, bytes, and the name of a file where it is one to keep.
 #[derive(Clone, Debug)]

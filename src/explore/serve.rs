@@ -29,7 +29,7 @@ use super::listen::{Bounded, Caller, OPEN};
 use super::reply::Reply;
 use super::session::Session;
 use super::{LONGEST, Question, ask, asset, assets, named, overdue};
-use number::error::{Error, Result};
+use number::{Error, Result};
 
 /// The longest path and query, in bytes.
 const LONGEST_ADDRESS: usize = 8192;

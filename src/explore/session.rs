@@ -5,9 +5,8 @@ use num_traits::Pow;
 use clocks::propagator::Oscillator;
 use documents::input::SystemScene;
 use documents::question::{Scene, StepRange};
-use number::error::{Error, Result};
 use number::parse::parse;
-use number::{ExactSign, Laurent, Rational, Sign, rational};
+use number::{Error, ExactSign, Laurent, Rational, Result, Sign, rational};
 
 /// The stiffnesses, window and system that a page starts on; every question may name others.
 #[derive(Debug)]

@@ -11,8 +11,7 @@ use documents::question::{FAMILIES, Map, Question, Scene, Work, shown_range};
 use documents::report::figure::file;
 use documents::report::map::Counts;
 use documents::report::plane::{Chart, Colouring, window};
-use number::Laurent;
-use number::error::{Error, Result};
+use number::{Error, Laurent, Result};
 
 /// Pairs and kicks of a picture.
 const MOST_PAIRS: u64 = 4_000_000;

@@ -7,8 +7,7 @@ use super::reply::Reply;
 use super::session::Session;
 use super::{point, tile};
 use documents::question::shown_range;
-use number::Laurent;
-use number::error::Result;
+use number::{Laurent, Result};
 
 /// The session, or the plane of other stiffnesses: exact texts, and doubles to draw by.
 pub(super) fn answer(session: &Session, query: &Query) -> Result<Reply> {

@@ -7,10 +7,9 @@ use super::reply::Reply;
 use super::session::Session;
 use clocks::resonance::dominant_family;
 use clocks::tongue::{Edge, Gap, Search, Tongues, closings};
-use number::error::{Error, Result};
 use number::parallel::try_map;
 use number::parse::{parse_ratio, parse_rational_range};
-use number::{Ratio, Rational, rational};
+use number::{Error, Ratio, Rational, Result, rational};
 
 /// The longest period, p + q, and that up to which closings are searched too.
 pub(super) const MOST_KICKS: u64 = 200;

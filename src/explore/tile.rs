@@ -16,9 +16,8 @@ use clocks::map::{Band, Enclosure, Grid, Map, Products, Resources};
 use clocks::propagator::Oscillator;
 use clocks::resonance::dominant_family;
 use clocks::verdict::{Kind, Tier, Verdict, decide_steps, decide_with_growth};
-use number::error::{Error, Result};
 use number::parallel::try_map;
-use number::{Laurent, Rational};
+use number::{Error, Laurent, Rational, Result};
 
 /// Kicks side by side that a tile of verdicts kick by kick may take as long as: about two seconds of a core.
 pub(super) const MOST_KICKS: u64 = 4_000_000_000;

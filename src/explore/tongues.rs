@@ -9,8 +9,7 @@ use super::reply::Reply;
 use super::session::Session;
 use clocks::tongue::{Bounds, Listing, Request, Selection, StepWindow, Stiffness, Tongue, TongueEdge};
 use documents::question::StepRange;
-use number::error::Result;
-use number::{Ratio, Rational, rational};
+use number::{Ratio, Rational, Result, rational};
 
 /// Segments, about, that a page can draw while it is dragged.
 const MOST_SEGMENTS: f64 = 3000.0;

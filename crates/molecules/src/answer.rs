@@ -14,10 +14,8 @@ use super::question::Question;
 use super::unit::TimeUnit;
 use clocks::band::unstable_ratios;
 use clocks::verdict::Kind;
-use number::error::Result;
-use number::named;
-use number::rational::{enclose_f64, from_f64_exact, to_f64};
-use number::{Ball, Laurent, Ratio, Rational};
+use number::rational::enclose_f64;
+use number::{Ball, Laurent, Ratio, Rational, Result, from_f64_exact, named, to_f64};
 use systems::Limits;
 use systems::friction::Masked;
 

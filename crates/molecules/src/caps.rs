@@ -10,9 +10,7 @@ use num_traits::One;
 
 use super::caution::{HEEDED, Place};
 use super::levels::{Scheme, longest_below};
-use number::Rational;
-use number::named;
-use number::rational::from_f64_exact;
+use number::{Rational, from_f64_exact, named};
 
 named! {
     /// The kind of bound on a step.

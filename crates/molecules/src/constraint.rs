@@ -5,7 +5,7 @@
 //! for kicks and drifts hold for small motions on the constraints.
 
 use super::mode::Mode;
-use number::error::{Error, Result};
+use number::{Error, Result};
 
 /// Which bonds are held.
 #[derive(Clone, Debug, PartialEq, Eq)]

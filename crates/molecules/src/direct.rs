@@ -17,10 +17,7 @@ use super::caps::Caps;
 use super::levels::Scheme;
 use super::names::Names;
 use super::question::{check_band, check_friction, check_length};
-use number::error::{Error, Result};
-use number::named;
-use number::rational::to_f64;
-use number::{Rational, outward};
+use number::{Error, Rational, Result, named, outward, to_f64};
 use systems::friction::Damping;
 use systems::{Jacobians, Limits};
 

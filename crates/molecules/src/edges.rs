@@ -19,8 +19,8 @@ use num_traits::Zero;
 use super::interval::{Unstable, Worst};
 use super::levels::Levels;
 use clocks::schedule::{KickDrift, Kicks, Schedule};
-use number::rational::{enclose_f64, from_f64_exact, to_f64};
-use number::{Ball, Rational, Real, Sign, bisected};
+use number::rational::enclose_f64;
+use number::{Ball, Rational, Real, Sign, bisected, from_f64_exact, to_f64};
 
 const BITS: u32 = 192;
 

@@ -3,9 +3,7 @@
 use num_traits::Zero;
 
 use clocks::tongue::{Gap, Tongues};
-use number::error::Result;
-use number::rational::from_f64_exact;
-use number::{Ball, Laurent, Ratio, Rational, Real};
+use number::{Ball, Laurent, Ratio, Rational, Real, Result, from_f64_exact};
 
 const BITS: u32 = 128;
 

@@ -21,9 +21,8 @@ use super::unit::decimal;
 use clocks::propagator::enclosed_bias_of;
 use clocks::schedule::{KickDrift, Kicks, Schedule};
 use clocks::verdict::Kind;
-use number::error::{Error, Result};
-use number::rational::{enclose_f64, from_f64_exact};
-use number::{Ball, ExactSign, Laurent, Rational, Real, Sign, bisected};
+use number::rational::enclose_f64;
+use number::{Ball, Error, ExactSign, Laurent, Rational, Real, Result, Sign, bisected, from_f64_exact};
 use systems::friction::{Damping, Friction, Mask, Masked, damped_oscillator};
 use systems::{Limits, ManyClocks, Potential, Symmetric, System, decide_oscillator};
 

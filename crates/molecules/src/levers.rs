@@ -20,9 +20,8 @@ use super::lever::{Lever, Way};
 use super::mode::Mode;
 use super::question::Question;
 use super::unit::{TimeUnit, decimal};
-use number::error::Result;
-use number::rational::{enclose_f64, from_f64_exact, ratio};
-use number::{Ball, Laurent, Rational, Real};
+use number::rational::enclose_f64;
+use number::{Ball, Laurent, Rational, Real, Result, from_f64_exact, ratio};
 use words::Trigonometric;
 
 const BITS: u32 = 96;

@@ -18,8 +18,7 @@ use super::aperture;
 use super::caution::Place;
 use super::typical::Typical;
 use super::unit::{self, Dimension};
-use number::error::{Error, Result};
-use number::{Ball, Laurent, Rational, Real};
+use number::{Ball, Error, Laurent, Rational, Real, Result};
 
 /// Where a stiffness comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -337,7 +336,7 @@ fn heavier(bond: &str, masses: [Rational; 2], hydrogen: &Rational, count: u8) ->
 #[cfg(test)]
 mod tests {
     use super::*;
-    use number::rational::ratio;
+    use number::ratio;
 
     fn period(bond: &str, hydrogen: Option<&Rational>) -> String {
         format!("{:.2}", Mode::from_bond(bond, hydrogen).unwrap().middle())

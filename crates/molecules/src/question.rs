@@ -10,8 +10,7 @@ use super::mode::Mode;
 use super::unit::TimeUnit;
 use clocks::schedule::Schedule;
 use clocks::verdict::Limits;
-use number::error::{Error, Result};
-use number::{Laurent, Rational};
+use number::{Error, Laurent, Rational, Result};
 
 /// Modes, the schemes that they are asked about, and how well the periods are known.
 #[derive(Clone, Debug)]

@@ -19,9 +19,8 @@
 
 use num_bigint::BigInt;
 
-use number::error::{Error, Result};
 use number::parse::{parse, parse_rational};
-use number::{ExactSign, Laurent, Rational, Sign};
+use number::{Error, ExactSign, Laurent, Rational, Result, Sign};
 
 /// The unit that all times of a question have.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

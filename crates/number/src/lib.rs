@@ -59,6 +59,7 @@ pub use bisect::bisected;
 pub use cyclotomic::{Cyclotomic, CyclotomicField};
 pub use element::{Element, NumberField};
 pub use enclosed::Enclosed;
+pub use error::{Error, Result};
 pub use float::{outward, power_of_two};
 pub use interval::Interval;
 pub use laurent::Laurent;
@@ -68,12 +69,10 @@ pub use prime_field::{PrimeField, prime_fields};
 pub use quantity::Quantity;
 pub use radical::{Radical, RadicalField};
 pub use ratio::Ratio;
+pub use rational::{Rational, from_f64_exact, ratio, to_f64};
 pub use ring::{ExactSign, Real, Ring};
 pub use sign::Sign;
 pub use twofold::Twofold;
 
 /// The unit roundoff u = 2^-53 of doubles: half the distance from 1 to the next one.
 pub const U: f64 = f64::EPSILON / 2.0;
-
-/// The rationals, always in lowest terms with a positive denominator.
-pub type Rational = num_rational::BigRational;

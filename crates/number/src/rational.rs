@@ -12,7 +12,10 @@ use num_bigint::BigInt;
 use num_integer::Integer;
 use num_traits::{One, Zero};
 
-use super::{Rational, float};
+use super::float;
+
+/// The rationals, always in lowest terms with a positive denominator.
+pub type Rational = num_rational::BigRational;
 
 /// The rational p/q of two machine integers.
 ///

@@ -26,8 +26,7 @@ use crate::linear::system::System;
 use crate::verdict::limits::DENSE;
 use clocks::propagator::Bias;
 use clocks::schedule::{Clock, Event, Schedule};
-use number::named;
-use number::rational::to_f64;
+use number::{named, to_f64};
 
 /// One normal mode of a stable period.
 #[derive(Clone, Debug, PartialEq)]
@@ -385,8 +384,7 @@ mod tests {
     use crate::linear::sparse::Symmetric;
     use crate::linear::system::Potential;
     use clocks::propagator::{TwoClocks, bias};
-    use number::Rational;
-    use number::rational::ratio;
+    use number::{Rational, ratio};
 
     fn symmetric(rows: &[&[i64]], factor: &Rational) -> Symmetric {
         let mut sum = Symmetric::zero(rows.len());

@@ -22,9 +22,7 @@ use crate::model::Model;
 use crate::verdict::analysis::Analysis;
 use crate::verdict::decide::decide_by;
 use crate::verdict::limits::{Limits, Route};
-use number::Rational;
-use number::error::{Error, Result};
-use number::rational::ratio;
+use number::{Error, Rational, Result, ratio};
 
 /// Two rational levels, the fast one solved for.
 #[derive(Clone, Debug)]

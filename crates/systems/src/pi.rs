@@ -16,9 +16,8 @@ use crate::model::Model;
 use crate::verdict::analysis::Analysis;
 use crate::verdict::decide::decide_around;
 use crate::verdict::limits::{Limits, Route};
-use number::error::{Error, Result};
 use number::rational::scale2;
-use number::{Ball, Laurent, Rational, Real};
+use number::{Ball, Error, Laurent, Rational, Real, Result};
 
 /// The highest power of π, and of 1/π: numbers at ϖ grow with it.
 const HIGHEST: u32 = 64;

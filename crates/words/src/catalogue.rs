@@ -1,7 +1,7 @@
 //! Published integrators as words.
 
 use super::letters::Word;
-use number::error::{Error, Result};
+use number::{Error, Result};
 
 /// A published integrator.
 #[derive(Clone, Copy, Debug)]

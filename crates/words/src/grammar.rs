@@ -8,10 +8,10 @@ use super::damping::Damping;
 use super::filter::Filter;
 use super::letters::{Force, Item, Letter, Word};
 use num_traits::Zero;
-use number::Radical;
-use number::error::{Error, MOST_LIKE, Result, likes};
+use number::error::{MOST_LIKE, likes};
 use number::parse::arithmetic::Arithmetic;
 use number::parse::typed;
+use number::{Error, Radical, Result};
 
 /// The longest text that is read, in characters.
 const MAX_CHARACTERS: usize = 20_000;

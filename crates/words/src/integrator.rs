@@ -6,8 +6,7 @@ use super::letters::Word;
 use super::point::{At, at};
 use super::product::Forces;
 use super::trigonometric::Shape;
-use number::error::Result;
-use number::{Laurent, Rational};
+use number::{Laurent, Rational, Result};
 
 /// An integrator of x'' + (Λ1 + Λ2) x = 0, Λ1 the fast force.
 #[derive(Clone, Debug, PartialEq)]

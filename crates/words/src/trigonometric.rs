@@ -27,9 +27,7 @@ use num_traits::{One, Signed, Zero};
 
 use super::enclosed::{Piece, pieces};
 use super::letters::{Force, Item, Letter, Word};
-use number::named;
-use number::rational::ratio;
-use number::{Ball, Laurent, Rational, Real, Sign};
+use number::{Ball, Laurent, Rational, Real, Sign, named, ratio};
 
 named! {
     /// A trigonometric integrator, by its filters.

@@ -7,7 +7,7 @@ use clocks::resonance::{Curve, Families};
 use documents::format::Format;
 use documents::question::{FAMILIES, flag};
 use documents::report::plane::{Colouring, window};
-use number::error::Result;
+use number::Result;
 
 /// Flags of figures.
 #[derive(Debug, clap::Args)]

@@ -12,7 +12,7 @@ use clocks::map::{Products, Shard};
 use documents::format::Format;
 use documents::question::Map;
 pub use drawing::Drawing;
-use number::error::{Error, Result};
+use number::{Error, Result};
 pub use output::{Output, Source};
 pub use part::Part;
 

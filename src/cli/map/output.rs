@@ -12,7 +12,7 @@ use documents::report::document::Layout;
 use documents::report::file::{write_output, write_with};
 use documents::report::map::{self as report, Counts, MapArrays, MapTally, Marked, Rows, marked};
 use documents::report::plane::Chart;
-use number::error::{Error, Result};
+use number::{Error, Result};
 
 /// Where the bands of a map come from.
 pub enum Source {

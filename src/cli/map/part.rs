@@ -8,8 +8,7 @@ use clocks::map::Store;
 use documents::input::json;
 use documents::question::{Fields, Map};
 use documents::report::file::write_output;
-use number::error::{Error, Result};
-use number::file;
+use number::{Error, Result, file};
 
 /// The file that names the map, and what stands in it.
 const NAME: &str = "map.json";

@@ -7,8 +7,7 @@ use clocks::tongue::sampled::{self, Diagram, LARGEST_S, Measured, Trace};
 use clocks::tongue::{Labels, Stiffness};
 use documents::question::Ratios;
 use documents::report::{strength, tongues};
-use number::error::{Error, Result};
-use number::{Laurent, Ratio, Rational, rational};
+use number::{Error, Laurent, Ratio, Rational, Result, rational};
 
 /// Values of ρ of a diagram: closer than lines are wide, on paper.
 const SAMPLES: u32 = 120;

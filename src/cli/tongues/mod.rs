@@ -17,9 +17,7 @@ use documents::question::{
 };
 use documents::report::certificate::coq_of_tongue;
 use documents::report::file::{write_output, write_with};
-use number::error::{Error, Result};
-use number::rational::ratio;
-use number::{Laurent, Ratio};
+use number::{Error, Laurent, Ratio, Result, ratio};
 
 /// Flags of `tongues`: a ratio or all of them, and rho or both stiffnesses.
 #[derive(Debug, clap::Args)]

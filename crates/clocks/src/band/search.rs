@@ -7,9 +7,8 @@ use super::edges::{edges, labels};
 use super::frame::Base;
 use super::sector::{Line, Prover, Ratio, Sector, Way, area, value};
 use super::taylor::Taylor;
-use number::error::{Error, Result};
 use number::parallel::{go_on, try_map};
-use number::{Ball, ExactSign, Laurent, Rational, Real, Sign, rational};
+use number::{Ball, Error, ExactSign, Laurent, Rational, Real, Result, Sign, rational};
 
 /// Pieces whose halves are tried side by side. The goal is looked at between them.
 const BATCH: usize = 512;

@@ -5,9 +5,8 @@ use super::frame::{Base, Frame};
 use super::taylor::Taylor;
 use crate::propagator::Oscillator;
 use crate::verdict::{Limits, decide};
-use number::error::Result;
 use number::parallel::go_on;
-use number::{Ball, Laurent, Rational, U, rational};
+use number::{Ball, Laurent, Rational, Result, U, rational};
 
 /// h2/h1 = p/q.
 pub type Ratio = (u64, u64);

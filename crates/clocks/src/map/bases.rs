@@ -202,7 +202,7 @@ mod tests {
     use crate::orbit::floquet::Base;
     use crate::orbit::lanes::{Constants, InLanes};
     use num_integer::gcd;
-    use number::{Ball, rational::ratio};
+    use number::{Ball, ratio};
     use proptest::prelude::*;
 
     proptest! {

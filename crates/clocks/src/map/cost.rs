@@ -4,8 +4,7 @@ use super::grid::Grid;
 use super::shard::Shard;
 use super::work::MOST_TOGETHER;
 use crate::verdict::Limits;
-use number::Ratio;
-use number::error::{Error, Result};
+use number::{Error, Ratio, Result};
 
 /// A map as a whole may compose so many times the kicks that one pair may: with the default limits 10^12.
 const TIMES_A_PAIR: u64 = 10_000;

@@ -3,8 +3,8 @@
 use crate::propagator::{Oscillator, TwoClocks};
 use crate::resonance::compare::{Comparisons, allow};
 use crate::verdict::Limits;
-use number::error::{Error, Result, room};
-use number::{ExactSign, Laurent, Ratio, Rational, Ring, Sign};
+use number::error::room;
+use number::{Error, ExactSign, Laurent, Ratio, Rational, Result, Ring, Sign};
 
 /// The most columns or rows: their products are then exact in doubles.
 const LARGEST_MULTIPLIER: u64 = 1 << 26;

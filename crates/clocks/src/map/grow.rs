@@ -11,10 +11,8 @@ use crate::orbit::{plain, returns};
 use crate::propagator::TwoClocks;
 use crate::schedule::Schedule;
 use crate::verdict::{Kind, Tier, Verdict, growth, label};
-use number::Interval;
-use number::Laurent;
-use number::error::Result;
 use number::vector::instructions::Instructions;
+use number::{Interval, Laurent, Result};
 
 impl Work<'_> {
     /// A second run over the pairs in tongues, a third over those of which it gives too little, then kick by

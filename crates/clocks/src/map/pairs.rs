@@ -9,10 +9,10 @@ use super::work::LANES;
 use crate::orbit::strengths::Strengths;
 use crate::propagator::Oscillator;
 use crate::verdict::{Decision, Limits, decide_steps};
-use number::error::{Error, Kind, Result};
+use number::error::Kind;
 use number::vector::each;
 use number::vector::instructions::{Instructions, Task};
-use number::{ExactSign, Laurent, Rational, Real, Sign, Twofold};
+use number::{Error, ExactSign, Laurent, Rational, Real, Result, Sign, Twofold};
 
 /// The quantities' names, and what those must hear that are not positive.
 const FIELDS: [(&str, Option<&str>); 4] = [

@@ -3,8 +3,8 @@
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use crate::verdict::Limits;
-use number::error::{Error, Result};
 use number::parallel::{Pool, go_on};
+use number::{Error, Result};
 
 /// The time and the memory that a map or a list of pairs may take.
 #[derive(Clone, Copy, Debug, Default)]

@@ -10,8 +10,9 @@ use super::shard::{Numbered, Shard, bands};
 use super::store::Store;
 use super::work::Work;
 use crate::verdict::Verdict;
-use number::error::{Error, Result, filled, room};
+use number::error::{filled, room};
 use number::parallel::{map, try_map};
+use number::{Error, Result};
 
 /// A grid whose pairs are to be decided, and what else is asked of them.
 ///

@@ -8,7 +8,7 @@ use super::work::{LANES, MOST_TOGETHER, by_counting, in_groups};
 use crate::orbit::filter::UNDECIDED;
 use crate::orbit::strengths::{Placed, Strengths};
 use crate::verdict::{Decision, Tier, Verdict};
-use number::error::Result;
+use number::Result;
 use number::parallel::try_map;
 
 /// Pairs that are sorted by their strengths and their numbers of updates together: enough for each to find

@@ -4,7 +4,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use super::grid::Grid;
-use number::error::{Error, Result};
+use number::{Error, Result};
 
 /// Part k of n of a map, k = 1..n: every n-th band.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

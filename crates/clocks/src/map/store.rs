@@ -19,9 +19,7 @@ use super::products::{Growing, Products};
 use super::shard::columns_of;
 use super::work::{LANES, MOST_TOGETHER};
 use crate::verdict::{Kind, Tier, Verdict};
-use number::Interval;
-use number::error::{Error, Result};
-use number::file;
+use number::{Error, Interval, Result, file};
 
 /// The bands of one map in one directory.
 #[derive(Clone, Debug)]

@@ -11,8 +11,8 @@ use super::resources::Resources;
 use crate::orbit::filter::{self, Group};
 use crate::orbit::floquet::{Base, Turn};
 use crate::verdict::{Limits, decide};
-use number::error::{Error, Result};
 use number::vector::instructions::{Instructions, Task};
+use number::{Error, Result};
 
 /// Pairs that run side by side: four AVX-512 registers hide each other's latency.
 pub(super) const LANES: usize = 32;

@@ -304,9 +304,7 @@ mod tests {
     use super::*;
     use crate::propagator::{TwoClocks, half_period};
     use num_integer::Integer;
-    use number::Ratio;
-    use number::Rational;
-    use number::rational::ratio;
+    use number::{Ratio, Rational, ratio};
     use proptest::prelude::*;
 
     fn pairs() -> impl Strategy<Value = Vec<Floquet>> {

@@ -400,9 +400,7 @@ pub(super) fn within_range(x: f64) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use number::Rational;
-    use number::U;
-    use number::rational::ratio;
+    use number::{Rational, U, ratio};
     use proptest::prelude::*;
 
     fn ball(x: f64) -> Ball {

@@ -214,7 +214,7 @@ pub(super) fn product(m: &Matrix, n: &Matrix, bits: u32) -> Matrix {
 mod tests {
     use super::super::refine;
     use super::*;
-    use number::rational::ratio;
+    use number::ratio;
 
     /// Both routes at these bits: signs, label and enclosures agree.
     fn agree(p: u64, q: u64, s: Rational, rho: Rational) {

@@ -287,9 +287,7 @@ mod tests {
     use crate::propagator::{PartialSigns, half_period};
     use num_integer::Integer;
     use num_traits::Signed;
-    use number::Ratio;
-    use number::Rational;
-    use number::rational::ratio;
+    use number::{Ratio, Rational, ratio};
     use proptest::prelude::*;
 
     fn run_of(clocks: &TwoClocks<Rational>) -> Option<Ends> {

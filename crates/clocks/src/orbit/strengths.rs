@@ -215,8 +215,7 @@ impl InLanes for Placed {
 mod tests {
     use super::*;
     use crate::orbit::floquet::{Base, Pair};
-    use number::rational::ratio;
-    use number::{Ball, Ratio, U};
+    use number::{Ball, Ratio, U, ratio};
     use proptest::prelude::*;
 
     proptest! {

@@ -190,7 +190,7 @@ mod tests {
     use super::*;
     use crate::propagator::full_period;
     use crate::schedule::{Event, Kicks};
-    use number::rational::ratio;
+    use number::ratio;
 
     fn pairs() -> Vec<TwoClocks<Rational>> {
         let of = |text: &str, s, rho| TwoClocks::with_rho(text.parse().unwrap(), s, rho);

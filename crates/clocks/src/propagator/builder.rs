@@ -14,8 +14,7 @@
 //! ```
 
 use super::clocks::Oscillator;
-use number::error::{Error, Result};
-use number::{Laurent, Quantity};
+use number::{Error, Laurent, Quantity, Result};
 
 /// An [`Oscillator`] in the making; [`OscillatorBuilder::build`] reports what is wrong or missing.
 #[derive(Clone, Debug, Default)]

@@ -11,8 +11,7 @@
 //! assert_eq!(clocks.slow().to_string(), "2*pi^2/125"); // h1 h2 L2
 //! ```
 
-use number::error::{Error, Result};
-use number::{Ball, ExactSign, Laurent, Ratio, Rational, Real, Ring, Sign};
+use number::{Ball, Error, ExactSign, Laurent, Ratio, Rational, Real, Result, Ring, Sign};
 
 /// x'' + (L1 + L2) x = 0 with the force of L1 at the multiples of h1 and that of L2 at those of h2:
 /// the paper's section 3, its Lambda_1, Lambda_2. Unit mass; L in 1/time², h in time.

@@ -22,10 +22,8 @@ use super::tan;
 use crate::orbit::refine;
 use crate::propagator::TwoClocks;
 use crate::verdict::{Decidable, Decision, Limits, Tier, Verdict, decide_from};
-use number::error::{Error, Result};
-use number::named;
 use number::parallel::{go_on, try_map};
-use number::{Laurent, Ratio, Rational};
+use number::{Error, Laurent, Ratio, Rational, Result, named};
 
 named! {
     /// The rule of thumb held against the verdict of a pair.

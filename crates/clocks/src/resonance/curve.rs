@@ -2,8 +2,7 @@
 
 use std::cmp::Ordering;
 
-use number::error::{Error, Result};
-use number::{Ball, ExactSign, Laurent, Real, Sign};
+use number::{Ball, Error, ExactSign, Laurent, Real, Result, Sign};
 
 /// The part of the (h1, h2) plane in which curves are wanted; closed ranges.
 #[derive(Clone, Debug, PartialEq)]

@@ -10,9 +10,8 @@
 //! ```
 
 use super::curve::{Curve, MOST_POINTS, Window, curve};
-use number::Laurent;
-use number::error::{Error, Result};
 use number::parallel::try_map;
+use number::{Error, Laurent, Result};
 
 /// Curves (a, b): closed ranges of a and b, and the number of samples of each in the window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

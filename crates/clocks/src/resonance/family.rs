@@ -4,8 +4,7 @@ use num_integer::Integer;
 
 use super::strength;
 use crate::verdict::{Answer, Decidable};
-use number::error::Result;
-use number::{Ball, Ratio, Rational};
+use number::{Ball, Ratio, Rational, Result};
 
 /// The families through a resonance: one pair (a0, b0) with a0 p + b0 q = m and 0 ≤ a0 < q; all others are
 /// (a0 + q k, b0 − p k).

@@ -32,8 +32,7 @@ use std::cmp::Ordering;
 
 use crate::propagator::TwoClocks;
 use crate::verdict::{Decidable, HalfSigns, Limits, PartialSigns, Tier, Verdict};
-use number::error::Result;
-use number::{Ball, Enclosed, ExactSign, Rational, Real, Ring};
+use number::{Ball, Enclosed, ExactSign, Rational, Real, Result, Ring};
 
 /// The tan criterion for any q: the four forms enclosed, else computed exactly. q/2 slow kicks, whatever p.
 ///
@@ -211,8 +210,7 @@ impl<S: Ring> HalfTurn<S> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use number::Ratio;
-    use number::rational::ratio;
+    use number::{Ratio, ratio};
 
     #[test]
     fn the_forms_are_those_of_the_half_period_for_every_strength() {

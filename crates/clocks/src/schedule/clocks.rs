@@ -4,8 +4,7 @@ use num_bigint::BigInt;
 use num_integer::Integer;
 use num_traits::{One, Signed, ToPrimitive, Zero};
 
-use number::Rational;
-use number::error::{Error, Result};
+use number::{Error, Rational, Result};
 
 /// A clock in ticks: it strikes at `offset + n · step`, n = 0, 1, 2, ..., with `offset < step`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,8 +2,7 @@
 
 use super::clocks::{Clock, Clocks};
 use super::events::{Ends, Events};
-use number::error::{Error, Result};
-use number::{Ratio, Rational};
+use number::{Error, Ratio, Rational, Result};
 
 /// As many clocks as the bit set of an [`Event`](super::Event) holds.
 const MAX_CLOCKS: usize = 64;

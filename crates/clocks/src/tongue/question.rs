@@ -4,9 +4,8 @@ use super::edge::Tongues;
 use super::gap::Gap;
 use super::request::{Request, Tongue};
 use super::select::{Range, Selection};
-use number::error::{Error, Result};
 use number::parallel::try_map;
-use number::{ExactSign, Laurent, Ratio, Rational, Sign};
+use number::{Error, ExactSign, Laurent, Ratio, Rational, Result, Sign};
 
 /// ρ, and the stiffnesses where they are given.
 #[derive(Clone, Debug)]

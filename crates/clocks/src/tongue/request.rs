@@ -5,8 +5,7 @@ use super::edge::{Edge, Enclosure, Tongues};
 use super::gap::Gap;
 use super::row::{ExactEdge, Resonance, Row, Wanted};
 use super::string::Entry;
-use number::error::Result;
-use number::{Ball, Laurent, Ratio, Rational, Real};
+use number::{Ball, Laurent, Ratio, Rational, Real, Result};
 
 /// The columns asked for beside the edges in s.
 #[derive(Clone, Debug, Default)]

@@ -20,9 +20,8 @@ use super::gap::Gap;
 use super::string::MOST_KICKS;
 use super::string::lanes::LANES;
 use crate::resonance::dominant_family;
-use number::error::{Error, Result};
 use number::parse::{parse_integer, parse_integer_range};
-use number::{Laurent, rational};
+use number::{Error, Laurent, Result, rational};
 
 /// A closed range of steps, or of s.
 pub type Range = (Laurent, Laurent);

@@ -13,9 +13,8 @@ use std::collections::BTreeMap;
 
 use super::edge::Tongues;
 use super::row::{Row, Side, Wanted};
-use number::error::Result;
 use number::parallel::try_map;
-use number::{Ratio, Rational};
+use number::{Ratio, Rational, Result};
 
 /// The tongues of all coprime p + q ≤ N at one ρ whose lower edge has s < 4, summed up.
 #[derive(Clone, Debug, PartialEq)]

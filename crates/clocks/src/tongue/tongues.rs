@@ -12,8 +12,8 @@ use super::edge::Tongues;
 use super::gap::Gap;
 use super::select::{Selection, runs};
 use super::string::Entry;
-use number::error::{Error, Result};
 use number::parallel::go_on;
+use number::{Error, Result};
 
 impl Tongues {
     /// Tongue m alone, 1 ≤ m ≤ [`Tongues::last`]: two edges are computed.

@@ -7,8 +7,7 @@ use super::growth::{Growth, Runs};
 use super::kind::Verdict;
 use super::tier::{Limits, Tier};
 use crate::propagator::TwoClocks;
-use number::Ball;
-use number::error::Result;
+use number::{Ball, Result};
 
 /// A proven answer. Trace, growth and label cost hundreds of verdicts where the filter decided, so they are
 /// computed when first asked for, from the runs that decided as far as these reach.

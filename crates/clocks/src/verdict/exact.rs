@@ -221,8 +221,7 @@ fn product(steps: &Steps, schedule: &Schedule) -> Matrix {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use number::Ratio;
-    use number::rational::ratio;
+    use number::{Ratio, ratio};
     use proptest::prelude::*;
 
     proptest! {

@@ -19,9 +19,8 @@ use crate::orbit::returns::{self, Wanted};
 use crate::orbit::{filter, plain, refine};
 use crate::propagator::{LongClocks, Oscillator, TwoClocks};
 use crate::schedule::Schedule;
-use number::error::{Error, Result};
 use number::parallel::go_on;
-use number::{Ball, Real};
+use number::{Ball, Error, Real, Result};
 
 /// How a pair moves over one synchronization period. As JSON its enclosures are two doubles with the value
 /// between them, `{"lo": , "hi": }`.
@@ -313,7 +312,7 @@ fn component(value: f64, end: &filter::End) -> Ball {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use number::rational::ratio;
+    use number::ratio;
 
     #[test]
     fn half_turns_are_counted_kick_by_kick_within_the_budget_alone() {

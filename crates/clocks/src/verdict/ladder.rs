@@ -17,9 +17,8 @@ use crate::orbit::returns::{self, Found, Wanted};
 use crate::orbit::{filter, plain, refine};
 use crate::propagator::{LongClocks, Oscillator, TwoClocks};
 use crate::schedule::Schedule;
-use number::Sign;
-use number::error::{Error, Result};
 use number::parallel::go_on;
+use number::{Error, Result, Sign};
 
 /// The precisions of the refine tier in bits, as far as the exact tier is expected to cost more.
 const PRECISIONS: [u32; 3] = [128, 256, 512];
@@ -305,7 +304,7 @@ mod tests {
     use super::*;
     use number::error::Kind;
     use number::parallel::stoppable;
-    use number::{Ratio, rational::ratio};
+    use number::{Ratio, ratio};
 
     /// Before it begins and on the way; the kicks that are left would take many times as long.
     #[test]

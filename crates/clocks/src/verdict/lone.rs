@@ -61,8 +61,7 @@ fn alone<S: Real>(exact: &S, n: u64) -> Option<Verdict> {
 mod tests {
     use super::*;
     use crate::verdict::{Limits, Tier, decide_from};
-    use number::rational::ratio;
-    use number::{Cyclotomic, Ratio, Ring};
+    use number::{Cyclotomic, Ratio, Ring, ratio};
 
     #[test]
     fn the_closed_form_is_what_kicks_and_drifts_give() {

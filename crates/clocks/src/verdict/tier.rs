@@ -1,7 +1,6 @@
 //! The tiers of the ladder, and how much work each may do.
 
-use number::error::{Error, Result};
-use number::named;
+use number::{Error, Result, named};
 
 named! {
     /// Which tier decided.

@@ -1,6 +1,6 @@
 //! Kinds of files, by their schemas, and the commands that read them.
 
-use number::error::Error;
+use number::Error;
 
 /// A command for files of each kind, by their schemas, and what these are.
 const READERS: [(&str, &str); 3] = [

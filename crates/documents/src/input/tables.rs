@@ -6,7 +6,7 @@ use serde_json::{Map, Value};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use number::error::{Error, Result};
+use number::{Error, Result};
 
 /// One table of a list.
 #[derive(Clone, Debug, PartialEq)]

@@ -11,9 +11,8 @@ use crate::report::shape::{Keys, Schema};
 use molecules::engine::{self, Reading};
 use molecules::unit::{self, Dimension, TimeUnit, decimal};
 use molecules::{self, Constraints, Mode, Scheme};
-use number::Rational;
-use number::error::{Error, Result};
 use number::parse::parse_rational;
+use number::{Error, Rational, Result};
 
 question! {
     /// Which steps are safe, in the words of those who ask.

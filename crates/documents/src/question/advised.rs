@@ -18,9 +18,8 @@ use molecules::{
     Adds, Advice, Beads, Bond, DirectFindings, Findings, Levers, MOST_PRODUCTS, Mode, Molecule, Origin,
     SOLVED, Scheme, Status, Way, aperture,
 };
-use number::error::{Error, Result};
 use number::parse::parse_rational;
-use number::{ExactSign, Rational, Sign};
+use number::{Error, ExactSign, Rational, Result, Sign};
 use systems::Limits;
 
 question! {

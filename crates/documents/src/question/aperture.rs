@@ -12,10 +12,8 @@ use crate::report::shape::Schema;
 use molecules::aperture::{Bond, Measured, Measurement, Step, band_of, energies_seen, hottest, hottest_of};
 use molecules::check_band;
 use molecules::unit::{self, Dimension};
-use number::Rational;
-use number::error::{Error, Result};
 use number::parallel::try_map;
-use number::rational::to_f64;
+use number::{Error, Rational, Result, to_f64};
 use words::Word;
 
 /// A quantity as it is written, and its value.

@@ -7,7 +7,7 @@ use crate::report::shape::{Keys, Schema};
 use crate::report::text::quoted;
 use clocks::tongue::Progress;
 use clocks::verdict::Limits;
-use number::error::Result;
+use number::Result;
 
 /// The fields of a `Question`, each declared once: a struct that is read from the `input` of a document and
 /// written there, and, as `args struct`, read from arguments too. `as "X"` gives a field the flag of its name,

@@ -9,8 +9,7 @@ use crate::report::bands;
 use crate::report::document::Document;
 use crate::report::shape::Schema;
 use clocks::band::{self, Window};
-use number::error::{Error, Result};
-use number::{Laurent, Rational};
+use number::{Error, Laurent, Rational, Result};
 
 question! {
     /// Sectors of (h1, h2) in which every ratio h2/h1, rational or not, is proven unstable.

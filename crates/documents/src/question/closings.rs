@@ -10,9 +10,8 @@ use crate::report::shape::{
 };
 use crate::report::table::{Cell, Column};
 use clocks::tongue::{self, Closing, Enclosure, Found, Labels, Search};
-use number::error::{Error, Result};
 use number::parallel::try_map;
-use number::{Ratio, Rational};
+use number::{Error, Ratio, Rational, Result};
 
 question! {
     /// The pairs (s, ρ) at which tongues of one ratio or of all are closed.

@@ -10,8 +10,7 @@ use crate::report::shape::{COUNT, EXACT, GROUP, KIND, POSITIVE, Schema, Shape, W
 use crate::report::table::{Cell, Column};
 use clocks::map::Grid;
 use clocks::resonance::compare::{Comparison, Comparisons, Offender, Tally, compare_ratios};
-use number::error::{Error, Result};
-use number::{Laurent, Rational};
+use number::{Error, Laurent, Rational, Result};
 
 question! {
     /// The trace verdict against the tan criterion and against resonance: over a grid with both stiffnesses,

@@ -8,8 +8,7 @@ use crate::report::record::Record;
 use crate::report::shape::{COUNT, INTEGER, Keys, ROUNDED, Schema, Shape};
 use crate::report::table::{Column, Table};
 use clocks::resonance::{Curve, CurvePoint, Families, Window};
-use number::error::{Error, Result};
-use number::{ExactSign, Laurent, Sign};
+use number::{Error, ExactSign, Laurent, Result, Sign};
 use plot::{Figure, Foot};
 
 question! {

@@ -8,12 +8,10 @@ use crate::report::shape::{
 };
 use clocks::map::Shard;
 use clocks::tongue::Labels;
-use number::error::{Error, Result};
 use number::parse::{
     parse, parse_integer_range, parse_range, parse_ratio, parse_rational, parse_rational_range,
 };
-use number::rational::to_f64;
-use number::{Laurent, Ratio, Rational};
+use number::{Error, Laurent, Ratio, Rational, Result, to_f64};
 
 /// Labels of tongues as a text.
 const LABELS: Shape = Shape::Plain(r#"{"type": "string", "pattern": "^[0-9.,]+$"}"#);

@@ -8,8 +8,7 @@ use crate::report::shape::{GROUP_OR_NULL, Keys, RATIONAL, SIGN, Schema, Shape, W
 use crate::report::table::{Cell, Column};
 use clocks::propagator::{Bias, HalfPeriod, TwoClocks, bias, half_period};
 use clocks::schedule::Schedule;
-use number::error::{Error, Result};
-use number::{ExactSign, Ratio, Rational, rational};
+use number::{Error, ExactSign, Ratio, Rational, Result, rational};
 
 question! {
     /// A, B, C, D of one ratio at rational s and ρ, exact and enclosed, in the time unit h1: A and D are

@@ -6,8 +6,7 @@ use crate::report::document::Document;
 use crate::report::map::{self as map_report, MapTally, document};
 use crate::report::shape::Schema;
 use clocks::map::{self, Band, Grid, Products, Resources, Shard, Store};
-use number::Laurent;
-use number::error::{Error, Result};
+use number::{Error, Laurent, Result};
 
 question! {
     /// The verdicts of all pairs of multiples of two spacings in closed ranges.

@@ -75,7 +75,7 @@ use serde_json::{Map as Input, Value};
 
 use crate::report::document::Document;
 use crate::report::shape::{Keys, Schema};
-use number::error::{Error, Result};
+use number::{Error, Result};
 
 /// The document that answers the question of this name, NAME in `kickdrift/NAME/1`, whose fields are those of
 /// the document's `input`.

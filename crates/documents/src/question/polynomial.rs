@@ -11,8 +11,7 @@ use crate::report::record::Record;
 use crate::report::shape::{COUNT, GROUP, Keys, POSITIVE, RATIONAL, Schema, Shape};
 use crate::report::table::{Cell, Column, Table};
 use clocks::propagator::{HalfPeriod, TwoClocks, half_period};
-use number::error::{Error, Result};
-use number::{self, Ratio, Rational};
+use number::{self, Error, Ratio, Rational, Result};
 
 question! {
     /// A, B, C, D and the trace of one ratio as polynomials in s and ρ.

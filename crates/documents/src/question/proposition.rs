@@ -6,7 +6,7 @@ use crate::report::record::Record;
 use crate::report::shape::{COUNT, FLAG, INTEGER, POSITIVE, Schema, Shape};
 use crate::report::table::Column;
 use clocks::resonance::proposition::{Check, Witness, check};
-use number::error::{Error, Result};
+use number::{Error, Result};
 
 question! {
     /// The Proposition for all coprime p, q up to a number, with all witnesses.

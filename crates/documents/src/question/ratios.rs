@@ -6,9 +6,8 @@ use plot::Foot;
 
 use super::field::notation;
 use crate::report::shape::Shape;
-use number::Ratio;
-use number::error::{Error, Result};
 use number::parse::parse_ratio;
+use number::{Error, Ratio, Result};
 
 /// The largest p + q of all ratios: there are 1.2 million of them below 2000.
 pub const MOST_SUM: u64 = 2000;

@@ -7,10 +7,8 @@ use crate::report::document::Document;
 use crate::report::record::Record;
 use crate::report::shape::{COUNT, EXACT, Keys, POSITIVE, ROUNDED, Schema, Shape, TEXT};
 use crate::report::table::{Cell, Column};
-use number::error::{Error, Result};
 use number::parallel::try_map;
-use number::rational::to_f64;
-use number::{ExactSign, Laurent, Rational, Sign};
+use number::{Error, ExactSign, Laurent, Rational, Result, Sign, to_f64};
 use words::{Bounded, Integrator};
 
 question! {

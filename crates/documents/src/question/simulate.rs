@@ -8,10 +8,10 @@ use crate::input::{SystemFile, SystemScene};
 use crate::report::document::Document;
 use crate::report::shape::{Schema, Shape, TEXT};
 use crate::report::simulate as report;
-use number::error::{Error, Kind, Result};
+use number::error::Kind;
 use number::parallel::go_on;
 use number::parse::parse_rational;
-use number::rational::to_f64;
+use number::{Error, Result, to_f64};
 use systems::avi::{Ends, Force, Run, Simulation, growth_rate, irreversibility, series};
 use systems::{Limits, Route, middle};
 

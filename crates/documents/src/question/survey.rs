@@ -8,8 +8,7 @@ use crate::report::record::Record;
 use crate::report::shape::{COUNT, GROUP, INTEGER, POSITIVE, POSITIVE_ENCLOSURE, ROUNDED, Schema, Shape};
 use crate::report::table::{Cell, Column};
 use clocks::tongue::{self, Spread, Thin};
-use number::error::{Error, Result};
-use number::{Ratio, Rational};
+use number::{Error, Ratio, Rational, Result};
 
 question! {
     /// All tongues of all coprime p + q up to a sum that begin below s = 4: counts, widths, the thinnest ones

@@ -16,8 +16,7 @@ use clocks::resonance::dominant_family;
 use clocks::verdict::{
     Decision, Growth, Kind, Limits, Tier, decide_from, decide_steps, decide_with_growth, exact_trace,
 };
-use number::error::{Error, Result};
-use number::{Ball, Laurent, Ratio, Rational, Real, rational};
+use number::{Ball, Error, Laurent, Ratio, Rational, Real, Result, rational};
 
 question! {
     /// One pair of steps of one oscillator.

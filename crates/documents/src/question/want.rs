@@ -4,8 +4,7 @@ use serde_json::Value;
 
 use super::field::Field;
 use crate::format::Format;
-use number::error::{Error, Result};
-use number::named;
+use number::{Error, Result, named};
 
 named! {
     /// A product of a scene.

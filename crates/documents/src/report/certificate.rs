@@ -21,8 +21,7 @@ use num_traits::Zero;
 use clocks::propagator::Oscillator;
 use clocks::tongue::Gap;
 use clocks::verdict::{Kind, Verdict};
-use number::error::{Error, Result};
-use number::{Laurent, Radical, Ratio, Rational, rational};
+use number::{Error, Laurent, Radical, Ratio, Rational, Result, rational};
 use words::{At, Force, Letter, Word};
 
 /// Coq multiplies exact matrices of so many kicks in some seconds.

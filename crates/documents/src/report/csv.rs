@@ -8,7 +8,7 @@ use std::borrow::Cow;
 use std::io::Write;
 
 use super::table::{Cell, Column, Table, check};
-use number::error::{Error, Result};
+use number::{Error, Result};
 
 /// The end of a line as the RFC has it.
 const LINE_END: &str = "\r\n";

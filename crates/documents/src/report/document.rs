@@ -11,7 +11,8 @@ use super::latex::{self, Equation, Float};
 use super::table::Table;
 use super::{csv, text};
 use crate::format::Format;
-use number::error::{Error, Result, visible};
+use number::error::visible;
+use number::{Error, Result};
 
 /// A named result.
 #[derive(Clone, Debug)]

@@ -3,7 +3,7 @@
 use plot::Figure;
 
 use crate::format::Format;
-use number::error::{Error, Result};
+use number::{Error, Result};
 
 /// Pixels an inch: print quality.
 const DPI: f64 = 300.0;

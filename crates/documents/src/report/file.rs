@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use number::error::{Error, Result};
+use number::{Error, Result};
 
 /// Writes `bytes` to `path`, or to standard output where there is no path.
 ///

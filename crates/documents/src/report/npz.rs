@@ -12,7 +12,7 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipWriter};
 
 use super::file::{Temporary, explained, write_with};
-use number::error::{Error, Result};
+use number::{Error, Result};
 
 /// Few distinct values in long runs: the least effort does.
 const LEVEL: i64 = 1;

@@ -7,7 +7,7 @@ use std::io::Write;
 use serde_json::{Map, Value};
 
 use super::document::Document;
-use number::error::{Error, Result};
+use number::{Error, Result};
 
 /// A document on its way out; its rows come between what is known before them and what is known after.
 pub struct JsonRows<'a> {

@@ -9,7 +9,7 @@ use serde::ser::{Serialize, SerializeMap, SerializeSeq, Serializer};
 
 use super::decimal;
 use molecules::unit::decimal as decimal_of;
-use number::error::{Error, Result};
+use number::{Error, Result};
 
 /// One value of a table.
 #[derive(Clone, Debug, PartialEq)]

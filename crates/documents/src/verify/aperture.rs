@@ -8,9 +8,7 @@ use crate::question::Aperture;
 use molecules::aperture::{
     Bond, Edge, FAR, Hottest, LATE, Measured, Shape, Step, rungs, squared_frequency, thermal,
 };
-use number::error::Result;
-use number::rational::to_f64;
-use number::{Radical, Rational, Real};
+use number::{Radical, Rational, Real, Result, to_f64};
 use words::{Force, Letter, Word};
 
 const ROUTE: &str = "the word run letter by letter, phase by phase: no start is lost a tenth or half a kT below E*, and some are up to as much above it";

@@ -8,8 +8,7 @@ use crate::question::{Bands, Fields};
 use clocks::band::{self, Sector, Window};
 use clocks::propagator::Oscillator;
 use clocks::verdict::{Kind, decide};
-use number::error::Result;
-use number::{Ball, ExactSign, Laurent, Rational, Sign, rational};
+use number::{Ball, ExactSign, Laurent, Rational, Result, Sign, rational};
 
 const ROUTE: &str = "nine pairs of steps in each sector, worst placed, with ratios as simple as there are: all are hyperbolic by the ladder, in the tongue named";
 

@@ -11,9 +11,8 @@ use crate::question::Closings;
 use clocks::propagator::TwoClocks;
 use clocks::tongue::{Closing, Enclosure, Entry, Found, Search, Tongues, closings_of, count_closings};
 use clocks::verdict::{Limits, decide, growth};
-use number::error::Result;
 use number::rational::simplest;
-use number::{Ratio, Rational, Sign};
+use number::{Ratio, Rational, Result, Sign};
 
 const ROUTE: &str = "exact signs at both ends of the range of rho: the edges exchange their order, the label between \
                      them is m; rational closings: both entries vanish; complete lists by the mirror ratio's resultant";

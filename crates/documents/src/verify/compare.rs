@@ -9,8 +9,7 @@ use clocks::map::Grid;
 use clocks::propagator::{Oscillator, TwoClocks};
 use clocks::resonance::compare::{Comparison, Comparisons, Offender, Outcome as Rule};
 use clocks::verdict::Tier;
-use number::error::Result;
-use number::{Ball, Laurent, Ratio, Rational};
+use number::{Ball, Laurent, Ratio, Rational, Result};
 
 const ROUTE: &str = "every pair by the certified filter, every offender by the full period in exact arithmetic; theta \
                      enclosed; the tan criterion and the trace give one verdict by a theorem";

@@ -7,8 +7,8 @@ use crate::input::Arrays;
 use crate::question::{Watch, Work};
 use clocks::tongue::Progress as Counter;
 use clocks::verdict::Limits;
-use number::error::{Error, Result};
 use number::parallel::try_map;
+use number::{Error, Result};
 
 /// The remedy for a document that cannot be read.
 pub const REMEDY: &str = "whole documents, as kickdrift wrote them, can be rechecked";

@@ -8,8 +8,7 @@ use super::context::{Checked, Context, Fault, Outcome, holds};
 use super::kind::Verify;
 use crate::question::Curves;
 use clocks::resonance::{Angle, Curve, CurvePoint};
-use number::error::Result;
-use number::{Ball, Laurent, Rational, rational};
+use number::{Ball, Laurent, Rational, Result, rational};
 
 const ROUTE: &str = "theta of every h1 by an arctangent, h2 from 1/T_half = a/h1 + b/h2, both enclosed; which pieces lie \
                      in the window, from the heights of the branches' ends, in doubles";

@@ -10,8 +10,7 @@ use clocks::tongue::Entry;
 use clocks::verdict::{
     Decidable, Decision, HalfSigns, Kind, Limits, Tier, Verdict, decide_from, exact_trace,
 };
-use number::error::{Error, Result};
-use number::{Ball, ExactSign, Laurent, Ratio, Rational, Real, Sign, rational};
+use number::{Ball, Error, ExactSign, Laurent, Ratio, Rational, Real, Result, Sign, rational};
 
 /// p/q, in lowest terms as it has to be written.
 pub fn lowest(p: u64, q: u64) -> Checked<Ratio> {

@@ -8,8 +8,7 @@ use super::kind::Verify;
 use crate::question::Half;
 use clocks::propagator::methods::avi;
 use clocks::propagator::{HalfPeriod, TwoClocks};
-use number::Rational;
-use number::error::Result;
+use number::{Rational, Result};
 
 const ROUTE: &str =
     "the trace of the full period, kick by kick, is 2 (AD + BC), and AD - BC = 1, in exact arithmetic";

@@ -5,7 +5,7 @@ use serde_json::{Map, Value};
 use super::again::Excluded;
 use super::context::{Context, Outcome, REMEDY};
 use crate::question::{Fields, Question};
-use number::error::{Error, Result};
+use number::{Error, Result};
 
 /// A question whose answers are held against another route.
 pub trait Verify: Question {

@@ -10,9 +10,8 @@ use crate::question::{Map, Question};
 use crate::report::map::{Fastest, MapTally};
 use clocks::map::{Band, Grid};
 use clocks::verdict::{Tier, growth};
-use number::error::{Error, Result};
 use number::parallel::try_map;
-use number::{Ball, Real};
+use number::{Ball, Error, Real, Result};
 
 const ROUTE: &str = "the pairs of a random sample kick by kick";
 const ALL: &str = "every pair kick by kick";

@@ -77,7 +77,7 @@ use crate::question::{
     Advised, Aperture, Bands, Closings, Compare, CompareMethods, Curves, Family, Half, Methods, Polynomial,
     Proposition, Simulate, Survey, System, Tongues, Verdict, Word, WordCheck,
 };
-use number::error::{Error, Result};
+use number::{Error, Result};
 
 pub use context::{Failure, Options, Outcome, Progress};
 pub use told::schema;

@@ -6,8 +6,7 @@ use super::kind::Verify;
 use crate::question::{Polynomial, Polynomials};
 use clocks::propagator::methods::avi;
 use clocks::propagator::{TwoClocks, half_period};
-use number::error::Result;
-use number::{self, Ratio, Rational};
+use number::{self, Ratio, Rational, Result};
 
 const ROUTE: &str = "the full period, kick by kick, at more rational points than the degrees leave free";
 

@@ -6,7 +6,7 @@ use super::context::{Checked, Context, Outcome, holds, same};
 use super::kind::Verify;
 use crate::question::Proposition;
 use clocks::resonance::proposition::{Check, Witness};
-use number::error::Result;
+use number::Result;
 
 const ROUTE: &str =
     "eq. (10) with m = a p + b q in integers, b not 0; every coprime (p, q, m) once; curves counted";

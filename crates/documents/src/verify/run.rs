@@ -7,7 +7,7 @@ use serde_json::{Map, Value};
 use super::context::{Context, Outcome};
 use super::kind::{Again, Kind, asked};
 use crate::question::Scene;
-use number::error::Result;
+use number::Result;
 
 const ROUTE: &str = "none: the files are named again from what the scene wants";
 

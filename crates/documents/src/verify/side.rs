@@ -3,9 +3,7 @@
 use super::context::{Checked, Context, Outcome, TRACE_ROOM, holds};
 use super::kind::Verify;
 use crate::question::{CompareMethods, Side};
-use number::error::Result;
-use number::rational::to_f64;
-use number::{Radical, Real};
+use number::{Radical, Real, Result, to_f64};
 use words::{Bounded, Damping, Force, Integrator, Letter, Word};
 
 const ROUTE: &str = "the trace at every point in doubles, letter by letter; points within 1e-7 of an edge may fall on either side";

@@ -10,8 +10,7 @@ use crate::question::Survey;
 use clocks::tongue::{self, Entry, Request, Stiffness, Thin, Tongues, Wanted};
 use clocks::verdict::Limits;
 use num_traits::Zero;
-use number::error::Result;
-use number::{Ratio, Rational, rational};
+use number::{Ratio, Rational, Result, rational};
 
 const ROUTE: &str = "thin tongues, and a random sample of the others, by exact signs about both edges";
 

@@ -10,8 +10,8 @@ use clocks::propagator::Bias;
 use clocks::verdict::{
     Growth, Kind, Limits, Tier, Verdict, decide_anew, exact_trace, growth, takes_return_maps,
 };
-use number::error::{Kind as ErrorKind, Result};
-use number::{Ball, Rational, Real};
+use number::error::Kind as ErrorKind;
+use number::{Ball, Rational, Real, Result};
 
 const ROUTE: &str = "the full period, kick by kick, in exact arithmetic; long periods: the next tier of the ladder, or return maps over the other clock";
 

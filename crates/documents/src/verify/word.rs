@@ -7,8 +7,7 @@ use super::context::{Checked, Context, Failure, Outcome, TRACE_ROOM, holds, same
 use super::kind::Verify;
 use super::side::step;
 use crate::question::{Family, Held, Linted, Listed, Member, Members, Methods, Span, Word, WordCheck};
-use number::error::Result;
-use number::{ExactSign, Radical, Rational, Real, Ring, Sign, rational};
+use number::{ExactSign, Radical, Rational, Real, Result, Ring, Sign, rational};
 use words::anharmonic::order_shown;
 use words::{Force, Letter, method};
 

@@ -3,9 +3,7 @@
 use std::fmt;
 
 use crate::unit::{self, Dimension};
-use number::Rational;
-use number::error::{Error, Result};
-use number::rational::to_f64;
+use number::{Error, Rational, Result, to_f64};
 
 /// The energy over x, the length beyond that at rest; in amu, nm, fs.
 #[derive(Clone, Debug, PartialEq)]
@@ -134,7 +132,7 @@ impl fmt::Display for Bond {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use number::rational::ratio;
+    use number::ratio;
 
     #[test]
     fn constants_are_read_in_their_units() {

@@ -4,10 +4,8 @@ use num_traits::ToPrimitive;
 
 use super::bond::Bond;
 use super::search::{Hottest, Measurement, hottest_of};
-use number::Rational;
-use number::error::Result;
 use number::parallel::try_map;
-use number::rational::to_f64;
+use number::{Rational, Result, to_f64};
 use words::method;
 
 /// Schemes that lose a bond at the same energies: what they are called in the catalogue, and for people.

@@ -2,8 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use number::error::{Error, Result};
-use number::{Ball, Radical, Real};
+use number::{Ball, Error, Radical, Real, Result};
 use words::{Force, Letter, Word};
 
 /// A drift, and the kick after it, by the bond's force and by the slow one; shares of the step.

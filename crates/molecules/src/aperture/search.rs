@@ -5,10 +5,8 @@ use std::sync::OnceLock;
 use super::bond::{Bond, Shape};
 use super::kernel::{DOUBLINGS, Morse, PHASES, Polynomial, Pull, Runs, Turn};
 use super::map::{Map, Stage, squared_frequency};
-use number::error::{Error, Result};
 use number::parallel::go_on;
-use number::rational::to_f64;
-use number::{Ball, Rational, rational};
+use number::{Ball, Error, Rational, Result, rational, to_f64};
 use words::{Forces, Stability, Word};
 
 /// The steps of a run: E* and the half aperture are of these.

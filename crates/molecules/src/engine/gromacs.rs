@@ -6,8 +6,7 @@ use super::lines::{Line, Notation, Word, interval, intervals, last, lines};
 use super::reading::{Engine, PS, Place, Reading, count, number, scheme, times};
 use crate::constraint::Constraints;
 use crate::unit::decimal;
-use number::Rational;
-use number::error::{Error, Result};
+use number::{Error, Rational, Result};
 
 pub(super) const WORDS: Vocabulary = Vocabulary {
     engine: Engine::Gromacs,

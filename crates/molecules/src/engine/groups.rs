@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::reading::Reading;
 use super::script::Script;
 use super::serialized;
-use number::error::{Error, Result};
+use number::{Error, Result};
 
 /// The force groups that the texts give forces to.
 #[derive(Default)]

@@ -8,8 +8,7 @@ use super::reading::{
 use super::xml::{child, named, parse, words};
 use crate::beads::Beads;
 use crate::unit::decimal;
-use number::Rational;
-use number::error::{Error, Result};
+use number::{Error, Rational, Result};
 
 /// Units of time of i-PI, in fs.
 const UNITS: [(&str, Unit); 10] = [

@@ -10,8 +10,7 @@ use super::reading::{
 use super::respa::{BONDED, clocks, on_levels, pair_styles, refuse_order};
 use crate::constraint::Constraints;
 use crate::unit::TimeUnit;
-use number::Rational;
-use number::error::{Error, Result};
+use number::{Error, Rational, Result};
 
 pub(super) const WORDS: Vocabulary = Vocabulary {
     engine: Engine::Lammps,

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use super::reading::{Interval, MOST_COUNT, Place};
-use number::error::{Error, Result};
+use number::{Error, Result};
 
 /// How an engine writes lines.
 pub(super) struct Notation {

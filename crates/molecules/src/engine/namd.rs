@@ -4,7 +4,7 @@ use super::evidence::Vocabulary;
 use super::lines::{Line, Names, Notation, Word, interval, intervals, is_key, last, lines};
 use super::reading::{Engine, FS, Place, Reading, count, number, scheme, times};
 use crate::constraint::Constraints;
-use number::error::{Error, Result};
+use number::{Error, Result};
 
 pub(super) const WORDS: Vocabulary = Vocabulary {
     engine: Engine::Namd,

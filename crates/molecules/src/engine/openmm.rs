@@ -11,8 +11,7 @@ use super::quantity::time;
 use super::reading::{Engine, Place, Reading, count, scheme, times};
 use super::script::{Argument, Call, Script};
 use super::{molecules, serialized, xml};
-use number::Rational;
-use number::error::{Error, Result};
+use number::{Error, Rational, Result};
 
 /// Integrators with force groups; where dt is among their arguments.
 const GROUPED: [(&str, usize); 2] = [("MTSLangevinIntegrator", 2), ("MTSIntegrator", 0)];

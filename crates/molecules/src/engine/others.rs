@@ -1,7 +1,7 @@
 //! Inputs of engines that are not read here: known by name, and refused with the rule by which their steps
 //! are given.
 
-use number::error::Error;
+use number::Error;
 
 /// An engine's name, and how its steps follow from its words.
 struct Other {

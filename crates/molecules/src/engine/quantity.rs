@@ -4,8 +4,7 @@ use std::ops::Range;
 
 use super::reading::{FS, PS, Unit, number};
 use super::script::Script;
-use number::Rational;
-use number::error::{Error, Result};
+use number::{Error, Rational, Result};
 
 /// A time in fs, and where its number stands, if one determines it.
 pub(super) struct Time {

@@ -5,8 +5,7 @@ use std::sync::LazyLock;
 use super::evidence::{Known, evidence};
 use super::reading::{Engine, LONGEST, Reading, not_nested};
 use super::{gromacs, ipi, lammps, namd, openmm, others, tinker, xml};
-use number::Rational;
-use number::error::{Error, Result};
+use number::{Error, Rational, Result};
 
 const NONE: &str =
     "is the input of no engine that is known here (OpenMM, LAMMPS, GROMACS, NAMD, Tinker, Tinker-HP, i-PI)";

@@ -6,10 +6,8 @@ use crate::beads::Beads;
 use crate::constraint::Constraints;
 use crate::levels::Scheme;
 use crate::unit::{TimeUnit, decimal};
-use number::Rational;
-use number::error::{Error, Result};
-use number::named;
 use number::parse::parse_rational;
+use number::{Error, Rational, Result, named};
 
 named! {
     /// A simulation engine.

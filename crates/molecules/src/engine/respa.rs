@@ -3,8 +3,7 @@
 use std::collections::HashSet;
 
 use super::lines::{Line, Word, last};
-use number::Rational;
-use number::error::{Error, Result};
+use number::{Error, Rational, Result};
 
 /// LAMMPS wants every force on a level at least as far out as that of the one before.
 pub(super) fn refuse_order(forces: &[(String, usize)], shown: &str) -> Result<()> {

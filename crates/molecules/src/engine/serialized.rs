@@ -13,9 +13,8 @@ use roxmltree::Node;
 use super::reading::{Engine, Loop, PS, Place, Reading, count, number, scheme, times};
 use super::xml::{child, named, parse};
 use crate::constraint::Constraints;
-use number::Rational;
-use number::error::{Error, Result};
-use number::rational::{from_f64_meant, to_f64};
+use number::rational::from_f64_meant;
+use number::{Error, Rational, Result, to_f64};
 
 const EXPRESSION: &str = "computationExpression";
 

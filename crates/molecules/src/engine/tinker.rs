@@ -10,8 +10,7 @@ use super::lines::{Line, PLAIN as NOTATION, last, lines};
 use super::reading::{Engine, MOST_COUNT, Place, Reading, count, fortran, scheme, times};
 use crate::beads::Beads;
 use crate::constraint::Constraints;
-use number::Rational;
-use number::error::{Error, Result};
+use number::{Error, Rational, Result};
 
 /// Integrators with one step for all forces.
 const PLAIN: [&str; 8] = ["BEEMAN", "VERLET", "BUSSI", "NOSE-HOOVER", "STOCHASTIC", "BAOAB", "OBABO", "BBK"];

@@ -5,7 +5,7 @@ use std::ops::Range;
 use roxmltree::{Document, Node, ParsingOptions};
 
 use super::reading::Engine;
-use number::error::{Error, Result};
+use number::{Error, Result};
 
 /// Elements nested more deeply than this are none of an engine's.
 const DEEPEST: usize = 200;

@@ -23,9 +23,7 @@ use crate::verdict::limits::{Limits, Route, degrees_of_freedom};
 use crate::verdict::measured::Measured;
 use clocks::schedule::{Event, Schedule};
 use clocks::verdict::Kind;
-use number::error::{Error, Result};
-use number::rational::{from_f64_exact, to_f64};
-use number::{Laurent, Rational, U};
+use number::{Error, Laurent, Rational, Result, U, from_f64_exact, to_f64};
 
 /// The integrator's own orbit beside an equilibrium, and the verdict about it.
 #[derive(Clone, Debug)]

@@ -8,8 +8,7 @@ use crate::levels::{rigid_motions, translations};
 use crate::linear::system::System;
 use crate::verdict::measured::{check_accuracy, check_masses};
 use clocks::schedule::{Clock, Schedule};
-use number::Rational;
-use number::error::{Error, Result};
+use number::{Error, Rational, Result};
 
 /// Hessians along half a period of an orbit that is at rest at both its ends.
 ///

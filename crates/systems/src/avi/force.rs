@@ -1,7 +1,6 @@
 //! Potentials: which particles they touch and what force they exert.
 
-use number::Ring;
-use number::error::{Error, Result};
+use number::{Error, Result, Ring};
 
 /// Adds the force of a potential to the particles that it touches; one degree of freedom each.
 pub trait Force<S> {

@@ -2,9 +2,8 @@
 
 use super::force::{Bond, Force};
 use super::simulation::{Ends, Simulation};
-use number::error::{Error, Result};
 use number::parallel::go_on;
-use number::rational::to_f64;
+use number::{Error, Result, to_f64};
 
 /// One line of a series.
 #[derive(Clone, Copy, Debug, PartialEq)]

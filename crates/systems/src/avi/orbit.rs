@@ -11,8 +11,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::force::{Bond, Force};
 use clocks::schedule::Schedule;
-use number::error::{Error, Result};
-use number::rational::to_f64;
+use number::{Error, Result, to_f64};
 
 /// Iterations of Newton's method before it is given up: it converges quadratically from nearby or not at all.
 const ITERATIONS: usize = 50;

@@ -6,9 +6,7 @@
 
 use super::force::Force;
 use clocks::schedule::{Clock, Clocks, Queue};
-use number::error::{Error, Result};
-use number::named;
-use number::{Rational, Ring};
+use number::{Error, Rational, Result, Ring, named};
 
 /// A ring in which a number of ticks is quickly made.
 pub trait Ticks: Ring {

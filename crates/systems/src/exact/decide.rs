@@ -27,9 +27,8 @@ use crate::linear::system::System;
 use crate::spectrum::rate::Multiplier;
 use crate::verdict::limits::{Limits, degrees_of_freedom};
 use clocks::verdict::Kind;
-use number::Rational;
-use number::error::Result;
 use number::polynomial::{quotient, squarefree};
+use number::{Rational, Result};
 
 /// The result of exact arithmetic for a system without rigid modes.
 #[derive(Clone, Debug)]
@@ -258,7 +257,7 @@ mod tests {
     use super::*;
     use crate::numbers::Numbers;
     use crate::{Potential, Symmetric, decide_system, exact_kind};
-    use number::rational::ratio;
+    use number::ratio;
 
     /// Random entries, or (so that edges are met exactly) diagonal stiffnesses of 0 to 5, turned by (3,
     /// 4, 5); of these a third with two modes alike (multiple multipliers, of both of Krein's signs where

@@ -18,8 +18,8 @@ use num_integer::Integer;
 use num_traits::{One, Signed, Zero};
 
 use crate::spectrum::rate::{self, Multiplier};
-use number::rational::{scale2, to_f64};
-use number::{Ball, Rational, U};
+use number::rational::scale2;
+use number::{Ball, Rational, U, to_f64};
 
 type Gaussian = Complex<BigInt>;
 

@@ -20,9 +20,7 @@ use crate::verdict::decide::decide_by;
 use crate::verdict::limits::{Limits, Route, degrees_of_freedom};
 use clocks::propagator::Oscillator;
 use clocks::verdict::{self, Kind};
-use number::error::{Error, Result};
-use number::rational::{from_f64_exact, to_f64};
-use number::{Ball, Laurent, Rational, Real, Sign, U};
+use number::{Ball, Error, Laurent, Rational, Real, Result, Sign, U, from_f64_exact, to_f64};
 
 /// The effect of friction on a system.
 #[derive(Clone, Debug, PartialEq)]

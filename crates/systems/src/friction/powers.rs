@@ -10,8 +10,7 @@ use num_traits::One;
 use crate::half::compose::{Program, Row};
 use crate::linear::system::System;
 use clocks::schedule::{Event, Weight};
-use number::rational::from_f64_exact;
-use number::{Ball, Rational};
+use number::{Ball, Rational, from_f64_exact};
 
 /// Products of balls, of some 250 bits as stiffnesses are rounded: about a second.
 const MAX_PRODUCTS: u64 = 6_000_000;

@@ -18,9 +18,7 @@ use crate::linear::sparse::Symmetric;
 use crate::linear::system::{Potential, System};
 use crate::verdict::limits::Limits;
 use clocks::schedule::{Event, Weight};
-use number::error::Result;
-use number::rational::to_f64;
-use number::{Rational, Ring};
+use number::{Rational, Result, Ring, to_f64};
 
 /// The cost of an event beside its multiplications, in columns of the half period.
 const OVERHEAD: u64 = 16;

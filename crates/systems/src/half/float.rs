@@ -29,8 +29,7 @@ use crate::spectrum::modes::frequency_range;
 use crate::verdict::limits::SIDE_BY_SIDE;
 use clocks::schedule::Weight;
 use number::parallel::both;
-use number::rational::to_f64;
-use number::{Rational, U};
+use number::{Rational, U, to_f64};
 
 /// The blocks of Ĥ in the frame's coordinates, and the bound on their error.
 #[derive(Clone, Debug)]
@@ -387,7 +386,7 @@ mod tests {
     use super::*;
     use crate::half::compose;
     use crate::linear::builders::graded_bar;
-    use number::rational::ratio;
+    use number::ratio;
 
     #[test]
     fn the_bound_of_whole_shears_holds_and_is_less_than_that_row_by_row() {

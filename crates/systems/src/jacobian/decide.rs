@@ -16,8 +16,7 @@ use crate::spectrum::rate;
 use crate::verdict::analysis::{Analysis, Evidence, Part};
 use crate::verdict::limits::{Limits, Route, degrees_of_freedom};
 use clocks::verdict::Kind;
-use number::error::Result;
-use number::{Laurent, Rational, U, outward};
+use number::{Laurent, Rational, Result, U, outward};
 
 /// Results beside the verdict.
 #[derive(Clone, Debug, PartialEq)]

@@ -12,8 +12,7 @@ use super::model::Jacobians;
 use super::orbit::{Doubles, Strike, lead};
 use crate::friction::{Damping, Radius, damping};
 use clocks::schedule::KickDrift;
-use number::rational::{from_f64_exact, to_f64};
-use number::{Ball, Rational};
+use number::{Ball, Rational, from_f64_exact, to_f64};
 
 /// The friction that masks growth is looked for of so many degrees of freedom: some thirty eigenvalue
 /// problems of twice as many rows.

@@ -17,9 +17,7 @@ use crate::model::Body;
 use crate::spectrum::discs::Spectrum;
 use crate::verdict::measured::check_accuracy;
 use clocks::schedule::Schedule;
-use number::error::{Error, Result};
-use number::rational::{from_f64_exact, to_f64};
-use number::{Rational, U};
+use number::{Error, Rational, Result, U, from_f64_exact, to_f64};
 
 /// One clock with its matrix.
 #[derive(Clone, Debug)]

@@ -12,8 +12,7 @@ use super::model::Jacobians;
 use crate::exact::decide::led;
 use crate::half::norm;
 use clocks::schedule::{Event, KickDrift, Kicks, Weight, reversed};
-use number::rational::to_f64;
-use number::{Rational, U};
+use number::{Rational, U, to_f64};
 
 /// A clock that kicks, and how much of its kick.
 pub(super) type Strike = (usize, Weight);

@@ -20,8 +20,7 @@ use nalgebra::{DMatrix, Matrix3, Vector3};
 use super::rigid::{Motions, Shares};
 use crate::half::compose::connected;
 use crate::half::norm;
-use number::error::{Error, Result};
-use number::{Rational, U};
+use number::{Error, Rational, Result, U};
 
 /// A potential's part of its norm that is small beside a motion set apart. Turned forces hold up to 0.064 of
 /// molecules at their minima (four flexible waters, nonbonded). What holds a motion by more than a quarter is

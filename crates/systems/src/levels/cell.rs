@@ -20,9 +20,7 @@ use crate::half::norm;
 use crate::signs::inertia::backward_error;
 use crate::spectrum::discs::Spectrum;
 use crate::verdict::measured::Holds;
-use number::Interval;
-use number::U;
-use number::error::{Error, Result};
+use number::{Error, Interval, Result, U};
 
 /// The kernel with |S|.
 pub struct Cells<'a> {

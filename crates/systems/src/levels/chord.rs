@@ -16,9 +16,8 @@ use crate::signs::inertia::is_definite;
 use crate::verdict::large::start;
 use crate::verdict::limits::SIDE_BY_SIDE;
 use crate::verdict::measured::Holds;
-use number::U;
-use number::error::Result;
 use number::parallel::both;
+use number::{Result, U};
 
 /// Steps of Lanczos's recursion for the ends of the spectrum: where it is dense at its ends, they are found
 /// to some hundredths.

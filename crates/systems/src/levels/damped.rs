@@ -26,8 +26,7 @@ use super::search::Search;
 use crate::friction::{Damping, Friction, Mask, Radius, damping, from_edge, proven_down, shrink_one_form};
 use crate::half::norm;
 use crate::half::period::decayed;
-use number::rational::{from_f64_exact, to_f64};
-use number::{Rational, U};
+use number::{Rational, U, from_f64_exact, to_f64};
 
 /// The sums take a step for each pair of inner steps.
 const MOST_INNER_STEPS: u64 = 1 << 12;

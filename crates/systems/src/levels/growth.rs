@@ -6,8 +6,7 @@ use num_complex::Complex64;
 
 use super::kernel::{Kernel, Outer};
 use crate::spectrum::rate::exponent;
-use number::bisected;
-use number::error::Result;
+use number::{Result, bisected};
 
 /// A stretch of outer steps that grow.
 #[derive(Clone, Copy, Debug, PartialEq)]

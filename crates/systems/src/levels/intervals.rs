@@ -6,7 +6,7 @@ use super::search::with_first;
 use crate::spectrum::rate::exponent;
 use crate::vary::stretches::Stretch;
 use crate::verdict::measured::Holds;
-use number::error::{Error, Result};
+use number::{Error, Result};
 
 impl Kernel {
     /// The largest growth rate ln |λ|/H at an outer step H, per unit time, rounded; `None` where the period

@@ -14,11 +14,8 @@ use crate::half::norm;
 use crate::signs::inertia::{is_definite, spectral_norm};
 use crate::verdict::limits::SIDE_BY_SIDE;
 use crate::verdict::measured::Removed;
-use number::Interval;
-use number::error::{Error, Result};
 use number::parallel::both;
-use number::rational::to_f64;
-use number::{Rational, U};
+use number::{Error, Interval, Rational, Result, U, to_f64};
 
 /// F = U (Λ + E₁) Uᵀ and S = U (S' + E₂) Uᵀ for an orthogonal U: Λ and S', and bounds on E₁ and E₂ (2-norm).
 #[derive(Clone, Debug)]

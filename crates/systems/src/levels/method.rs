@@ -17,10 +17,7 @@
 //! matrices, and bounds on how they move with F.
 
 use super::half::Half;
-use number::Ball;
-use number::Interval;
-use number::error::{Error, Result};
-use number::rational::from_f64_exact;
+use number::{Ball, Error, Interval, Result, from_f64_exact};
 use words::Trigonometric;
 
 /// The integrator of two levels, slow kicks outside.

@@ -6,8 +6,7 @@ use nalgebra::DMatrix;
 use crate::half::norm;
 use crate::signs::inertia::{orthogonality, spectral_norm};
 use crate::verdict::measured::{Removed, check_masses};
-use number::U;
-use number::error::{Error, Result};
+use number::{Error, Result, U};
 
 /// F and S, mass-weighted (1/time²), in coordinates without the rigid motions.
 #[derive(Clone, Debug)]

@@ -7,8 +7,7 @@ use super::growth::{Growing, Sampled};
 use crate::friction::{Damping, Radius, damping};
 use crate::vary::stretches::{Stretch, cover, merged};
 use crate::verdict::measured::Holds;
-use number::bisected;
-use number::error::Result;
+use number::{Result, bisected};
 
 /// How closely the end of the first region is enclosed, relative.
 pub(super) const EDGE: f64 = 1e-8;

@@ -14,8 +14,7 @@ use crate::half::period::Stiffness;
 use crate::verdict::analysis::{Analysis, Instability};
 use crate::verdict::measured::Removed;
 use clocks::schedule::Schedule;
-use number::Rational;
-use number::error::{Error, Result};
+use number::{Error, Rational, Result};
 
 /// Stiffnesses of levels, steps and rates in their unit of time; `steps` are those of all levels, innermost
 /// first. What is proven of an outer step is so with all others in their ratios to it.

@@ -4,8 +4,7 @@ use num_traits::Zero;
 
 use crate::linear::sparse::Symmetric;
 use crate::linear::system::{Potential, System};
-use number::Rational;
-use number::error::{Error, Result};
+use number::{Error, Rational, Result};
 
 fn potential(stiffness: Symmetric, step: &Rational) -> Potential {
     Potential { stiffness, step: step.clone(), phase: Rational::zero() }

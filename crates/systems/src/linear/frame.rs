@@ -13,8 +13,7 @@ use num_traits::One;
 
 use crate::linear::sparse::null_space;
 use crate::linear::system::System;
-use number::rational::to_f64;
-use number::{Rational, Ring};
+use number::{Rational, Ring, to_f64};
 
 /// The coordinates kept, and the rigid modes.
 #[derive(Clone, Debug)]

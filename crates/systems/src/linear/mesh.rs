@@ -17,9 +17,7 @@ use num_traits::{One, Signed, Zero};
 
 use crate::linear::sparse::{Symmetric, dot};
 use crate::linear::system::{Potential, System};
-use number::Rational;
-use number::error::{Error, Result};
-use number::rational::{from_f64_exact, to_f64};
+use number::{Error, Rational, Result, from_f64_exact, to_f64};
 
 /// The material of the elements.
 #[derive(Clone, Debug)]

@@ -12,9 +12,8 @@ use num_traits::{One, Signed, Zero};
 use crate::exact::modular;
 use crate::half::norm;
 use crate::signs::inertia::{Inertia, proven};
-use number::error::{Error, Result};
-use number::rational::{from_f64_exact, product_to_f64};
-use number::{Rational, Twofold, U};
+use number::rational::product_to_f64;
+use number::{Error, Rational, Result, Twofold, U, from_f64_exact};
 
 /// A symmetric n x n matrix over ℚ. Clones share their entries until one of them is changed.
 #[derive(Clone, Debug)]
@@ -471,7 +470,7 @@ pub fn dot(x: &[Rational], y: &[Rational]) -> Rational {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use number::rational::ratio;
+    use number::ratio;
 
     #[test]
     fn a_changed_clone_is_rounded_anew_and_leaves_the_other_as_it_was() {

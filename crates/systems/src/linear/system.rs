@@ -8,8 +8,7 @@ use num_traits::{One, Signed, Zero};
 
 use crate::linear::sparse::{Symmetric, inertia_of_sum, is_sum_semidefinite, null_space};
 use clocks::schedule::Schedule;
-use number::Rational;
-use number::error::{Error, Result};
+use number::{Error, Rational, Result};
 
 /// One potential xᵀ K x/2, its force applied as kicks at the times (n + phase) step.
 #[derive(Clone, Debug, PartialEq)]

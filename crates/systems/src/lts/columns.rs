@@ -3,8 +3,7 @@
 
 use super::scheme::Level;
 use crate::levels::sparse::{Pattern, Triplets};
-use number::U;
-use number::error::Result;
+use number::{Result, U};
 
 /// Some rows and columns of A, and how far they are from what is meant.
 #[derive(Clone, Debug)]

@@ -3,7 +3,7 @@
 
 use super::scheme::{Level, Scheme, SchemeSummary, plain_limit};
 use crate::linear::system::System;
-use number::error::Result;
+use number::Result;
 
 /// Levels of steps of elements, beside the clocks that decide them.
 #[derive(Clone, Debug)]

@@ -23,11 +23,9 @@ use crate::vary::stretches::Stretch;
 use crate::verdict::decide::decide_system;
 use crate::verdict::limits::Limits;
 use crate::verdict::measured::Holds;
-use number::error::{Error, Result};
 use number::parallel::try_map;
 use number::polynomial::integers;
-use number::rational::{from_f64_exact, ratio};
-use number::{Polynomial, Rational};
+use number::{Error, Polynomial, Rational, Result, from_f64_exact, ratio};
 
 /// Products of machine words for one of rationals with some thousand bits.
 const WORDS: f64 = 500.0;

@@ -7,10 +7,7 @@ use num_traits::Zero;
 use crate::levels::sparse::Pattern;
 use crate::linear::sparse::Symmetric;
 use crate::linear::system::{Potential, System};
-use number::error::{Error, Result};
-use number::named;
-use number::rational::{ratio, to_f64};
-use number::{Rational, U};
+use number::{Error, Rational, Result, U, named, ratio, to_f64};
 
 /// Degrees of freedom that take so many substeps in a step of the level above.
 #[derive(Clone, Debug, PartialEq, Eq)]

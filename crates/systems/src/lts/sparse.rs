@@ -12,9 +12,7 @@ use crate::linear::sparse::Symmetric;
 use crate::linear::system::{Potential, System};
 use crate::verdict::large::start;
 use crate::verdict::measured::{Holds, check_masses};
-use number::error::Result;
-use number::rational::from_f64_exact;
-use number::{Rational, U, bisected};
+use number::{Rational, Result, U, bisected, from_f64_exact};
 
 /// A diagonal mass, a sparse stiffness, levels from the coarsest to the finest one. Its verdicts are two
 /// factorizations each.

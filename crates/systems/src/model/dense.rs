@@ -13,9 +13,7 @@ use crate::vary::stretches::{Stretch, cover};
 use crate::verdict::analysis::Analysis;
 use crate::verdict::limits::{DENSE, Limits, Route};
 use crate::verdict::measured::Holds;
-use number::Rational;
-use number::error::Result;
-use number::rational::to_f64;
+use number::{Rational, Result, to_f64};
 
 /// A cell of a range of n degrees of freedom takes n² (n + this) products, as measured for 81 to 1,080 of
 /// them: eigenvalues, factorizations and norms in wide cells that decide much, and in narrow ones; what goes

@@ -15,9 +15,7 @@ use crate::verdict::analysis::Analysis;
 use crate::verdict::limits::{DENSE, Limits, Route};
 use crate::verdict::measured::Holds;
 use clocks::verdict::Kind;
-use number::Rational;
-use number::error::{Error, Result};
-use number::rational::to_f64;
+use number::{Error, Rational, Result, to_f64};
 
 /// Forces that are no gradient: their Jacobians are not symmetric.
 impl Model for Jacobians {

@@ -16,8 +16,7 @@ use crate::verdict::analysis::Analysis;
 use crate::verdict::decide::decide_by;
 use crate::verdict::limits::{Limits, Route};
 use clocks::propagator;
-use number::error::{Error, Result};
-use number::{Laurent, Rational};
+use number::{Error, Laurent, Rational, Result};
 
 /// Rational masses, stiffnesses and steps, few entries or many.
 impl Model for System {

@@ -7,9 +7,7 @@ use crate::vary::nearest::Nearest;
 use crate::vary::stretches::{Stretch, check_width, most_cells};
 use crate::verdict::limits::Limits;
 use crate::verdict::measured::Holds;
-use number::Rational;
-use number::error::Result;
-use number::rational::to_f64;
+use number::{Rational, Result, to_f64};
 
 /// A stretch that is open with the data and decided with data this many times as accurate is open by the
 /// accuracy.

@@ -10,9 +10,7 @@ use crate::levels::{Hessians, Kernel, Method, Nested, Outer, Source};
 use crate::linear::sparse::Symmetric;
 use crate::linear::system::{Potential, System};
 use crate::verdict::measured::check_accuracy;
-use number::Rational;
-use number::error::{Error, Result};
-use number::rational::{from_f64_exact, to_f64};
+use number::{Error, Rational, Result, from_f64_exact, to_f64};
 
 /// The masses that move, and the motions that are held.
 #[derive(Clone, Debug, Default)]

@@ -40,9 +40,7 @@ use clocks::verdict::Kind;
 pub use intervals::Number;
 pub use measured::{Body, MeasuredLevels, MeasuredSystem};
 use nalgebra::DMatrix;
-use number::Rational;
-use number::error::{Error, Result};
-use number::rational::{from_f64_exact, to_f64};
+use number::{Error, Rational, Result, from_f64_exact, to_f64};
 pub use oscillator::Oscillator;
 pub use sparse::SparseSystem;
 

@@ -17,8 +17,7 @@ use crate::verdict::analysis::Analysis;
 use crate::verdict::limits::{Limits, Route};
 use clocks::propagator;
 use clocks::verdict::Kind;
-use number::error::{Error, Result};
-use number::{Ball, ExactSign, Laurent, Rational, Real, Sign};
+use number::{Ball, Error, ExactSign, Laurent, Rational, Real, Result, Sign};
 
 /// The clocks in units of h_1, the shortest step.
 #[derive(Clone, Debug)]

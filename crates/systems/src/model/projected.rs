@@ -17,9 +17,8 @@ use crate::verdict::analysis::Analysis;
 use crate::verdict::decide::decide_by;
 use crate::verdict::limits::{Limits, Route};
 use crate::verdict::measured::{Holds, Measured};
-use number::Rational;
-use number::error::{Kind as Reason, Result};
-use number::rational::{from_f64_exact, to_f64};
+use number::error::Kind as Reason;
+use number::{Rational, Result, from_f64_exact, to_f64};
 
 /// The note where a verdict does not outlast the rounding of what was projected.
 const ON_AN_EDGE: &str = "the doubles decided are rounded, and the verdict does not stand that: it is not decided, as on an edge or of rigid motions that are kept; choose another step";

@@ -16,9 +16,8 @@ use crate::verdict::decide::decide_by;
 use crate::verdict::limits::{Limits, Route, degrees_of_freedom};
 use crate::verdict::measured::{Holds, Measured, Removed, check_accuracy};
 use clocks::verdict::Kind;
-use number::error::{Error, Kind as Reason, Result};
-use number::rational::to_f64;
-use number::{Laurent, Rational};
+use number::error::Kind as Reason;
+use number::{Error, Laurent, Rational, Result, to_f64};
 
 /// Sparse stiffnesses with their steps.
 #[derive(Clone, Debug)]

@@ -23,7 +23,7 @@ use crate::linear::system::System;
 use crate::signs::envelope::{Envelope, Sign, narrow};
 use clocks::schedule::Weight;
 use number::parallel::{both, map};
-use number::rational::to_f64;
+use number::to_f64;
 
 /// Which ends of the paths are held at x = 0.
 #[derive(Clone, Copy, PartialEq, Eq)]

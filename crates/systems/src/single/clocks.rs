@@ -24,8 +24,7 @@ use num_traits::{One, Zero};
 use clocks::propagator::{TwoClocks, apply_drift, apply_kick};
 use clocks::schedule::{KickDrift, Kicks, Schedule};
 use clocks::verdict::{HalfSigns, Kind};
-use number::error::{Error, Result};
-use number::{ExactSign, Ratio, Rational, Ring, Sign};
+use number::{Error, ExactSign, Ratio, Rational, Result, Ring, Sign};
 
 /// K clocks on one oscillator, without dimension: the unit of time is h_1.
 #[derive(Clone, Debug)]

@@ -15,9 +15,7 @@ use crate::spectrum::rate::Multiplier;
 use crate::verdict::analysis::{Analysis, Clocked, Evidence, Instability, Part};
 use crate::verdict::limits::Limits;
 use clocks::verdict::{self, Decidable, Kind, PartialSigns, Tier, Verdict};
-use number::error::Result;
-use number::rational::to_f64;
-use number::{Ball, Laurent, Rational, Ring, Sign};
+use number::{Ball, Laurent, Rational, Result, Ring, Sign, to_f64};
 
 /// The results of the kernels for one oscillator: a trace, a label.
 struct Scalar {

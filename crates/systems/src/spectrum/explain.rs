@@ -15,8 +15,7 @@ use crate::verdict::analysis::Instability;
 use crate::verdict::limits::Limits;
 use crate::verdict::piece::{Piece, ROUGH};
 use clocks::verdict::Kind;
-use number::Laurent;
-use number::rational::to_f64;
+use number::{Laurent, to_f64};
 
 /// The order of multipliers: by increasing real part of μ, then by the imaginary one.
 pub(crate) fn by_place(a: &c64, b: &c64) -> Ordering {

@@ -15,8 +15,7 @@ use crate::half::compose::rounded_inverse_mass;
 use crate::linear::frame::Frame;
 use crate::linear::system::System;
 use crate::single::clocks::shortest_family;
-use number::named;
-use number::rational::to_f64;
+use number::{named, to_f64};
 
 named! {
     /// How an unstable multiplier left the unit circle.

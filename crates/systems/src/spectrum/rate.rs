@@ -11,8 +11,7 @@
 
 use num_complex::Complex64;
 
-use number::rational::from_f64_exact;
-use number::{Ball, Laurent, Rational, Real};
+use number::{Ball, Laurent, Rational, Real, from_f64_exact};
 
 /// A pair λ, 1/λ of multipliers of one period: λ + 1/λ = 2 + 4 μ.
 #[derive(Clone, Copy, Debug, PartialEq)]

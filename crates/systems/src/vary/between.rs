@@ -26,9 +26,7 @@ use crate::signs::inertia;
 use crate::spectrum::discs::Spectrum;
 use crate::vary::stretches::Stretch;
 use crate::verdict::measured::Holds;
-use number::error::{Error, Result};
-use number::rational::{from_f64_exact, ratio, to_f64};
-use number::{Rational, U};
+use number::{Error, Rational, Result, U, from_f64_exact, ratio, to_f64};
 
 /// The stretches of one number of a system.
 #[derive(Clone, Debug, PartialEq)]

@@ -15,9 +15,8 @@ use crate::vary::stretches::{Stretch, cover};
 use crate::verdict::decide::decide_system;
 use crate::verdict::limits::Limits;
 use crate::verdict::measured::Holds;
-use number::Rational;
-use number::error::Result;
-use number::rational::{from_f64_exact, ratio, simplest};
+use number::rational::simplest;
+use number::{Rational, Result, from_f64_exact, ratio};
 
 /// The function in which masses or stiffnesses are linear.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

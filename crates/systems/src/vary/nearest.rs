@@ -3,7 +3,7 @@
 
 use crate::vary::stretches::{self, Stretch, merged};
 use crate::verdict::measured::Holds;
-use number::error::Result;
+use number::Result;
 
 /// Neighbours that no proven stable number separates, some of them unstable.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -5,8 +5,7 @@ use number::parallel::try_map;
 use crate::spectrum::rate::middle;
 use crate::verdict::analysis::{Analysis, name};
 use clocks::verdict::Kind;
-use number::Rational;
-use number::error::Result;
+use number::{Rational, Result};
 
 /// One point of a map.
 #[derive(Clone, Debug, PartialEq)]

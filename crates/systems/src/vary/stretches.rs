@@ -1,8 +1,8 @@
 //! Stretches of one number that cover a range, each with what is proven of all of it.
 
 use crate::verdict::measured::Holds;
-use number::error::{Error, Result};
 use number::parallel::try_map;
+use number::{Error, Result};
 
 /// Numbers of one verdict.
 #[derive(Clone, Copy, Debug, PartialEq)]

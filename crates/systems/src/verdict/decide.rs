@@ -23,8 +23,7 @@ use crate::verdict::large;
 use crate::verdict::limits::{Limits, Route};
 use crate::verdict::piece::{Piece, pieces};
 use clocks::verdict::Kind;
-use number::error::Result;
-use number::{Laurent, Rational, U};
+use number::{Laurent, Rational, Result, U};
 
 /// The verdict on a system.
 ///

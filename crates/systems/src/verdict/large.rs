@@ -18,9 +18,8 @@ use crate::spectrum::rate::Multiplier;
 use crate::verdict::analysis::{Evidence, Instability, Part};
 use clocks::schedule::Weight;
 use clocks::verdict::Kind;
-use number::Laurent;
-use number::error::Result;
 use number::parallel::go_on;
+use number::{Laurent, Result};
 
 /// From so many degrees of freedom on.
 pub(crate) const LARGE: usize = 600;

@@ -1,7 +1,7 @@
 //! By which means an answer is sought, and what it may cost.
 
 use clocks::verdict;
-use number::error::{Error, Result};
+use number::{Error, Result};
 
 /// Which means are tried for parts of several degrees of freedom.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,8 +1,7 @@
 //! How far a verdict on measured stiffnesses stands.
 
 use clocks::verdict::Kind;
-use number::error::{Error, Result};
-use number::named;
+use number::{Error, Result, named};
 
 /// Rigid motions that were projected out of every potential.
 #[derive(Clone, Debug, PartialEq)]

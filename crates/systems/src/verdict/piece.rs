@@ -14,9 +14,9 @@ use crate::verdict::analysis::{Evidence, Part};
 use crate::verdict::large;
 use crate::verdict::limits::{Limits, Route, SIDE_BY_SIDE, degrees_of_freedom};
 use clocks::verdict::Kind;
-use number::error::{Kind as ErrorKind, Result};
+use number::error::Kind as ErrorKind;
 use number::parallel::both;
-use number::{Laurent, Rational};
+use number::{Laurent, Rational, Result};
 
 /// Components of at most this size are brought to rational normal forms before anything else.
 const SMALL: usize = 16;

@@ -270,7 +270,7 @@ pub fn power<E: Enclosure>(step: &Matrix<E>, one: &Matrix<E>, n: &BigUint) -> (M
 #[cfg(test)]
 mod tests {
     use super::*;
-    use number::rational::ratio;
+    use number::ratio;
     use proptest::prelude::*;
 
     proptest! {

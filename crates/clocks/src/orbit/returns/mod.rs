@@ -42,8 +42,7 @@ use crate::propagator::LongClocks;
 use coefficient::{Coefficient, Long};
 use enclosure::{Close, Enclosure, Wide};
 use frame::Frame;
-use number::rational::to_f64;
-use number::{Ball, Ratio, Rational, Real, Twofold};
+use number::{Ball, Ratio, Rational, Real, Twofold, to_f64};
 
 /// The precisions, in bits.
 pub const PRECISIONS: [u32; 3] = [53, 106, 256];

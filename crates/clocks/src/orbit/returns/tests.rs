@@ -4,8 +4,7 @@ use super::*;
 use crate::orbit::refine;
 use crate::propagator::TwoClocks;
 use crate::schedule::Schedule;
-use number::Sign;
-use number::rational::ratio;
+use number::{Sign, ratio};
 
 /// Enclosures that meet, signs and sign changes that do not contradict each other.
 fn agree(found: &Ends, reference: &Ends, name: &str) {

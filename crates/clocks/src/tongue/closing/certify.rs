@@ -10,9 +10,8 @@ use crate::propagator::TwoClocks;
 use crate::tongue::edge::{Enclosure, Tongues, simplest};
 use crate::tongue::string::Entry;
 use crate::verdict::Decidable;
-use number::error::{Error, Result};
 use number::parallel::go_on;
-use number::{Ball, Ratio, Rational, Sign, rational};
+use number::{Ball, Error, Ratio, Rational, Result, Sign, rational};
 
 /// A closed tongue, certified: the box s × ρ holds exactly one common zero of the two entries, and it is
 /// tongue m's.

@@ -2,8 +2,7 @@
 
 use crate::schedule::{KickDrift, Kicks, Schedule};
 use crate::tongue::string::Entry;
-use number::error::Result;
-use number::{Ball, Ratio, Rational};
+use number::{Ball, Ratio, Rational, Result};
 
 /// A function's value, its derivative in s and in ρ.
 #[derive(Clone, Debug)]

@@ -24,9 +24,8 @@ use num_traits::Signed;
 use super::certify::{Closing, Order, certify, orders};
 use crate::tongue::gap::crossings;
 use crate::tongue::string::Entry;
-use number::error::{Error, Result};
 use number::parallel::{go_on, try_map};
-use number::{Ratio, Rational, rational};
+use number::{Error, Ratio, Rational, Result, rational};
 
 /// Up to this p + q the resultant brackets all closings.
 pub const COMPLETE_UP_TO: u64 = 24;

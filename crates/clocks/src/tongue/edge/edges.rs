@@ -15,9 +15,8 @@ use super::function::{By, EntryFunction};
 use super::{long, modular, precise, proven_count};
 use crate::orbit::returns;
 use crate::tongue::string::{Entry, HalfString, Indices, MOST_KICKS};
-use number::error::{Error, Result};
 use number::parallel::go_on;
-use number::{Ball, Laurent, Ratio, Rational, Real};
+use number::{Ball, Error, Laurent, Ratio, Rational, Real, Result};
 
 /// How much work was done.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -332,7 +331,7 @@ fn tenth_power(digits: u32) -> Rational {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use number::rational::ratio;
+    use number::ratio;
 
     /// Weak and strong slow forces, tongues from the first to beyond the fast clock's limit.
     #[test]

@@ -119,10 +119,9 @@ pub(crate) fn sighting(string: &HalfString, entry: Entry, index: usize) -> Optio
 mod tests {
     use super::*;
     use crate::tongue::edge::counts;
-    use number::Ratio;
-    use number::rational::ratio;
     use number::vector::LANES;
     use number::vector::instructions::Instructions;
+    use number::{Ratio, ratio};
 
     #[test]
     fn every_instruction_set_finds_the_same_edges() {

@@ -7,8 +7,7 @@ use crate::propagator::TwoClocks;
 use crate::schedule::Schedule;
 use crate::tongue::string::{Entry, MOST_KICKS};
 use crate::verdict::Decidable;
-use number::error::Result;
-use number::{Ball, Laurent, Ratio, Rational, Sign};
+use number::{Ball, Laurent, Ratio, Rational, Result, Sign};
 
 /// An entry of the half period as a function of s, for fixed p/q and ρ.
 #[derive(Clone, Debug)]

@@ -10,8 +10,7 @@
 use num_traits::Zero;
 
 use crate::schedule::{KickDrift, Kicks, Schedule};
-use number::error::Result;
-use number::{PrimeField, Ratio, Rational};
+use number::{PrimeField, Ratio, Rational, Result};
 
 /// Any prime field will do.
 const FIELD: PrimeField = PrimeField::LARGEST;

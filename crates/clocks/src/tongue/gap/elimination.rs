@@ -131,7 +131,7 @@ fn integers(f: &Polynomial<Polynomial<Rational>>) -> InRho {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use number::rational::ratio;
+    use number::ratio;
 
     /// By Euclid's algorithm over ℚ.
     fn resultant(a: &Polynomial<Rational>, b: &Polynomial<Rational>) -> Rational {

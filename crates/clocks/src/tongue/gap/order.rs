@@ -11,8 +11,7 @@ use super::elimination::common_factor;
 use super::tunnel::{self, Apart};
 use crate::tongue::edge::{Edge, Enclosure, TWO_DOUBLES, Tongues, negative_log2, simplest};
 use crate::tongue::string::{Digits, Twofold};
-use number::error::Result;
-use number::{Rational, Sign};
+use number::{Rational, Result, Sign};
 
 /// A tongue of p/q: the pairs with s between the edges are unstable.
 #[derive(Clone, Debug, PartialEq)]

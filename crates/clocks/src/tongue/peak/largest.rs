@@ -31,8 +31,7 @@ use crate::tongue::edge::{Edge, Enclosure, Tongues, negative_log2};
 use crate::tongue::gap::Gap;
 use crate::tongue::string::HalfString;
 use crate::verdict::{Limits, Side, Verdict, growth};
-use number::error::{Error, Result};
-use number::{Laurent, Rational, Twofold, rational};
+use number::{Error, Laurent, Rational, Result, Twofold, rational};
 
 /// The fastest growth in a tongue; rounded: s to nine digits, the rate to fifteen; the rest is that of a
 /// place which is s before rounding.
@@ -291,8 +290,7 @@ fn golden(f: impl Fn(f64) -> Result<f64>) -> Result<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use number::Ratio;
-    use number::rational::ratio;
+    use number::{Ratio, ratio};
 
     #[test]
     fn doubles_and_big_numbers_agree() {

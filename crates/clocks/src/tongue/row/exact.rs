@@ -4,9 +4,7 @@ use num_traits::Zero;
 
 use crate::tongue::edge::{Edge, Enclosure, Tongues, simplest};
 use crate::tongue::string::Entry;
-use number::error::Result;
-use number::named;
-use number::{Ratio, Rational, rational};
+use number::{Ratio, Rational, Result, named, rational};
 
 /// An edge in closed form, proven.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -87,7 +85,7 @@ fn turns(s: &Rational, m: u64, p: u64) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use number::rational::ratio;
+    use number::ratio;
 
     #[test]
     fn rational_angles_are_resonances() {

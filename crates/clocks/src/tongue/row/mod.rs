@@ -24,8 +24,7 @@ use crate::resonance::{FirstOrder, dominant_family, first_order};
 use crate::tongue::edge::{Edge, Tongues};
 use crate::tongue::gap::Gap;
 use crate::tongue::peak::Peak;
-use number::error::Result;
-use number::{Ball, Ratio};
+use number::{Ball, Ratio, Result};
 
 /// The columns wanted beside p, q, m, the edges and the width.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

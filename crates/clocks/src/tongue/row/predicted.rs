@@ -7,9 +7,7 @@ use crate::propagator::TwoClocks;
 use crate::tongue::edge::{Edge, Tongues};
 use crate::tongue::gap::Gap;
 use crate::verdict::{Kind, Limits, decide};
-use number::error::Result;
-use number::named;
-use number::{Ball, Cyclotomic, Ring, Sign, rational};
+use number::{Ball, Cyclotomic, Result, Ring, Sign, named, rational};
 
 named! {
     /// Where the predicted point lies.

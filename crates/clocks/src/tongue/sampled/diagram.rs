@@ -3,10 +3,8 @@
 use super::LARGEST_S;
 use crate::resonance::dominant_family;
 use crate::tongue::{Closing, Gap, Search, Tongues, closings};
-use number::error::Result;
 use number::parallel::try_map;
-use number::rational::to_f64;
-use number::{Ratio, Rational};
+use number::{Ratio, Rational, Result, to_f64};
 
 /// One tongue over ρ.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,10 +3,8 @@
 use super::LARGEST_S;
 use crate::propagator::{HalfPeriod, TwoClocks, half_period};
 use crate::tongue::{Entry, Gap, Tongues};
-use number::error::{Error, Result};
 use number::parallel::map;
-use number::rational::{from_f64_exact, to_f64};
-use number::{Ratio, Rational};
+use number::{Error, Ratio, Rational, Result, from_f64_exact, to_f64};
 
 /// Tr Q of one ratio over s, in exact arithmetic, rounded to doubles.
 ///

@@ -4,9 +4,8 @@ use num_traits::{ToPrimitive, Zero};
 
 use crate::resonance::dominant_family;
 use crate::tongue::{Gap, Tongues};
-use number::error::{Error, Result};
 use number::parallel::try_map;
-use number::{Ratio, Rational, rational};
+use number::{Error, Ratio, Rational, Result, rational};
 
 /// A tongue about a point p θ = m π: that θ, the a of its dominant family, its number of slow kicks, and
 /// width/(2 s ρ), which is |S| to first order (see [`crate::resonance::strength`]).

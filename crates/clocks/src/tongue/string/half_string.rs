@@ -22,9 +22,8 @@ use num_traits::{Signed, ToPrimitive, Zero};
 
 use super::entry::Entry;
 use crate::schedule::Schedule;
-use number::error::{Error, Result};
 use number::vector::instructions::Instructions;
-use number::{Ratio, Rational, Twofold};
+use number::{Error, Ratio, Rational, Result, Twofold};
 
 /// The clocks that strike at a kick time.
 #[derive(Clone, Copy, Debug, PartialEq)]

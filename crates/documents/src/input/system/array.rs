@@ -17,8 +17,8 @@ use serde_json::{Map, Value};
 use super::market;
 use super::part::Part;
 use crate::report::shape::Shape;
-use number::error::{Error, Result, room};
-use number::file;
+use number::error::room;
+use number::{Error, Result, file};
 
 /// The most elements read: 16,384 x 16,384, or the entries of 30,000 waters within 0.9 nm of each other.
 const MOST_ELEMENTS: usize = 1 << 28;

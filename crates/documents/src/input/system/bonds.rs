@@ -4,9 +4,7 @@ use super::document::{BondDocument, Document, PotentialDocument, Spring, ends};
 use super::linear::numbers;
 use super::part::{Index, Number};
 use clocks::schedule::Schedule;
-use number::Rational;
-use number::error::{Error, Result};
-use number::rational::{from_f64_exact, to_f64};
+use number::{Error, Rational, Result, from_f64_exact, to_f64};
 use systems::avi::{self, Bond, Clocked, Form};
 use systems::{Limits, OwnOrbit, Potential, Symmetric, System, decide_along};
 

@@ -12,7 +12,7 @@ use super::held::Constraints;
 use super::part::{Count, Index, Number, Part, parts};
 use crate::input::json;
 use crate::report::shape::{COUNT, COUNT_WRITTEN, Keys, Schema, Shape};
-use number::error::{Error, Result};
+use number::{Error, Result};
 use systems::Scheme;
 use systems::levels::Method;
 

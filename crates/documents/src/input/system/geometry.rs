@@ -2,8 +2,7 @@
 
 use super::SystemScene;
 use super::document::{Document, is_by_reference};
-use number::error::{Error, Result};
-use number::rational::to_f64;
+use number::{Error, Result, to_f64};
 use systems::Geometry;
 
 impl SystemScene {

@@ -9,7 +9,7 @@ use serde::de::{Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
 use super::array::Reference;
 use super::part::Part;
 use crate::report::shape::Shape;
-use number::error::{Error, Result};
+use number::{Error, Result};
 
 /// What stands in the file, or an array by reference.
 #[derive(Clone, Debug)]

@@ -11,7 +11,7 @@ use serde_json::Value;
 
 use super::part::Part;
 use crate::report::shape::Shape;
-use number::error::{Error, Result};
+use number::{Error, Result};
 
 /// Atoms up to this mass are hydrogens (deuterium is none).
 const HYDROGEN: f64 = 1.1;

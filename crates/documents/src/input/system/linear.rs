@@ -7,8 +7,7 @@ use super::document::{
 use super::given::Given;
 use super::part::Number;
 use nalgebra::DMatrix;
-use number::Rational;
-use number::error::{Error, Result};
+use number::{Error, Rational, Result};
 use systems::{Jacobians, Potential, Symmetric, System, builders};
 
 /// One number for each degree of freedom, or fewer.

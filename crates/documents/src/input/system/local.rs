@@ -13,7 +13,7 @@ use std::sync::Arc;
 use super::document::{Document, LevelDocument, MeshDocument};
 use super::given::Given;
 use super::part::Index;
-use number::error::{Error, Result};
+use number::{Error, Result};
 use systems::{ElementSteps, Level, LocalSteps, Model, Scheme, System};
 
 impl Document {

@@ -36,9 +36,7 @@ use super::document::{Document, LARGEST, PotentialDocument};
 use super::given::Given;
 use super::held::{Particles, reweigh};
 use super::part::Number;
-use number::Rational;
-use number::error::{Error, Result};
-use number::rational::to_f64;
+use number::{Error, Rational, Result, to_f64};
 use systems::{Along, Body, Jacobians, MeasuredSystem, Model};
 
 /// How well a measured stiffness is known unless its file says so: a Hessian by differences is good to some

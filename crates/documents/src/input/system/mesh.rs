@@ -20,8 +20,7 @@ use num_traits::{One, Zero};
 use super::document::{Fixed, LARGEST, MeshDocument, Plane, at_most};
 use super::linear::numbers;
 use super::part::{Index, Number};
-use number::Rational;
-use number::error::{Error, Result};
+use number::{Error, Rational, Result};
 use systems::System;
 use systems::mesh::{Material, Mesh, root};
 

@@ -6,8 +6,7 @@ use super::SystemScene;
 use super::document::Document;
 use molecules::unit::{self, Dimension};
 use molecules::{Direct, Molecule, Names, Scheme, Told};
-use number::Rational;
-use number::error::{Error, Result};
+use number::{Error, Rational, Result};
 use systems::Body;
 
 /// A system file for an archive that holds `fast`, `slow`, `masses` and `positions`: mass-weighted, 1/ps²,

@@ -4,8 +4,7 @@ use num_traits::Zero;
 
 use super::document::{Document, PotentialDocument, ends};
 use super::given::Given;
-use number::error::{Error, Result};
-use number::{ExactSign, Laurent, Rational, Sign};
+use number::{Error, ExactSign, Laurent, Rational, Result, Sign};
 use systems::Oscillator;
 
 impl Document {

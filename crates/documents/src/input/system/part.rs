@@ -4,9 +4,8 @@ use num_traits::ToPrimitive;
 use serde_json::Value;
 
 use crate::report::shape::{COUNT, COUNT_WRITTEN, FLAG, QUANTITY, Shape, TEXT};
-use number::error::{Error, Result};
 use number::parse::{parse, parse_rational};
-use number::{Laurent, Rational};
+use number::{Error, Laurent, Rational, Result};
 
 /// A part of the file.
 pub(super) trait Part {

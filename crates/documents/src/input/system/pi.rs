@@ -4,8 +4,7 @@ use std::collections::BTreeMap;
 
 use super::document::{Document, PotentialDocument, ends};
 use super::part::Number;
-use number::Laurent;
-use number::error::Result;
+use number::{Laurent, Result};
 use systems::{BesidePi, PiPotential, Symmetric, beside_pi};
 
 impl Document {

@@ -13,9 +13,8 @@ use serde_json::Value;
 
 use super::part::Number;
 use super::{SystemScene, sparse, with_method};
-use number::Rational;
-use number::error::{Error, Result};
 use number::parse::parse_rational;
+use number::{Error, Rational, Result};
 
 /// The most values of an axis, and the most points of a map.
 pub(super) const MOST_POINTS: usize = 100_000;

@@ -7,8 +7,7 @@ use super::super::field::notation;
 use super::super::word::{Linted, commutators, shown};
 use crate::report::decimal;
 use crate::report::shape::Shape;
-use number::error::{Error, Result};
-use number::{Ball, ExactSign, Radical, Rational, Real, Sign, rational};
+use number::{Ball, Error, ExactSign, Radical, Rational, Real, Result, Sign, rational};
 use words::{ErrorTerm, FormalOrder, Letter, NoGeneralOrder};
 
 /// The bits of what is compared.

@@ -14,7 +14,7 @@ use crate::report::document::Document;
 use crate::report::record::Record;
 use crate::report::shape::{COUNT, FLAG, Keys, Schema, Shape, TEXT};
 use crate::report::table::{Cell, Column};
-use number::error::{Error, Result};
+use number::{Error, Result};
 
 /// A word, and what its author claims.
 #[derive(Clone, Debug, PartialEq)]

@@ -23,8 +23,7 @@ use crate::report::record::Record;
 use crate::report::shape::{GROUP, QUANTITY, Schema, Shape, TEXT};
 use clocks::resonance::Families;
 use clocks::tongue::Stiffness;
-use number::error::{Error, Result};
-use number::{Laurent, Ratio, Rational};
+use number::{Error, Laurent, Ratio, Rational, Result};
 
 question! {
     /// The quantities of a scene file and the products that it wants; only the fields that these need have to

@@ -24,8 +24,7 @@ use crate::report::plane::{self, Cloud};
 use crate::report::shape::Schema;
 use clocks::map::{Grid, Products as Columns};
 use clocks::resonance::{Curve, Window};
-use number::error::Result;
-use number::rational::ratio;
+use number::{Result, ratio};
 
 /// All products of a scene.
 pub struct Products {

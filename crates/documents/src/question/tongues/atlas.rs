@@ -8,8 +8,7 @@ use crate::report::plane::{self, Segment};
 use crate::report::shape::Shape;
 use clocks::resonance::{Curve, Families, Window};
 use clocks::tongue::{Bounds, Listing, Range, Tongue, TongueEdge};
-use number::error::{Error, Result};
-use number::{Laurent, named};
+use number::{Error, Laurent, Result, named};
 
 named! {
     /// The quantity shown by the colours of an atlas.

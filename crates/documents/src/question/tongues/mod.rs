@@ -13,8 +13,7 @@ use atlas::Atlas;
 pub use atlas::Colour;
 use clocks::resonance::Families;
 use clocks::tongue::{Labels, Listing, Range, Request, Selection, StepWindow, Stiffness, Tongue, Wanted};
-use number::error::{Error, Result};
-use number::{Laurent, Rational};
+use number::{Error, Laurent, Rational, Result};
 pub use written::Form;
 
 question! {

@@ -12,8 +12,8 @@ use crate::report::stream::JsonRows;
 use crate::report::table::Choice;
 use crate::report::tongues::{TongueTally, record};
 use clocks::tongue::{Listing, Tongue};
-use number::error::{Error, Result};
 use number::parallel::map;
+use number::{Error, Result};
 
 /// How tongues are written.
 #[derive(Clone, Copy, Debug)]

@@ -4,8 +4,7 @@ use crate::question::asking::question;
 use crate::question::field::flag;
 use crate::question::field::{StepRange, notation};
 use num_traits::Zero;
-use number::error::{Error, Result};
-use number::{ExactSign, Laurent, Rational, Ring, Sign};
+use number::{Error, ExactSign, Laurent, Rational, Result, Ring, Sign};
 use words::method;
 
 notation! {

@@ -12,9 +12,8 @@ use crate::report::record::Record;
 use crate::report::shape::{FLAG, INTEGER, Keys, Schema, Shape, TEXT, WIDE_ENCLOSURE};
 use crate::report::table::{Cell, Column};
 use num_traits::Zero;
-use number::error::Result;
 use number::parallel::try_map;
-use number::{Ball, Laurent, Rational, Sign};
+use number::{Ball, Laurent, Rational, Result, Sign};
 use words::{Edge, METHODS, Method};
 
 question! {

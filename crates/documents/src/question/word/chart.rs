@@ -9,10 +9,8 @@ use plot::{Axis, Dash, Figure, Foot, Layer, Panel, Place, Stroke, typeset};
 use super::asked::Word;
 use super::linted::{Linted, Pieces, omega_h};
 use num_traits::Zero;
-use number::error::Result;
 use number::parallel::try_map;
-use number::rational::{from_f64_exact, to_f64};
-use number::{Laurent, Rational, Ring};
+use number::{Laurent, Rational, Result, Ring, from_f64_exact, to_f64};
 use words::{At, Enclosed, Forces, Shape, Stability, at};
 
 /// Steps at which curves are drawn.

@@ -2,9 +2,7 @@
 
 use super::asked::Word;
 use num_traits::Zero;
-use number::error::{Error, Result};
-use number::rational::from_f64_exact;
-use number::{Ball, Laurent, Radical, Rational, Real, Sign};
+use number::{Ball, Error, Laurent, Radical, Rational, Real, Result, Sign, from_f64_exact};
 use words::{
     At, Cost, Edge, Enclosed, GeneralOrder, Interval, NoGeneralOrder, Order, Piece, Shape, Stability,
 };

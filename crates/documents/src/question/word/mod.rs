@@ -19,8 +19,7 @@ use crate::report::document::Document;
 use crate::report::shape::Schema;
 use linted::{BITS, Pieces};
 use num_traits::Zero;
-use number::error::{Error, Result};
-use number::{ExactSign, Laurent, Real, Sign};
+use number::{Error, ExactSign, Laurent, Real, Result, Sign};
 use shown::record;
 use words::{Enclosed, Forces, Stability, at};
 

@@ -9,8 +9,7 @@ use molecules::unit::{TimeUnit, decimal};
 use molecules::{
     Advice, Answer, Bound, Caps, Finding, Findings, Group, Lever, Levers, Pair, Row, Scheme, Status, Unstable,
 };
-use number::Rational;
-use number::rational::to_f64;
+use number::{Rational, to_f64};
 use systems::levels::Growing;
 
 use super::levers::{AS_GOOD, one_of};

@@ -8,8 +8,7 @@ use super::chart::within;
 use super::words::fs;
 use molecules::unit::TimeUnit;
 use molecules::{Adds, DirectFinding, DirectFindings, Rung, TIMES};
-use number::Rational;
-use number::rational::to_f64;
+use number::{Rational, to_f64};
 use systems::middle;
 
 /// A panel's height, in mm.

@@ -10,8 +10,7 @@ use crate::report::shape::{ENCLOSED_OR_NULL, EXACT, FLAG, RATIONAL_OR_NULL, ROUN
 use crate::report::table::{Cell, Column, Table};
 use molecules::unit::{TimeUnit, decimal};
 use molecules::{Bound, Keyword, Lever, Levers, Way};
-use number::Rational;
-use number::rational::to_f64;
+use number::{Rational, to_f64};
 
 /// The method's name in documents.
 fn method(way: Way) -> &'static str {

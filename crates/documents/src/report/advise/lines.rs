@@ -11,8 +11,7 @@ use molecules::{
     Advice, Answer, Beads, Bound, GROMPP, Mode, Origin, PRACTICE, Pair, Place, Row, SEEN, Scheme, Status,
     Unstable,
 };
-use number::Rational;
-use number::rational::to_f64;
+use number::{Rational, to_f64};
 
 /// Limits of every linear analysis of given periods; the first is left out where these are the periods of all
 /// modes.

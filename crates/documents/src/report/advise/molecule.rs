@@ -16,8 +16,7 @@ use crate::report::table::{Cell, Column};
 use molecules::engine::Reading;
 use molecules::unit::{TimeUnit, decimal};
 use molecules::{Bound, Caution, Finding, Findings, Group, MostBiased, Scheme, Status};
-use number::Rational;
-use number::rational::to_f64;
+use number::{Rational, to_f64};
 use systems::Holds;
 use systems::levels::Growing;
 

@@ -4,7 +4,7 @@ use super::words::{length, typical};
 use crate::report::decimal::few;
 use molecules::unit::TimeUnit;
 use molecules::{Advice, Answer, FAST, SLOW, Scheme, Typical, shortest_of};
-use number::rational::to_f64;
+use number::to_f64;
 
 /// On which condition a scheme is stable where a clock has no period: its forces' own steps are no longer
 /// than all others'.

@@ -6,7 +6,7 @@ use plot::{Anchor, Axis, Figure, Foot, Layer, Note, Panel, Place, Shape, Stroke,
 use crate::report::decimal::few;
 use molecules::aperture::{Measured, Step, rungs};
 use molecules::unit::decimal;
-use number::rational::to_f64;
+use number::to_f64;
 
 /// Above the highest rung there is room for two lines of words, on a column of 85 mm, too.
 const ROOM: f64 = 15.0;

@@ -11,7 +11,7 @@ use super::table::{Cell, Column};
 pub use chart::figure;
 use molecules::aperture::{EARLY, Hottest, LATE, Measured, PHASES, Resonance, Step, rungs};
 use molecules::unit::{TimeUnit, decimal};
-use number::rational::to_f64;
+use number::to_f64;
 
 /// What the document, the text and the schema say of every number.
 const MEASURED: &str = "a measurement of the method on one bond in doubles, no proof";

@@ -4,7 +4,7 @@ use serde_json::{Map, Value};
 
 use super::label::label;
 use super::layout::points;
-use number::error::{Error, Result};
+use number::{Error, Result};
 
 /// name = the sum of the terms, each with its sign.
 #[derive(Clone, Debug)]

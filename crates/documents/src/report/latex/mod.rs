@@ -13,7 +13,7 @@ pub use equations::{Equation, equations};
 use label::{checksum, label};
 pub use layout::Float;
 use layout::{Body, Place};
-use number::error::{Error, Result};
+use number::{Error, Result};
 pub use typeset::{enclosure, escaped, exact, float, shown};
 
 /// Rows beyond this number do not fit a page of an article.

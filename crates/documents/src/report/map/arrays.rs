@@ -17,7 +17,7 @@ use super::rows::marked;
 use crate::report::npz::{self, Array, Element};
 use clocks::map::{Band, Grid, Products};
 use clocks::verdict::{Tier, Verdict};
-use number::error::Result;
+use number::Result;
 
 /// The longest name of a verdict and of a tier.
 const VERDICT: usize = 12;

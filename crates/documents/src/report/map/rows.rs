@@ -4,8 +4,7 @@ use crate::report::record::Record;
 use crate::report::table::{Cell, Choice, Column, Table};
 use clocks::map::{Band, Enclosure, Grid, Growing, Products};
 use clocks::verdict::Decision;
-use number::Ratio;
-use number::error::Result;
+use number::{Ratio, Result};
 
 /// A pair whose verdict is not "elliptic": (i, j) names h1 = i D1 and h2 = j D2.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -5,8 +5,7 @@ use plot::{Axis, Cells, ColourBar, Figure, Layer, Panel, Place, Shape, Stroke, l
 
 use super::SystemMap;
 use clocks::verdict::Kind;
-use number::Rational;
-use number::rational::to_f64;
+use number::{Rational, to_f64};
 use systems::scan::Point;
 
 /// The quantity shown by colours.
@@ -162,7 +161,7 @@ fn pitch(values: &[Rational]) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use number::rational::ratio;
+    use number::ratio;
 
     #[test]
     fn growth_that_is_not_known_is_not_drawn_as_none() {

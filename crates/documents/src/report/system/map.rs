@@ -10,8 +10,7 @@ use crate::report::shape::{
 use crate::report::table::{Cell, Column};
 use clocks::verdict::Kind;
 use num_traits::Zero;
-use number::Rational;
-use number::rational::from_f64_exact;
+use number::{Rational, from_f64_exact};
 use systems::scan::Point;
 
 /// The points of a scan, row by row of y.

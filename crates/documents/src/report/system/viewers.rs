@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::beside::{SHOWN_MODES, fastest};
-use number::error::{Error, Result};
+use number::{Error, Result};
 use systems::{Analysis, Geometry, Instability};
 
 /// The fastest modes, each with its number in documents.

@@ -1,7 +1,7 @@
 //! A verdict and its growth rate in words.
 
 use crate::report::decimal;
-use number::rational::from_f64_exact;
+use number::from_f64_exact;
 
 /// Digits of a growth rate in words, and of the least one.
 const DIGITS: u32 = 8;

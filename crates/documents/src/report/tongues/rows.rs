@@ -8,8 +8,7 @@ use crate::report::shape::{
 };
 use crate::report::table::{Cell, Choice, Column};
 use clocks::tongue::{Bounds, Law, Request, Side, Tongue, TongueEdge, Wanted};
-use number::Laurent;
-use number::error::Result;
+use number::{Laurent, Result};
 
 /// The caption of a table of tongues.
 pub const CAPTION: &str =

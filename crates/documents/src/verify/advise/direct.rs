@@ -3,9 +3,7 @@
 use crate::input::SystemScene;
 use crate::verify::context::{Checked, Outcome, REMEDY, failure, holds};
 use molecules::DirectFindings;
-use number::Rational;
-use number::error::{Error, Result};
-use number::rational::to_f64;
+use number::{Error, Rational, Result, to_f64};
 use systems::Jacobians;
 
 /// By how much growth over a period may differ: a multiplier near a double one moves by the root of the

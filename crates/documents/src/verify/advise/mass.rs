@@ -4,8 +4,7 @@ use num_traits::Zero;
 
 use crate::verify::context::{Checked, holds};
 use clocks::schedule::{KickDrift, Kicks, Schedule, Weight};
-use number::rational::{from_f64_exact, to_f64};
-use number::{Ball, Rational, Sign};
+use number::{Ball, Rational, Sign, from_f64_exact, to_f64};
 
 /// Bits of the full period: some hundred kicks lose as many.
 pub const BITS: u32 = 512;

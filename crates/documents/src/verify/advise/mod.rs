@@ -25,7 +25,7 @@ use crate::question::{Advised, Safe};
 use crate::verify::again::Excluded;
 use crate::verify::context::{Context, Outcome};
 use crate::verify::kind::Verify;
-use number::error::Result;
+use number::Result;
 
 impl Verify for Advised {
     const EXCLUDED: &'static [Excluded] = &[

@@ -8,9 +8,7 @@ use crate::verify::context::{self, Checked, Context, Outcome, ROOM, failure, hol
 use crate::verify::system::bias::{agree, most_off};
 use molecules::{Finding, Findings, MOST_PRODUCTS, Scheme};
 use num_traits::Zero;
-use number::Rational;
-use number::error::Result;
-use number::rational::{from_f64_exact, to_f64};
+use number::{Rational, Result, from_f64_exact, to_f64};
 use systems::levels::{Hessians, Near};
 use systems::{Holds, Limits, Potential, System, decide_system};
 

@@ -8,9 +8,7 @@ use crate::verify::context::{Checked, Context, Outcome, holds, located, same};
 use crate::verify::exact::encloses;
 use molecules::aperture::Cold;
 use molecules::{Advice, Answer, Mode, Pair, Row, Scheme, Status};
-use number::error::Result;
-use number::rational::to_f64;
-use number::{Ball, Rational, Real, Sign};
+use number::{Ball, Rational, Real, Result, Sign, to_f64};
 
 const ROUTE: &str =
     "the full period, kick by kick, in balls of 512 bits; the first region by the pivots of its action";

@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::input::SystemScene;
 use crate::verify::context::{Checked, holds, same};
 use clocks::verdict::Kind;
-use number::rational::to_f64;
+use number::to_f64;
 use systems::{Analysis, BiasedMode, Model, NoBias, Symmetric, System, full_period};
 
 /// Eigenvectors of multipliers that lie together are right to half the digits of doubles.

@@ -10,8 +10,7 @@ use crate::verify::kind::Verify;
 use clocks::resonance::dominant_family;
 use clocks::tongue::{Stiffness, Tongue, Tongues, entries};
 use clocks::verdict::{Kind, Limits, decide, growth};
-use number::error::Result;
-use number::{Ratio, Rational};
+use number::{Ratio, Rational, Result};
 
 const ROUTE: &str = "the entries' exact signs at both ends of every enclosure, verdict and label inside, closed forms, \
                      growth, predicted points, the law of first order; that no tongue is left out";

@@ -14,8 +14,7 @@ use crate::spectrum::discs::{Spectrum, product};
 use crate::spectrum::rate::exponent;
 use clocks::schedule::Event;
 use clocks::verdict::Kind;
-use number::rational::{from_f64_exact, to_f64};
-use number::{Rational, U};
+use number::{Rational, U, from_f64_exact, to_f64};
 
 /// Coordinates at a step: x = V D⁻¹ y, p = V⁻ᵀ D q. A drift and a kick turn y by about as much in them, so
 /// that products stay near 1. What is soft drifts by one in a period: less would let errors of stiffnesses
@@ -310,7 +309,7 @@ mod tests {
     use crate::levels::search::Search;
     use crate::levels::{Hessians, Nested};
     use crate::numbers::Numbers;
-    use number::rational::ratio;
+    use number::ratio;
 
     fn symmetric(numbers: &mut Numbers, n: usize) -> DMatrix<f64> {
         let g = DMatrix::from_fn(n, n, |_, _| numbers.signed());

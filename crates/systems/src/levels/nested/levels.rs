@@ -10,9 +10,7 @@ use crate::levels::rigid::Hessians;
 use crate::signs::inertia::{is_definite, lack_beside, orthogonality, spectral_norm};
 use crate::verdict::measured::Removed;
 use clocks::schedule::{Event, Schedule};
-use number::error::{Error, Result};
-use number::rational::to_f64;
-use number::{Rational, U};
+use number::{Error, Rational, Result, U, to_f64};
 
 /// The stiffness of one clock, in coordinates without the rigid motions.
 #[derive(Clone, Debug)]

@@ -38,8 +38,7 @@ use crate::signs;
 use crate::spectrum::discs::Spectrum;
 use crate::vary::stretches::Stretch;
 use crate::verdict::measured::Holds;
-use number::bisected;
-use number::error::Result;
+use number::{Result, bisected};
 
 /// Room for the roundings of a factor.
 const ROOM: f64 = 1e-12;

@@ -16,9 +16,8 @@ use faer::{Conj, Mat, Side};
 use super::dissect::dissected;
 use super::fronts::{Elimination, Fronts, Pivots, products_of, supernodes, zeros};
 use super::krylov::top;
-use number::U;
-use number::error::{Error, Result};
 use number::parallel::map;
+use number::{Error, Result, U};
 
 /// The lower triangles of some matrices of one pattern, column by column, every diagonal entry there.
 #[derive(Clone, Debug)]

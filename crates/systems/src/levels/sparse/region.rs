@@ -16,8 +16,7 @@ use crate::levels::half::Half;
 use crate::levels::kernel::{Outer, STEP_ERROR};
 use crate::verdict::large::start;
 use crate::verdict::measured::{Holds, check_masses};
-use number::U;
-use number::error::{Error, Result};
+use number::{Error, Result, U};
 
 /// The fast and the slow stiffness, mass-weighted (1/time²), sparse, and the rigid motions that are set
 /// apart.

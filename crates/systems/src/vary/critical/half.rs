@@ -23,9 +23,7 @@ use crate::linear::frame::Frame;
 use crate::linear::sparse::Symmetric;
 use crate::linear::system::{Potential, System};
 use clocks::schedule::Weight;
-use number::error::Result;
-use number::rational::{ratio, to_f64};
-use number::{PrimeField, Rational, prime_fields};
+use number::{PrimeField, Rational, Result, prime_fields, ratio, to_f64};
 
 /// x₀ + s x₁.
 type Linear<T> = [T; 2];

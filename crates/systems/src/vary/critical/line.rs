@@ -7,8 +7,7 @@ use crate::linear::frame::Frame;
 use crate::linear::sparse::Symmetric;
 use crate::linear::split::{Subspace, Symmetry, invariant_subspaces, symmetry};
 use crate::linear::system::{Potential, System};
-use number::Rational;
-use number::error::Result;
+use number::{Rational, Result};
 
 /// Parts of at most this size are split along rational eigenvectors that all systems have in common.
 const SMALL: usize = 16;

@@ -55,8 +55,7 @@ use num_bigint::BigInt;
 use crate::verdict::decide::decide_system;
 use crate::verdict::limits::Limits;
 use crate::verdict::measured::Holds;
-use number::Rational;
-use number::error::Result;
+use number::{Rational, Result};
 
 /// All parts, with the half periods of those that change and what is to be found of each.
 pub(super) struct Plan(Vec<(Line, Option<(Half, Shape)>)>);

@@ -4,11 +4,10 @@ use num_bigint::BigInt;
 use num_traits::{One, Zero};
 
 use super::polynomials::Critical;
-use number::error::Result;
 use number::parallel::try_map;
 use number::polynomial::{RootInterval, in_unit_interval, sign_at};
-use number::rational::{from_f64_exact, simplest, to_f64};
-use number::{Ball, Rational, Sign};
+use number::rational::simplest;
+use number::{Ball, Rational, Result, Sign, from_f64_exact, to_f64};
 
 /// Between `lo` and `hi`, neither of them, lies a place where the verdict can change.
 #[derive(Clone, Debug, PartialEq)]

@@ -10,10 +10,9 @@ use super::half::{At, Eigenspaces, Half, PLACES};
 use crate::exact::modular;
 use crate::half::compose::Program;
 use crate::verdict::limits::Limits;
-use number::error::Result;
 use number::parallel::try_map;
 use number::polynomial::{common, primitive, quotient, squarefree};
-use number::{Lift, PrimeField, prime_fields};
+use number::{Lift, PrimeField, Result, prime_fields};
 
 /// Products of machine words beyond which cells are cheaper, whatever the limit: some ten seconds.
 const MOST_WORK: f64 = 5e9;

@@ -6,9 +6,8 @@ use std::str::FromStr;
 use super::super::asked::Word;
 use crate::question::asking::question;
 use crate::question::field::{notation, shown_range};
-use number::error::{Error, Result};
 use number::parse::{parse_rational, parse_rational_range};
-use number::{ExactSign, Laurent, Radical, Rational, Ring, Sign, named};
+use number::{Error, ExactSign, Laurent, Radical, Rational, Result, Ring, Sign, named};
 
 /// A parameter and its values: one, or those from one end of a range on by a step.
 #[derive(Clone, Debug, PartialEq)]

@@ -7,8 +7,7 @@ use super::super::chart::{ends, marked, stacked, unstable};
 use super::asked::Family;
 use super::member::Member;
 use super::search::Members;
-use number::error::{Error, Result};
-use number::rational::to_f64;
+use number::{Error, Result, to_f64};
 
 /// Steps are drawn beyond the longest edge by this factor.
 const BEYOND: f64 = 1.2;

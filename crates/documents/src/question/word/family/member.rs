@@ -4,9 +4,8 @@ use super::super::linted::{BITS, Linted};
 use super::asked::{Family, Goal};
 use crate::question::asking::{Question, Work};
 use num_traits::{One, Zero};
-use number::error::Result;
 use number::polynomial::Sturm;
-use number::{Ball, Enclosed, Polynomial, Radical, Rational, Real, Sign, rational};
+use number::{Ball, Enclosed, Polynomial, Radical, Rational, Real, Result, Sign, rational};
 use words::{ErrorTerm, Forces};
 
 /// A word of a family.

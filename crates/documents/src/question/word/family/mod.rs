@@ -14,8 +14,8 @@ pub use search::{Best, Members};
 use crate::question::asking::{Question, Work};
 use crate::report::document::Document;
 use crate::report::shape::Schema;
-use number::error::{Error, Result};
 use number::parallel::try_map;
+use number::{Error, Result};
 
 /// Members times powers of the force, unless a budget says otherwise: some seconds.
 const MOST: u64 = 20_000;

@@ -6,9 +6,8 @@ use super::asked::{Family, Goal};
 use super::member::Member;
 use crate::question::asking::Work;
 use num_traits::{Signed, Zero};
-use number::error::Result;
-use number::rational::{ratio, scale2, simplest};
-use number::{Ball, Rational};
+use number::rational::{scale2, simplest};
+use number::{Ball, Rational, Result, ratio};
 
 /// The best member that was found.
 #[derive(Clone, Debug)]
@@ -175,7 +174,7 @@ fn replaced(member: &Member, at: usize, value: Rational) -> Vec<Rational> {
 mod tests {
     use super::*;
     use crate::question::asking::{Fields, Question};
-    use number::rational::{from_f64_exact, to_f64};
+    use number::{from_f64_exact, to_f64};
 
     const TWO_STAGES: &str = "K(b) D(1/2) K(1-2*b) D(1/2) K(b)";
 
