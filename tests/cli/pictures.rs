@@ -1,6 +1,6 @@
 //! Pictures explain themselves: each thing has one name in their keys, and words beside them are told.
 
-use super::support::{Desk, words};
+use super::support::Desk;
 
 /// How often a label says these words.
 fn says(svg: &str, words: &str) -> usize {
@@ -105,21 +105,5 @@ fn a_number_that_is_varied_is_named_in_words() {
         for (shown, words) in [(text, words[0]), (latex, name), (svg, words[1])] {
             assert!(shown.contains(name) && shown.contains(words) && !shown.contains(path), "{shown}");
         }
-    }
-}
-
-/// `advise`, `system` and `compare --methods` refused to, and drew what the name of the file says.
-#[test]
-fn a_figure_goes_to_standard_output_too_and_its_form_is_the_one_asked_for() {
-    let side =
-        "compare --methods impulse --lambda1 1 --h-range 0..2 --h-step 1 --rho-range 0..1/4 --rho-step 1/8";
-    let system = format!("system {}/data/scenes/diatomic-tether.json", env!("CARGO_MANIFEST_DIR"));
-    for line in ["advise --period OH=10fs --period 40fs", "word --method pefrl", side, &system] {
-        let desk = Desk::new();
-        let told = desk.run(&words(line, &["--format", "svg"]));
-        assert_eq!((told.code, told.stderr.as_str()), (Some(0), ""), "{line}");
-        assert!(told.stdout.contains("<svg"), "{line}: {}", told.stdout);
-        let written = desk.run(&words(line, &["--format", "svg", "--output", "a.pdf"]));
-        assert_eq!((written.code, desk.read("a.pdf")), (Some(0), told.stdout.into_bytes()), "{line}");
     }
 }

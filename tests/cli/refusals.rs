@@ -295,7 +295,7 @@ fn a_file_name_that_ends_in_no_form_of_the_result_is_refused_with_those_that_it_
     let map = format!("map {GRID}");
     for (line, forms) in [
         ("verdict --lambda1 1 --lambda2 1 --h1 1 --h2 1", tables),
-        ("curves", tables),
+        ("curves", drawn),
         ("compare --max-sum 5 --rho 1", tables),
         ("proposition", tables),
         ("polynomial --ratio 1", tables),
