@@ -14,7 +14,8 @@ pub fn outward((lo, hi): (f64, f64)) -> (f64, f64) {
     (if lo == 0.0 { 0.0 } else { lo.next_down() }, if hi == 0.0 { 0.0 } else { hi.next_up() })
 }
 
-/// 2^k as `2f64.powi(k)` has it, exact from 2^-1022 on: a few bits in place of a loop of products.
+/// 2^k: exact for −1022 ≤ k ≤ 1023, and as `2f64.powi(k)` has it beyond. `powi` multiplies in a loop; this writes
+/// the bits of the exponent.
 #[inline]
 pub fn power_of_two(k: i32) -> f64 {
     if (-1022..=1023).contains(&k) { f64::from_bits(((k + 1023) as u64) << 52) } else { 2f64.powi(k) }
@@ -93,7 +94,7 @@ pub(super) fn short_quotient(n: u64, d: u64) -> (f64, f64) {
     let (m, e, _) = Float::integer_decode(hi);
     let e = i32::from(e);
     let (n, product) = (i128::from(n) << (-e).max(0), (i128::from(m) << e.max(0)) * i128::from(d));
-    (hi, (n - product) as f64 / d as f64 * 2f64.powi(e.min(0)))
+    (hi, (n - product) as f64 / d as f64 * power_of_two(e.min(0)))
 }
 
 /// The doubles around `numerator / denominator`, denominator > 0.

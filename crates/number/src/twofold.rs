@@ -169,7 +169,7 @@ impl Twofold {
     /// x to within (`most` + 1) 2^-places, |x| 2^places below 2^107; `None` where the ball is wider.
     pub fn from_fixed(x: &Ball, places: i64, most: u64) -> Option<Twofold> {
         let (middle, error) = x.mid_scaled(places);
-        let (middle, unit) = (middle.to_i128()?, 2f64.powi(-places as i32));
+        let (middle, unit) = (middle.to_i128()?, float::power_of_two(-places as i32));
         let (high, low) = ((middle >> 53) as f64 * 2f64.powi(53), (middle & ((1 << 53) - 1)) as f64);
         (error <= most.into()).then(|| Twofold::sum(high * unit, low * unit))
     }

@@ -119,7 +119,7 @@ pub const METHODS: &[Method] = methods! {
     "2mn-position" 2 "D(0.1931833275037836) K(1/2) D(1-2*0.1931833275037836) K(1/2) D(0.1931833275037836)", OMELYAN_2002,
         "tmLQCD: Type = 2MNPOSITION", "QEX: 2MN";
     "bcss-2" 2 "K((3-sqrt(3))/6) D(1/2) K(sqrt(3)/3) D(1/2) K((3-sqrt(3))/6)", BCSS, "Mici: BCSSTwoStageIntegrator";
-    // Codes of HMC have this number under the paper's name, and Mici has the one above.
+    // Codes for HMC have this number under the paper's name; Mici has (3 - sqrt(3))/6.
     "bcss-2-decimals" 2
         "K(0.211781) D(1/2) K(1-2*0.211781) D(1/2) K(0.211781)", "HaiCS, simulation/src/integrators.c, after Blanes, Casas, Sanz-Serna (2014)",
         "pyHaiCS: BCSS_2";

@@ -24,7 +24,7 @@ use super::floquet::ordinary;
 use crate::propagator::TwoClocks;
 use crate::schedule::{KickDrift, Kicks, Schedule};
 use number::vector::instructions::{Instructions, Task};
-use number::{Ball, Real, Sign, Twofold, U};
+use number::{Ball, Real, Sign, Twofold, U, power_of_two};
 
 /// Bits of the strengths.
 const BITS: u32 = 128;
@@ -177,7 +177,7 @@ impl<N: Number> Steps<N> {
         let strengths = [fast?, slow?, both?];
         let strongest = strengths.iter().fold(0.0, |most: f64, k| most.max(k.near().abs()));
         // w = 2^-k with 4^k next to the strongest kick: drifts are at most 1, kicks at most `strongest`.
-        let w = 2f64.powi(-((strongest.max(1.0).log2() / 2.0).round() as i32));
+        let w = power_of_two(-((strongest.max(1.0).log2() / 2.0).round() as i32));
         let largest = (1.0 / w).max(strongest * w);
         let kappa = 1.01 * (largest / 2.0 + (1.0 + largest * largest / 4.0).sqrt());
         let bound = StepBound { kappa, epsilon: 3.1 * N::ROUNDING * kappa };
@@ -230,7 +230,7 @@ impl<N: Number> Orbit<N> {
         if !(1.0 / LONGEST..=LONGEST).contains(&self.square) {
             // Powers of two: exact. A sum that overflows has long been refused by its quotient.
             let by = if self.square > 1.0 { -SHRINK } else { SHRINK };
-            let (once, twice) = (2f64.powi(by), 2f64.powi(2 * by));
+            let (once, twice) = (power_of_two(by), power_of_two(2 * by));
             (self.x, self.y) = (self.x.scaled(once), self.y.scaled(once));
             (self.square, self.squares) = (self.square * twice, self.squares * twice);
             self.exponent -= i64::from(by);

@@ -17,7 +17,7 @@ use super::leap;
 use crate::propagator::TwoClocks;
 use crate::schedule::{KickDrift, Kicks, Schedule};
 use number::parallel::go_on;
-use number::{Ball, Ratio, Real, Sign};
+use number::{Ball, Ratio, Real, Sign, power_of_two};
 
 /// A state longer than `bits + HEADROOM` bits is scaled down.
 const HEADROOM: u64 = 32;
@@ -87,7 +87,7 @@ impl Steps {
         let strongest = strengths.iter().map(|k| k.mid_f64().abs()).fold(1.0, f64::max);
         let kappa = 1.01 * (1.0 + strongest);
         // 2^-1000 stands for anything smaller: the bound stays a bound.
-        let bound = StepBound { kappa, epsilon: (kappa + 4.0) * 2f64.powi(-(bits.min(BOUNDED) as i32)) };
+        let bound = StepBound { kappa, epsilon: (kappa + 4.0) * power_of_two(-(bits.min(BOUNDED) as i32)) };
         // Each strike is at most a drift, a kick and a rescaling; the ends add two events.
         let count = 3 * (schedule.strikes() + 2);
         // A strength is cut off at 2^-places <= 2^-bits/16, its ball at 2^-bits/2^14 of the larger one.
@@ -162,7 +162,7 @@ impl<'a> Orbit<'a> {
         let bits = u64::from(self.steps.bits);
         let shift = bits.saturating_sub(64);
         let part = |n: &BigInt| (n >> shift).to_f64().unwrap_or(f64::INFINITY);
-        part(&self.x).hypot(part(&self.v)) * 2f64.powi(-(bits.min(64) as i32))
+        part(&self.x).hypot(part(&self.v)) * power_of_two(-(bits.min(64) as i32))
     }
 
     /// After a step: what it added across the orbit, and the orbit's growth.
@@ -181,7 +181,7 @@ impl<'a> Orbit<'a> {
             let before = self.length();
             self.x >>= size - goal;
             self.v >>= size - goal;
-            self.account(before / 2f64.powi((size - goal) as i32));
+            self.account(before / power_of_two((size - goal) as i32));
         } else if size < least && size > 0 {
             self.x <<= goal - size;
             self.v <<= goal - size;
@@ -206,7 +206,7 @@ impl<'a> Orbit<'a> {
         // The last event may be a drift alone.
         self.rescale();
         let steps = self.steps;
-        let within = self.worst <= steps.tau * 2f64.powi(steps.bits.min(BOUNDED) as i32);
+        let within = self.worst <= steps.tau * power_of_two(steps.bits.min(BOUNDED) as i32);
         if !within {
             return None;
         }

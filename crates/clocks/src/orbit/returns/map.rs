@@ -219,7 +219,7 @@ impl<T: Coefficient> Map<T> {
 
     /// 2^e ε.
     pub fn error(&self) -> f64 {
-        self.error * size_of(self.exponent)
+        self.error * near_power(self.exponent)
     }
 
     /// ε over the norm of the middle.
@@ -229,7 +229,7 @@ impl<T: Coefficient> Map<T> {
 
     /// A bound of the norm of all values, with the power of two.
     pub fn size(&self) -> f64 {
-        (self.norm + self.error) * size_of(self.exponent) * UP
+        (self.norm + self.error) * near_power(self.exponent) * UP
     }
 
     /// Known within `error` beside what it is known by, without the power of two.
@@ -380,7 +380,7 @@ impl<T: Coefficient> Map<T> {
 }
 
 /// 2^e as far as doubles reach.
-fn size_of(e: i128) -> f64 {
+fn near_power(e: i128) -> f64 {
     power_of_two(e.clamp(-2000, 2000) as i32)
 }
 

@@ -60,7 +60,7 @@ impl Pieces {
         let shape = Shape::of(word).filter(|_| question.friction.is_none());
         let all = match shape {
             None if !word.couples() => {
-                let remedy = "without kicks, or without drifts, every step is on an edge: add them";
+                let remedy = "lacks kicks or drifts, so every step is on an edge; add them";
                 return Err(Error::input("word", word, remedy));
             }
             Some(shape) => shape.pieces(lambda1, lambda2, lo, hi),
