@@ -304,9 +304,9 @@ pub(super) fn found<'a>(items: &'a Value, key: &str) -> &'a Value {
 
 /// The place that a path names.
 pub(super) fn place<'a>(file: &'a mut Value, path: &str, field: &str) -> Result<&'a mut Value> {
+    let example = if file.get("build").is_some() { "build.steps.0" } else { "potentials.1.step" };
     let nowhere = |key: &str| {
-        let remedy =
-            format!("{key} is not in the file: name a number of it, as potentials.1.step or build.steps.0");
+        let remedy = format!("{key} is not in the file: name a number of it, as {example}");
         Error::input(field, path, remedy)
     };
     let keys: Vec<&str> = path.split('.').collect();
