@@ -1,4 +1,5 @@
-//! An integrator as a word: its orders, its longest stable step, and what a swapped pair of coefficients costs.
+//! An integrator as a word: its orders, its longest stable step, and what a swapped pair of coefficients
+//! costs.
 //!
 //! `cargo run --release --example word`
 

@@ -41,8 +41,8 @@ static EXPECTED_SECONDS: AtomicU64 = AtomicU64::new(0);
 /// Whether a bar has counted something.
 static COUNTED: AtomicBool = AtomicBool::new(false);
 
-/// Shows on a terminal that work which no other bar counts goes on: seconds over those that were announced, or
-/// a line after two seconds and after twice as long each time. Until it is dropped.
+/// Shows on a terminal that work which no other bar counts goes on: seconds over those that were announced,
+/// or a line after two seconds and after twice as long each time. Until it is dropped.
 pub struct Patience(Option<(Sender<()>, JoinHandle<()>)>);
 
 impl Patience {

@@ -365,11 +365,12 @@ fn is_below(path: &str, named: &str) -> bool {
     path.len() >= named.len() && named.iter().zip(&path).all(|(name, own)| *name == "*" || name == own)
 }
 
-/// A change to an input costs a question asked again: of three, one is made where time is short.
-/// Changes to answers are all made.
+/// Where time is short, one in three changes to an input is made: each costs a question asked again. All
+/// changes to answers are made.
 const ONE_IN_THREE: usize = 3;
 
-/// The number of changes made to a document, one in so many to its input, each of which is found; and what passes.
+/// Changes a document in every way, its input in one way of so many: how many changes were made, and those
+/// that `verify` did not find.
 fn passed(desk: &Desk, name: &str, whole: &Value, one_in: usize) -> (usize, Vec<String>) {
     // Without a number of sectors bands are another question, of a thousand times the work.
     let budget = name.starts_with("bands").then_some(100);

@@ -14,8 +14,8 @@ pub fn outward((lo, hi): (f64, f64)) -> (f64, f64) {
     (if lo == 0.0 { 0.0 } else { lo.next_down() }, if hi == 0.0 { 0.0 } else { hi.next_up() })
 }
 
-/// 2^k: exact for −1022 ≤ k ≤ 1023, and as `2f64.powi(k)` has it beyond. `powi` multiplies in a loop; this writes
-/// the bits of the exponent.
+/// 2^k: exact for −1022 ≤ k ≤ 1023, and as `2f64.powi(k)` has it beyond. `powi` multiplies in a loop; this
+/// writes the bits of the exponent.
 #[inline]
 pub fn power_of_two(k: i32) -> f64 {
     if (-1022..=1023).contains(&k) { f64::from_bits(((k + 1023) as u64) << 52) } else { 2f64.powi(k) }

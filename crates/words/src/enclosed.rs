@@ -131,7 +131,8 @@ impl Steps {
         x.div(by, BITS).unwrap_or_else(|| self.undefined())
     }
 
-    /// cos x and sin x / x; about 0 the latter by the bounds 1 − x²/6 ≤ sinc x ≤ 1, −x/3 ≤ sinc' x ≤ 0 for x ≥ 0.
+    /// cos x and sin x / x; about 0 the latter by the bounds 1 − x²/6 ≤ sinc x ≤ 1, −x/3 ≤ sinc' x ≤ 0 for x
+    /// ≥ 0.
     fn circular(&self, x: &Jet) -> [Jet; 2] {
         let ball = &x.value;
         let (cos, sin) = (ball.cos(BITS), ball.sin(BITS));

@@ -227,8 +227,8 @@ impl Word {
         !self.any(|letter| matches!(letter, Letter::Friction { damping: Damping::Exact, .. }))
     }
 
-    /// Whether positions act on velocities and velocities on positions. Without that the propagator is triangular,
-    /// so every step of the word is on an edge of stability.
+    /// Whether positions act on velocities and velocities on positions. Without that the propagator is
+    /// triangular, so every step of the word is on an edge of stability.
     pub fn couples(&self) -> bool {
         self.any(Letter::moves) && self.any(|letter| letter.force().is_some())
     }

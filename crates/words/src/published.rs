@@ -7,8 +7,8 @@ use super::catalogue::Method;
 pub struct Limit {
     /// The method's name in the catalogue.
     pub method: &'static str,
-    /// Every step below is stable: ω h for one force, ω1 h for two, whose fast one is the first; or [`ALL`], or
-    /// [`FREE`].
+    /// Every step below is stable: ω h for one force, ω1 h for two, whose fast one is the first; or [`ALL`],
+    /// or [`FREE`].
     pub below: &'static str,
     /// Where it is printed.
     pub source: &'static str,

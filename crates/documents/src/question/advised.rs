@@ -54,7 +54,8 @@ question! {
         harmonic: bool,
         /// Ring polymers in place of atoms: how many beads, and their temperature, as 32 at 300 K.
         beads: Option<Beads>,
-        /// Whether all times are plain numbers: read fs as the unit of time, and rates per ps as per that unit.
+        /// Whether all times are plain numbers: read fs as the unit of time, and rates per ps as per that
+        /// unit.
         plain_time: bool,
     }
 }

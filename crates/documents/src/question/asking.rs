@@ -10,9 +10,9 @@ use clocks::verdict::Limits;
 use number::Result;
 
 /// The fields of a `Question`, each declared once: a struct that is read from the `input` of a document and
-/// written there, and, as `args struct`, read from arguments too. `as "X"` gives a field the flag of its name,
-/// whose value help calls X; `arg`, as clap has it, says what else there is. After `|` stand other names that a
-/// field is read from where its own is not given.
+/// written there, and, as `args struct`, read from arguments too. `as "X"` gives a field the flag of its
+/// name, whose value help calls X; `arg`, as clap has it, says what else there is. After `|` stand other
+/// names that a field is read from where its own is not given.
 macro_rules! question {
     (
         $(#[$meta:meta])*
@@ -177,7 +177,8 @@ pub trait Question: Fields {
         self.show(answer).inputs(self.input())
     }
 
-    /// The command line that asks it, as a shell reads it, where each field stands behind the flag of its name.
+    /// The command line that asks it, as a shell reads it, where each field stands behind the flag of its
+    /// name.
     fn command(&self) -> String {
         let flag = |(key, value): (&str, Value)| match (key.replace('_', "-"), value.as_str()) {
             (key, Some("true")) => format!(" --{key}"),

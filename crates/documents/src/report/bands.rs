@@ -26,7 +26,8 @@ pub fn document(bands: &Bands) -> Document {
     counts().document(Document::new("bands"), bands).rows(table).for_people(people).summary(&lines)
 }
 
-/// A sector in the decimals of paper, its sides rounded to its inside; as it is where it is too thin for that.
+/// A sector in the decimals of paper, its sides rounded to its inside; as it is where it is too thin for
+/// that.
 fn narrowed(sector: &Sector) -> Sector {
     let Some(unit) = u32::try_from(sector.decimals - SHOWN).ok().and_then(|n| 10i64.checked_pow(n)) else {
         return sector.clone();

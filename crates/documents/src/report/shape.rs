@@ -278,7 +278,8 @@ impl Keys {
         self
     }
 
-    /// The same as a person may write them in a file, each at its place there, and required only as `names` say.
+    /// The same as a person may write them in a file, each at its place there, and required only as `names`
+    /// say.
     pub fn written(mut self, place: impl Fn(&str) -> Option<&'static str>, names: &[&str]) -> Keys {
         for key in &mut self.keys {
             key.path = place(&key.path).map_or_else(|| key.path.clone(), Cow::from);

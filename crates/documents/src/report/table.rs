@@ -273,8 +273,8 @@ impl Table {
         Table { rows, ..self.clone() }
     }
 
-    /// The table with decimals in place of fractions, column by column: one notation in each. A column of exact
-    /// numbers keeps its fractions where one of them has no finite decimals.
+    /// The table with decimals in place of fractions, column by column: one notation in each. A column of
+    /// exact numbers keeps its fractions where one of them has no finite decimals.
     pub fn in_decimals(&self) -> Table {
         let decimal =
             |text: &str| text.parse().ok().map(|x| decimal_of(&x)).filter(|text| !text.contains('/'));

@@ -22,8 +22,8 @@ pub fn quoted(word: &str) -> String {
 }
 
 /// The whole table as lines of text, the caption first. Where it is wider than `most` characters, enclosures
-/// have fewer digits, headings and words fold, and columns are left out and named: those that are empty first,
-/// then the last ones.
+/// have fewer digits, headings and words fold, and columns are left out and named: those that are empty
+/// first, then the last ones.
 ///
 /// Enclosures show the digits that are certain, see [`decimal::enclosure`]. Widths count characters, so
 /// columns line up for everything but double-width scripts.

@@ -88,7 +88,8 @@ fn bad_input_gets_one_clear_line_and_no_wait() {
     for long in ["9".repeat(100_000), "(".repeat(19_000), "-".repeat(19_000), "((1+pi)^9*".repeat(1_900)] {
         assert!(parse("h1", &long).is_err());
     }
-    // Processor time of this thread, generous: the whole list takes milliseconds; what must not happen is minutes.
+    // Processor time of this thread, generous: the whole list takes milliseconds; what must not happen is
+    // minutes.
     assert!(seconds() - start < 20, "{} s", seconds() - start);
 }
 

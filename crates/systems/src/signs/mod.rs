@@ -21,8 +21,8 @@
 //! | W | both together | those of P | those of R |
 //! | Z | both together | those of R | those of P |
 //!
-//!   A zero eigenvalue of P or R beside a definite form is an edge: a Jordan block at λ = ±1, linear growth. In
-//!   doubles no eigenvalue is known to be 0, so exact arithmetic tells that.
+//!   A zero eigenvalue of P or R beside a definite form is an edge: a Jordan block at λ = ±1, linear growth.
+//!   In doubles no eigenvalue is known to be 0, so exact arithmetic tells that.
 //! * None definite: #{μ < −1} ≥ |neg P − neg W|, |neg R − neg Z| and #{μ > 0} ≥ |neg R − neg W|, |neg P − neg
 //!   Z| for regular forms (neg: the number of negative eigenvalues). Where these agree two modes may have
 //!   collided, and other means decide.

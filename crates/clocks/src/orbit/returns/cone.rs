@@ -1,9 +1,9 @@
 //! Growth that shows before the walk's end: both branches of a level take one cone into itself.
 //!
 //! A period visits each place of a level once: it is a product of a values of the left branch and b of the
-//! right one, a and b their lengths. Where each value, in the basis of two vectors, has four positive entries,
-//! or four negative ones, all along its branch, so has the product, and Tr Q > 2 or Tr Q < −2, as the
-//! branches' signs and a and b say (proofs/RETURNS.md, "Early ends").
+//! right one, a and b their lengths. Where each value, in the basis of two vectors, has four positive
+//! entries, or four negative ones, all along its branch, so has the product, and Tr Q > 2 or Tr Q < −2, as
+//! the branches' signs and a and b say (proofs/RETURNS.md, "Early ends").
 
 use std::f64::consts::PI;
 

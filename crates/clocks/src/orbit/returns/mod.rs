@@ -60,8 +60,8 @@ pub fn is_worth(ratio: Ratio, bits: u32) -> bool {
     ratio.p().min(ratio.q()) >= if bits > 53 { LONG_FOR_BITS } else { LONG }
 }
 
-/// log₂ of the ratio of the steps, at most, where two doubles know the constants: a step of the base to the power 2^8
-/// costs them 12 bits, and a period of 2^70 kicks is known well enough with the others.
+/// log₂ of the ratio of the steps, at most, where two doubles know the constants: a step of the base to the
+/// power 2^8 costs them 12 bits, and a period of 2^70 kicks is known well enough with the others.
 const MOST_LOG2_RATIO: u64 = 8;
 
 /// The half period to the digits of numbers of so many bits; `None` where the bound loses all digits, where a
@@ -72,8 +72,8 @@ pub fn run<S: Real>(clocks: &LongClocks<S>, bits: u32, wanted: Wanted) -> Option
     better(clocks, bits, wanted)?.ends
 }
 
-/// What a verdict needs: the signs of entries, too, whose logarithms no exponent of a ball holds, or growth that
-/// shows before the ends.
+/// What a verdict needs: the signs of entries, too, whose logarithms no exponent of a ball holds, or growth
+/// that shows before the ends.
 pub fn decisive<S: Real>(clocks: &LongClocks<S>, bits: u32, wanted: Wanted) -> Option<Found> {
     better(clocks, bits, wanted).filter(Found::decides)
 }

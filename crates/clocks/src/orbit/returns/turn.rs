@@ -21,8 +21,8 @@ pub struct Turn {
 const ANGLE_ERROR: f64 = 0.0039;
 const OWN: f64 = 0.016;
 
-/// The angle of a vector that is not zero, in [-π, π], within [`ANGLE_ERROR`]: directions need no more, and an
-/// arctangent costs as much as a product of matrices.
+/// The angle of a vector that is not zero, in [-π, π], within [`ANGLE_ERROR`]: directions need no more, and
+/// an arctangent costs as much as a product of matrices.
 #[inline(always)]
 pub fn angle([x, y]: [f64; 2]) -> f64 {
     let (wide, high) = (x.abs(), y.abs());

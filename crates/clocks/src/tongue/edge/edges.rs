@@ -238,8 +238,8 @@ impl Tongues {
         Ok(precise::shrink(&function, &alone, &relative, true).expect("it is isolated"))
     }
 
-    /// As [`Tongues::sharpened`] by return maps alone; `None` where they cannot decide it, and of a period that
-    /// is not long.
+    /// As [`Tongues::sharpened`] by return maps alone; `None` where they cannot decide it, and of a period
+    /// that is not long.
     ///
     /// # Errors
     /// Where the schedule is too long.

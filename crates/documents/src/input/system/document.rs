@@ -361,8 +361,8 @@ fn potentials(source: &Value) -> impl Iterator<Item = &Value> {
 }
 
 impl Beside {
-    /// What is wrong in words, and where; an unknown field is in the object of its place. These fields are none
-    /// that would help.
+    /// What is wrong in words, and where; an unknown field is in the object of its place. These fields are
+    /// none that would help.
     fn fault(&self, cause: &serde_json::Error, path: &str) -> Error {
         let words = json::plain(cause);
         let is_unknown = words.starts_with("unknown field");

@@ -68,8 +68,8 @@ question! {
         ratio: Option<Ratio>,
         /// The bound on p and q of an exhaustive check of the Proposition; 60 unless given.
         max: Option<u64>,
-        /// All coprime p + q up to this number, for tongues, closings, survey and atlas; without it they are about
-        /// the ratio.
+        /// All coprime p + q up to this number, for tongues, closings, survey and atlas; without it they are
+        /// about the ratio.
         max_sum: Option<u64>,
         /// λ2/λ1, in place of λ2, for tongues, survey and atlas.
         rho: Option<Rational>,

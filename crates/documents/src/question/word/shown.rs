@@ -28,8 +28,8 @@ impl Linted {
         std::iter::once(self.word.to_string()).chain(lines).collect()
     }
 
-    /// What a person wants first: the verdict at the step, which steps are stable, order and cost; beyond that
-    /// what is wrong with it.
+    /// What a person wants first: the verdict at the step, which steps are stable, order and cost; beyond
+    /// that what is wrong with it.
     pub(super) fn answer(&self, question: &Word) -> Vec<String> {
         let is_first = |(name, text): &Line| match *name {
             "consistent" | "palindrome" => text.starts_with("no"),

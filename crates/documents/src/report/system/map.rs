@@ -16,7 +16,8 @@ use systems::scan::Point;
 /// The points of a scan, row by row of y.
 #[derive(Clone, Debug)]
 pub struct SystemMap {
-    /// The number varied along x and, if there are two, along y: in words, with the power of time in its unit.
+    /// The number varied along x and, if there are two, along y: in words, with the power of time in its
+    /// unit.
     pub numbers: Vec<(String, i8)>,
     pub xs: Vec<Rational>,
     pub ys: Vec<Rational>,
