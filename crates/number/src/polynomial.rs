@@ -2,7 +2,8 @@
 //! is ℚ\[ρ\]\[s\].
 //!
 //! ```
-//! use kickdrift_number::{Polynomial, Rational, Sturm, rational::ratio};
+//! use kickdrift_number::polynomial::Sturm;
+//! use kickdrift_number::{Polynomial, Rational, ratio};
 //! // (s − 1)² (s² − 2) has the real roots −√2, 1, √2.
 //! let s = Polynomial::<Rational>::variable();
 //! let shifted = &s - &Polynomial::constant(ratio(1, 1));
