@@ -266,3 +266,49 @@ fn the_nearest_double_is_that_of_the_number_and_not_the_one_below() {
     assert_eq!((nearest, seen.get() > 192), (1f64.next_up(), true));
     assert_eq!(Ball::from_rational(&ratio(1, 1), 64).scale2(5000).mid_f64(), f64::MAX);
 }
+
+#[test]
+fn a_ball_knows_its_middle_and_how_many_bits_its_radius_leaves() {
+    // 1000 has ten bits, 3 has two.
+    let ball = Ball { mid: 1000.into(), rad: 3, exp: -7 };
+    assert_eq!(ball.relative_accuracy_bits(), 8);
+    assert_eq!(Ball { rad: 0, ..ball.clone() }.relative_accuracy_bits(), i64::MAX);
+    assert_eq!(ball.middle(), (&1000.into(), -7));
+    let (n, exp) = ball.middle();
+    assert!(Ball::from_integer(n).scale2(exp).sub(&ball.midpoint(), 64).is_exact());
+    // 1000 is 8 · 125: down to eighths its floor is the number itself, and no further.
+    let scaled = |shift: i64| Ball { exp: 0, ..ball.clone() }.mid_scaled(-shift);
+    assert_eq!(scaled(3), (125.into(), 1.into()));
+    assert_eq!(scaled(4), (62.into(), 2.into()));
+    assert_eq!(scaled(0), (1000.into(), 3.into()));
+    assert_eq!(scaled(-1), (2000.into(), 6.into()));
+}
+
+/// Bits are doubled until the radius leaves more than those asked for, and none is asked for in vain.
+#[test]
+fn a_number_is_evaluated_until_it_is_known_well_enough() {
+    let asked = std::cell::RefCell::new(Vec::new());
+    let evaluated = |lost: u32| {
+        let asked = &asked;
+        move |bits: u32| {
+            asked.borrow_mut().push(bits);
+            // A third, of which so many of the bits are lost.
+            let third = Ball::from_rational(&ratio(1, 3), bits);
+            third.widened(Magnitude::power_of_two(i64::from(lost) - i64::from(bits)), bits)
+        }
+    };
+    for (bits, lost, times) in [(53, 0, 1), (53, 40, 2), (53, 150, 3), (10, 30, 2), (200, 31, 2)] {
+        asked.borrow_mut().clear();
+        let known = Ball::to_accuracy(bits, evaluated(lost));
+        let steps: Vec<u32> = (0..times).map(|k| (bits + 32) << k).collect();
+        assert_eq!(*asked.borrow(), steps, "{bits} bits, {lost} lost");
+        assert!(known.contains(&ratio(1, 3)) && known.relative_accuracy_bits() >= i64::from(bits) - 1);
+    }
+    // As many bits as were asked for are not more than those.
+    let tries = std::cell::Cell::new(0);
+    let known = Ball::to_accuracy(20, |_| {
+        tries.set(tries.get() + 1);
+        Ball { mid: BigInt::one() << (19 + tries.get()), rad: 1, exp: 0 }
+    });
+    assert_eq!((tries.get(), known.top()), (2, Some(22)));
+}
