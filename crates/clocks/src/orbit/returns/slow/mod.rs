@@ -19,7 +19,7 @@ use near::Near;
 use normal::{Normal, roundings};
 
 /// From so many factors on, pieces are cheaper than doubling.
-pub const WORTH: u128 = 1 << 10;
+pub const WORTH: u128 = 1 << 12;
 
 /// A piece of so few steps is left to its single factors.
 const FEW: i128 = 32;
