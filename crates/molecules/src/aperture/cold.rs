@@ -124,7 +124,7 @@ pub fn hottest(measurement: &Measurement, steps: &[Rational]) -> Result<Option<H
 fn edge(measurement: &Measurement, level: f64) -> Result<Option<Edge>> {
     let period = measurement.period();
     let unit = unit(period);
-    let below = |step: &Rational| measurement.aperture_below(step, level);
+    let below = |step: &Rational| measurement.aperture_seen_below(step, level);
     let step = |n: usize| &unit * Rational::from_integer(n.into());
     let last = measurement.limit.map_or(PARTS, |limit| (limit / to_f64(&unit)).floor() as usize);
     let all: Vec<Rational> = (FIRST..STRONG).step_by(8).chain(STRONG..=last).map(step).collect();
@@ -155,4 +155,54 @@ fn narrowed(
         }
     }
     Ok(Edge { share: (to_f64(&cold) / period).next_down(), aperture })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use number::ratio;
+
+    /// All energies below the level against those from its half on, at steps about where bonds begin to be too
+    /// hot: so many of each kind, of both potentials and by both kinds of schemes.
+    fn steps_where_energies_disagree(steps: u64) -> [usize; 3] {
+        let bonds = [
+            "OH:morse:D=485.72kJ/mol,a=22.87/nm,15.999,1.008",
+            "OH:poly:k2=254049.483kJ/mol/nm^2,k3=-5810111.678kJ/mol/nm^3,k4=77511731.541kJ/mol/nm^4,15.999,1.008",
+        ];
+        let [mut cold, mut hot, mut missed] = [0; 3];
+        for (bond, kind) in bonds.iter().flat_map(|bond| KINDS.map(|kind| (bond, kind))) {
+            let bond = Bond::read(bond).expect("a bond");
+            let word = method(kind.method).expect("a method").word();
+            let measurement = Measurement::new(&bond, &ratio(298, 1), &word, None).expect("one force");
+            let [first, last] = [0.16, 0.2].map(|share| (share * measurement.period() * 1e4) as i64);
+            for n in 0..steps as i64 {
+                let step = ratio(first + (last - first) * n / steps as i64, 10_000);
+                let level = 8.0 + 4.0 * (n % 5) as f64;
+                let [all, seen] = [Measurement::aperture_below, Measurement::aperture_seen_below]
+                    .map(|look| look(&measurement, &step, level).expect("nobody stops it"));
+                match (all, seen) {
+                    (None, _) => cold += 1,
+                    (Some(_), None) => missed += 1,
+                    (all, seen) => {
+                        assert_eq!(all, seen);
+                        hot += 1;
+                    }
+                }
+            }
+        }
+        [cold, hot, missed]
+    }
+
+    #[test]
+    fn no_bond_is_lost_from_below_half_the_level_alone() {
+        let [cold, hot, missed] = steps_where_energies_disagree(6);
+        assert!(cold > 3 && hot > 3 && missed == 0, "{cold} cold, {hot} hot, {missed} missed");
+    }
+
+    #[test]
+    #[ignore = "minutes: 1,200 steps"]
+    fn no_bond_is_lost_from_below_half_the_level_alone_at_many_steps() {
+        let [cold, hot, missed] = steps_where_energies_disagree(300);
+        assert!(cold > 200 && hot > 200 && missed == 0, "{cold} cold, {hot} hot, {missed} missed");
+    }
 }

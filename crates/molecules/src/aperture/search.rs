@@ -1,5 +1,6 @@
 //! The search for the least energy at which a bond is lost, and the share of a thermal ensemble that is.
 
+use std::ops::Range;
 use std::sync::OnceLock;
 
 use super::bond::{Bond, Shape};
@@ -213,55 +214,78 @@ impl Measurement {
     /// # Errors
     /// Where somebody has stopped the work.
     pub fn aperture_below(&self, step: &Rational, level: f64) -> Result<Option<f64>> {
-        Ok(self.found(to_f64(step), Some(level))?.aperture)
+        Ok(self.found(to_f64(step), Some(0.0..level))?.aperture)
     }
 
-    /// What runs at a step tell; of E* alone, where that is below a level, if one is given.
-    fn found(&self, h: f64, below: Option<f64>) -> Result<Found> {
+    /// E* at a step in fs where some phase is lost at energies from half the level up to it, all in kT.
+    ///
+    /// What leaves from below passes through these energies, and what is lost from one of them is lost from
+    /// nearly all above it: a search that finds none here has found none below in any of the steps that were
+    /// tried (the test beside [`Cold`](super::Cold)).
+    ///
+    /// # Errors
+    /// Where somebody has stopped the work.
+    pub fn aperture_seen_below(&self, step: &Rational, level: f64) -> Result<Option<f64>> {
+        let seen = self.found(to_f64(step), Some(0.5 * level..level))?.aperture;
+        if seen.is_none() { Ok(None) } else { self.aperture_below(step, level) }
+    }
+
+    /// What runs at a step tell; of the least energy lost alone, where that is in a range, if one is given.
+    fn found(&self, h: f64, range: Option<Range<f64>>) -> Result<Found> {
         match &self.shape {
-            Shape::Morse { depth, a } => self.morse(h, [to_f64(depth), to_f64(a)], below),
-            Shape::Harmonic { k } => self.polynomial(h, [to_f64(k), 0.0, 0.0], below),
+            Shape::Morse { depth, a } => self.morse(h, [to_f64(depth), to_f64(a)], range),
+            Shape::Harmonic { k } => self.polynomial(h, [to_f64(k), 0.0, 0.0], range),
             Shape::Polynomial { k2, k3, k4 } => {
                 let [k2, k3, k4] = [k2, k3, k4].map(to_f64);
-                self.polynomial(h, [2.0 * k2, 3.0 * k3, 4.0 * k4], below)
+                self.polynomial(h, [2.0 * k2, 3.0 * k3, 4.0 * k4], range)
             }
         }
     }
 
     /// Of the derivative c1 x + c2 x² + c3 x³.
-    fn polynomial(&self, h: f64, derivative: [f64; 3], below: Option<f64>) -> Result<Found> {
+    fn polynomial(&self, h: f64, derivative: [f64; 3], range: Option<Range<f64>>) -> Result<Found> {
         let [c1, c2, c3] = derivative.map(|c| c * (h * h / self.mass));
         let slow = self.squares[1] * (h * h);
         let pull = |stage: &Stage| {
             Polynomial([-(stage.bond * c1 + stage.slow * slow), -(stage.bond * c2), -(stage.bond * c3)])
         };
-        self.search(h, pull, below)
+        self.search(h, pull, range)
     }
 
-    fn morse(&self, h: f64, [depth, a]: [f64; 2], below: Option<f64>) -> Result<Found> {
+    fn morse(&self, h: f64, [depth, a]: [f64; 2], range: Option<Range<f64>>) -> Result<Found> {
         let strength = 2.0 * depth * a * (h * h / self.mass);
         let slow = self.squares[1] * (h * h);
         // −a/2^8, exactly; −V' is 2 D a (e − 1) e.
         let part = -a / f64::from(1 << DOUBLINGS);
         let pull =
             |stage: &Stage| Morse { linear: -(stage.slow * slow), strength: -(stage.bond * strength), part };
-        self.search(h, pull, below)
+        self.search(h, pull, range)
     }
 
     /// From the lowest rung up.
-    fn search<P: Pull>(&self, h: f64, pull: impl Fn(&Stage) -> P, below: Option<f64>) -> Result<Found> {
+    fn search<P: Pull>(
+        &self,
+        h: f64,
+        pull: impl Fn(&Stage) -> P,
+        range: Option<Range<f64>>,
+    ) -> Result<Found> {
         let turn = |stage: &Stage| Turn { drift: stage.drift, pull: pull(stage) };
         let first = turn(&self.map.first);
         let turns: Vec<_> = self.map.stages.iter().map(turn).collect();
         let mut found = Found { aperture: None, half: None, share: 0.0 };
         for (energy, weight) in rungs().zip(weights()) {
             go_on()?;
-            if below.is_some_and(|level| energy >= level || found.aperture.is_some()) {
-                break;
+            if let Some(range) = &range {
+                if energy >= range.end || found.aperture.is_some() {
+                    break;
+                }
+                if energy < range.start {
+                    continue;
+                }
             }
             let mut runs = self.start(h, energy, &first);
             let mut done = 0;
-            while done < LATE && !found.knows_all(&runs, done) && (below.is_none() || runs.lost() == 0) {
+            while done < LATE && !found.knows_all(&runs, done) && (range.is_none() || runs.lost() == 0) {
                 runs.advance(&turns, PIECE);
                 done += PIECE;
                 if done == EARLY {
