@@ -23,7 +23,7 @@ use clocks::schedule::{KickDrift, Kicks, Schedule};
 use clocks::verdict::Kind;
 use number::rational::enclose_f64;
 use number::{Ball, Error, ExactSign, Laurent, Rational, Real, Result, Sign, bisected, from_f64_exact};
-use systems::friction::{Damping, Friction, Mask, Masked, damped_oscillator};
+use systems::friction::{Damping, Mask, Masked, damped_oscillator, damping_of_oscillator};
 use systems::{Limits, ManyClocks, Potential, Symmetric, System, decide_oscillator};
 
 /// Bits of the orbits' balls: in the first region these widen by e^(π/2) roundings.
@@ -177,7 +177,8 @@ impl Levels<'_> {
     /// The frictions per fs that mask a resonance; `None` where nothing grows or none was found.
     pub fn masking(&self) -> Option<Masked> {
         // Any friction: the answer on those that mask is the same.
-        match self.with_friction(&self.scheme.inner().recip())?.masking {
+        let rate = self.scheme.inner().recip();
+        match damped_oscillator(&self.clocks(&self.all()).ok()?, &self.first(), &rate).ok()?.masking {
             Mask::At(masked) => Some(masked),
             _ => None,
         }
@@ -185,12 +186,13 @@ impl Levels<'_> {
 
     /// Whether this friction per fs keeps all bounded; `None` where that is not proven either way.
     pub fn is_damped_by(&self, rate: &Rational) -> Option<bool> {
-        Some(self.with_friction(rate)?.damping? == Damping::Damped)
+        let found = damping_of_oscillator(&self.clocks(&self.all()).ok()?, &self.first(), rate);
+        Some(found.ok()?? == Damping::Damped)
     }
 
-    fn with_friction(&self, rate: &Rational) -> Option<Friction> {
-        let first = Laurent::from_rational(self.scheme.inner().clone());
-        damped_oscillator(&self.clocks(&self.all()).ok()?, &first, rate).ok()
+    /// The step of the first clock in fs: the unit of time of all.
+    fn first(&self) -> Laurent {
+        Laurent::from_rational(self.scheme.inner().clone())
     }
 
     fn clocks(&self, heard: &[usize]) -> Result<ManyClocks<Laurent>> {

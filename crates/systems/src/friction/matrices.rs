@@ -42,9 +42,25 @@ pub struct Friction {
 /// # Errors
 /// A rate that is not positive; budget errors, before the work.
 pub fn damped_system(system: &System, rate: &Rational, limits: &Limits) -> Result<Friction> {
-    if *rate <= Rational::default() {
-        return Err(Error::input("friction", rate, "a rate of friction must be positive"));
-    }
+    let all =
+        of_parts(system, rate, limits, |own, part| Ok((own.at_or_tie(rate), own.masked(part, limits)?)))?;
+    let growth = all.iter().map(|((_, growth), _)| *growth).collect::<Option<Vec<_>>>();
+    Ok(Friction {
+        rate: rate.clone(),
+        damping: worst(all.iter().map(|((damping, _), _)| *damping)),
+        growth: growth.and_then(|all| all.into_iter().reduce(|a, b| (a.0.max(b.0), a.1.max(b.1)))),
+        masking: all.into_iter().map(|(_, masking)| masking).fold(Mask::NotNeeded, Mask::and),
+    })
+}
+
+/// What is found of each part at a friction, and the part as it ticks without any.
+fn of_parts<T>(
+    system: &System,
+    rate: &Rational,
+    limits: &Limits,
+    found: impl Fn(&Damped, &System) -> Result<T>,
+) -> Result<Vec<T>> {
+    check(rate)?;
     let parts = parts(system);
     // With friction the drifts of a part end where those of the others do.
     let ticking: Vec<_> = parts.iter().map(System::with_silent_clocks).collect();
@@ -59,25 +75,14 @@ pub fn damped_system(system: &System, rate: &Rational, limits: &Limits) -> Resul
         limits
             .allow(cost, || format!("the eigenvalues of a period of {}", degrees_of_freedom(part.size())))?;
     }
-    let all = parts.iter().zip(&ticking).map(|(part, ticking)| damped_part(part, ticking, rate, limits));
-    let all = all.collect::<Result<Vec<_>>>()?;
-    let growth = all.iter().map(|own| own.growth).collect::<Option<Vec<_>>>();
-    Ok(Friction {
-        rate: rate.clone(),
-        damping: worst(all.iter().map(|own| own.damping)),
-        growth: growth.and_then(|all| all.into_iter().reduce(|a, b| (a.0.max(b.0), a.1.max(b.1)))),
-        masking: all.into_iter().map(|own| own.masking).fold(Mask::NotNeeded, Mask::and),
-    })
+    parts.iter().zip(&ticking).map(|(part, ticking)| found(&Damped::new(ticking), part)).collect()
 }
 
-/// As [`damped_system`], for one part, which ticks with all clocks of the whole.
-fn damped_part(part: &System, ticking: &System, rate: &Rational, limits: &Limits) -> Result<Friction> {
-    let own = Damped::new(ticking);
-    let (damping, growth) = match own.at(rate) {
-        (None, _) if ticking.as_many_clocks().is_some_and(|own| is_tie(&own)) => TIE,
-        found => found,
-    };
-    Ok(Friction { rate: rate.clone(), damping, growth, masking: own.masked(part, limits)? })
+fn check(rate: &Rational) -> Result<()> {
+    if *rate <= Rational::default() {
+        return Err(Error::input("friction", rate, "a rate of friction must be positive"));
+    }
+    Ok(())
 }
 
 /// The spectral radius is 1, whatever the friction.
@@ -127,14 +132,12 @@ pub fn damped_oscillator<S: Real>(
     unit: &Laurent,
     rate: &Rational,
 ) -> Result<Friction> {
-    if *rate <= Rational::default() {
-        return Err(Error::input("friction", rate, "a rate of friction must be positive"));
-    }
-    if clocks.strengths().iter().all(|k| k.sign() == Sign::Zero) {
+    check(rate)?;
+    if is_silent(clocks) {
         let (damping, growth) = TIE;
         return Ok(Friction { rate: rate.clone(), damping, growth, masking: Mask::NotNeeded });
     }
-    let own = near(&(unit * &Laurent::from_rational(rate.clone())));
+    let own = per_unit(rate, unit);
     let found = damped_system(&rounded(clocks)?, &own, &Limits::default())?;
     let (damping, growth) = match found.damping {
         None if is_tie(clocks) => TIE,
@@ -150,6 +153,33 @@ pub fn damped_oscillator<S: Real>(
         other => other,
     };
     Ok(Friction { rate: rate.clone(), damping, growth: growth.map(per_time), masking })
+}
+
+/// Where the spectral radius lies, as [`damped_oscillator`] has it, without the frictions that mask.
+///
+/// # Errors
+/// A rate that is not positive.
+pub fn damping_of_oscillator<S: Real>(
+    clocks: &ManyClocks<S>,
+    unit: &Laurent,
+    rate: &Rational,
+) -> Result<Option<Damping>> {
+    check(rate)?;
+    if is_silent(clocks) {
+        return Ok(TIE.0);
+    }
+    let own = per_unit(rate, unit);
+    let all = of_parts(&rounded(clocks)?, &own, &Limits::default(), |part, _| Ok(part.at_or_tie(&own).0))?;
+    Ok(worst(all.into_iter()).or_else(|| if is_tie(clocks) { TIE.0 } else { None }))
+}
+
+fn is_silent<S: Real>(clocks: &ManyClocks<S>) -> bool {
+    clocks.strengths().iter().all(|k| k.sign() == Sign::Zero)
+}
+
+/// A rate in the unit of time of clocks.
+fn per_unit(rate: &Rational, unit: &Laurent) -> Rational {
+    near(&(unit * &Laurent::from_rational(rate.clone())))
 }
 
 /// Within 2^-200 of a number, relative to it: so that its rounding to a double is all that counts, and bounds
@@ -207,6 +237,14 @@ struct Damped<'a> {
 impl<'a> Damped<'a> {
     fn new(part: &'a System) -> Damped<'a> {
         Damped { part, period: to_f64(&part.period()) }
+    }
+
+    /// Where ρ lies, and ln ρ/T; of a tie, too, which doubles do not tell.
+    fn at_or_tie(&self, rate: &Rational) -> At {
+        match self.at(rate) {
+            (None, _) if self.part.as_many_clocks().is_some_and(|own| is_tie(&own)) => TIE,
+            found => found,
+        }
     }
 
     /// Where ρ lies, and ln ρ/T.

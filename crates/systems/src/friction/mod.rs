@@ -56,5 +56,7 @@ mod tie;
 pub use damping::Damping;
 pub use masking::{Mask, Masked};
 pub(crate) use masking::{from_edge, proven_down};
-pub use matrices::{Friction, allow_pair, damped_oscillator, damped_pair, damped_system};
+pub use matrices::{
+    Friction, allow_pair, damped_oscillator, damped_pair, damped_system, damping_of_oscillator,
+};
 pub(crate) use radius::{Radius, damping, shrink_one_form};
