@@ -128,7 +128,7 @@ impl Question for Simulate {
 
     fn figure(&self, Simulated { scene, run }: &Simulated, _: &Work) -> Result<Option<Figure>> {
         let foot = Foot::default().words(scene.title()).value("periods", self.periods);
-        let foot = foot.value("displaced by", &self.displace.text).words(self.form.name());
+        let foot = foot.value("displacement", &self.displace.text).words(self.form.name());
         let figure = report::figure(run, scene.title()).footed(&foot);
         Ok(Some(figure.in_units_of(scene.time_unit().unwrap_or("time"))))
     }
