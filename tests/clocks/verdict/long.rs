@@ -1,7 +1,8 @@
 //! Periods of any length: return maps beside kicks, beside edges, and for steps that are doubles.
 
+use kickdrift::map::{Pairs, Resources};
 use kickdrift::number::rational::ratio;
-use kickdrift::number::{Laurent, Ratio, Rational};
+use kickdrift::number::{Laurent, Ratio, Rational, parse};
 use kickdrift::propagator::{LongClocks, Oscillator, TwoClocks};
 use kickdrift::tongue::Tongues;
 use kickdrift::verdict::{Kind, Limits, Tier, decide_from, decide_long};
@@ -137,4 +138,20 @@ fn steps_of_more_digits_than_a_verdict_is_worth_are_refused_at_once() {
     };
     assert!(decided(300).is_ok());
     assert_eq!(decided(1300).unwrap_err().kind(), kickdrift::error::Kind::Budget);
+}
+
+/// Steps that are doubles, next to simple ratios, under strong kicks: a partial quotient of some thousands.
+/// Normal forms of its factors lost these verdicts, which doubling keeps.
+#[test]
+fn doubles_beside_simple_ratios_have_verdicts() {
+    let number = |text: &str| parse::parse("number", text).unwrap();
+    for [stiffness, first, second] in [
+        ["5.527782825313433", "0.5357780319472962", "2.6791283902582186"],
+        ["2.984926272179469", "0.5441270968245352", "2.720813536617698"],
+        ["7.946938013843831", "0.5672495921724482", "3.403823728322601"],
+    ] {
+        let steps = [[number(first), number(second)]];
+        let pairs = Pairs::of_steps(number("9.8696"), number(stiffness), steps).unwrap();
+        assert!(pairs.verdicts(&Resources::default()).is_ok(), "{first}, {second}");
+    }
 }

@@ -102,7 +102,8 @@ pub fn walk<T: Coefficient, P: Coefficient>(
     }
     // So often, and oftener than any branch below, is the next level's new one passed through.
     let allowed = P::CLOSE / left.length.min(right.length) as f64;
-    let mut level = Level { left: Run::new(left, allowed), right: Run::new(right, allowed) };
+    let [left, right] = [left, right].map(|branch| Run::new(branch, allowed, wanted));
+    let mut level = Level { left, right };
     let mut reached = match level.induced(n, budget)? {
         Some([left, right]) => match walk(left, right, n, entered, left_out, wanted, budget)? {
             Walked::Reached(reached) => reached,

@@ -4,12 +4,13 @@
 //! interval of length L, and P_n by as much over a piece of length L/n. So there are about 2 n pieces on
 //! which P_n is known, each as long as two of the next kind, and k/n places where it is asked for: a product
 //! of k factors costs about √k products of functions. Its error grows by a factor per doubling, like a power
-//! of k. From [`slow::WORTH`] factors on, [`Slow`] takes fewer and keeps it.
+//! of k. From [`slow::worth`] factors on, [`Slow`] takes fewer and keeps it.
 
 use super::branch::{Branch, Budget};
 use super::coefficient::Coefficient;
 use super::map::Map;
 use super::slow::{self, Slow, after};
+use super::wanted::Wanted;
 
 /// log2 of the rows at a point that cost as much as one piece.
 const LOG2_ROWS_A_PIECE: u32 = 3;
@@ -19,6 +20,7 @@ pub struct Run<T> {
     pub branch: Branch<T>,
     /// The relative error of a very long product allowed beside roundings.
     allowed: f64,
+    wanted: Wanted,
     /// By the logarithm of n and the place: some dozens.
     pieces: Vec<((u32, i128), Branch<T>)>,
     /// The factors of very long products.
@@ -26,13 +28,13 @@ pub struct Run<T> {
 }
 
 impl<T: Coefficient> Run<T> {
-    pub fn new(branch: Branch<T>, allowed: f64) -> Self {
-        Run { branch, allowed, pieces: Vec::new(), slow: None }
+    pub fn new(branch: Branch<T>, allowed: f64, wanted: Wanted) -> Self {
+        Run { branch, allowed, wanted, pieces: Vec::new(), slow: None }
     }
 
     /// P_n on start..start + length, or at a point; `None` where the budget or the bound does not last.
     pub fn product(&mut self, n: u128, start: i128, length: i128, budget: &mut Budget) -> Option<Map<T>> {
-        if n >= slow::WORTH {
+        if n >= slow::worth(self.wanted) {
             let slow = self.slow.get_or_insert_with(|| Slow::new(self.branch.clone(), self.allowed));
             return slow.product(n, start, length, budget);
         }

@@ -15,11 +15,15 @@ use std::rc::Rc;
 use super::branch::{Branch, Budget};
 use super::coefficient::Coefficient;
 use super::map::Map;
+use super::wanted::Wanted;
 use near::Near;
 use normal::{Normal, roundings};
 
-/// From so many factors on, pieces are cheaper than doubling.
-pub const WORTH: u128 = 1 << 12;
+/// From so many factors on pieces are taken: at first they cost more than doubling, and lose fewer digits. A
+/// verdict needs none but those of signs.
+pub fn worth(wanted: Wanted) -> u128 {
+    if wanted == Wanted::Verdict { 1 << 12 } else { 1 << 10 }
+}
 
 /// A piece of so few steps is left to its single factors.
 const FEW: i128 = 32;
