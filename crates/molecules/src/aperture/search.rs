@@ -219,15 +219,18 @@ impl Measurement {
 
     /// E* at a step in fs where some phase is lost at energies from half the level up to it, all in kT.
     ///
-    /// What leaves from below passes through these energies, and what is lost from one of them is lost from
-    /// nearly all above it: a search that finds none here has found none below in any of the steps that were
-    /// tried (the test beside [`Cold`](super::Cold)).
+    /// A bond that is lost from a lower energy passes through these on its way out, so they tell by themselves
+    /// whether any is. That is an observation and no proof: it held at all steps that were tried (the test
+    /// beside [`Cold`](super::Cold)).
     ///
     /// # Errors
     /// Where somebody has stopped the work.
     pub fn aperture_seen_below(&self, step: &Rational, level: f64) -> Result<Option<f64>> {
-        let seen = self.found(to_f64(step), Some(0.5 * level..level))?.aperture;
-        if seen.is_none() { Ok(None) } else { self.aperture_below(step, level) }
+        let half = 0.5 * level;
+        match self.found(to_f64(step), Some(half..level))?.aperture {
+            Some(seen) => Ok(Some(self.aperture_below(step, half)?.unwrap_or(seen))),
+            None => Ok(None),
+        }
     }
 
     /// What runs at a step tell; of the least energy lost alone, where that is in a range, if one is given.

@@ -19,8 +19,9 @@ use super::wanted::Wanted;
 use near::Near;
 use normal::{Normal, roundings};
 
-/// From so many factors on pieces are taken: at first they cost more than doubling, and lose fewer digits. A
-/// verdict needs none but those of signs.
+/// From so many factors on, pieces are taken in place of doubling. Entries and sign changes keep more digits
+/// by pieces from 2^10 factors on. Verdicts alone are found faster by doubling up to 2^12, and fewer of them
+/// are lost: beside simple ratios under strong kicks 2 of 3,000, and 59 by pieces.
 pub fn worth(wanted: Wanted) -> u128 {
     if wanted == Wanted::Verdict { 1 << 12 } else { 1 << 10 }
 }
